@@ -104,7 +104,8 @@ def test_masks_by_handle_id_and_name():
     image = Camera(90, 60, fx=60.0).look_at((0.0, -2.0, 0.0), (0.0, 0.0, 0.0)).capture(world)
     hand = image.mask("arm", "hand")
     assert 0 < hand.sum() < image.mask("arm").sum()
-    for same in (image.mask(arm, 0), image.mask(arm.id, arm.links["hand"])):
+    numbers = np.array([arm.id, 0])
+    for same in (image.mask(arm, 0), image.mask(arm.id, arm.links["hand"]), image.mask(*numbers)):
         assert np.array_equal(same, hand)
     assert np.array_equal(image.mask(arm), image.mask(arm, -1) | hand)
     assert image.names() == {

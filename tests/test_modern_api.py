@@ -197,6 +197,30 @@ def test_reset_places_a_joint_and_its_links_at_once(world, load):
     assert_allclose(body.links["shoulder_rod"].velocity.angular, [0.0, 2.0, 0.0], atol=1e-12)
 
 
+def test_a_body_without_joints_has_empty_arrays(world, load):
+    joints = load().joints
+    lower, upper = joints.limits
+    assert lower.shape == upper.shape == joints.positions.shape == (0,)
+    joints.set_position_targets([])
+    joints.reset([])
+
+
+def test_no_joint_is_reset_if_one_cannot_be(world, load):
+    joints = load(SHOULDER, BALL).joints
+    joints.reset([0.2, 0.0, 0.0, 0.0, 1.0])
+    with pytest.raises(ValueError, match="quaternion"):
+        joints.reset([0.5, 0.0, 0.0, 0.0, 0.0])
+    assert joints.positions[0] == 0.2
+
+
+def test_text_is_no_parameter_of_dynamics(world, load):
+    body = load(SHOULDER)
+    for changes in ({"lateral_friction": "0.5"}, {"inertia": ("1", 1.0, 1.0)}):
+        with pytest.raises((TypeError, ValueError)):
+            body.change_dynamics(0, **changes)
+    assert body.dynamics(0).lateral_friction == 0.5
+
+
 def test_arrays_speak_for_all_movable_joints(world, load):
     joints = load(SHOULDER, WELD, ELBOW).joints
     joints.reset([0.2, -0.3], [0.5, 0.0])

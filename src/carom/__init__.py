@@ -1,6 +1,6 @@
 """Carom: a robot simulator that runs PyBullet scripts unmodified.
 
-Scripts written for PyBullet need nothing from here: they `import pybullet`. New code can use
+Scripts written for PyBullet do not need this module: they `import pybullet`. New code can use
 `World`, `Body`, `Joint` and `Link` directly, and the controllers in `carom.control`. Names are
 imported when first used, so `import carom` itself is quick.
 """

@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 NOTHING = -1
-"""Body of pixels that show nothing."""
+"""Body id of background pixels."""
 
 DAYLIGHT = Light(ambient=0.5, diffuse=0.5, distance=inf, shadow=True, shade=0.4)
 """Default light of a camera: parallel, with shadows."""
 
-# OpenGL's eye looks along -z with y up, cameras along z with y down.
+# OpenGL's camera looks along -z, and its y axis points up; a `Camera` looks along z, and y points down.
 _EYE_FROM_CAMERA = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -43,7 +43,7 @@ class PointCloud(NamedTuple):
     Attributes:
         points: (n, 3) positions [m].
         colours: (n, 3) uint8 red, green and blue.
-        bodies: (n,) ids of the bodies they lie on.
+        bodies: (n,) ids of the bodies that the points lie on.
     """
 
     points: NDArray[np.float64]
@@ -102,7 +102,7 @@ class CameraImage:
             link: Handle, index (-1 is the base) or name; None for the whole body.
 
         Returns:
-            (height, width) true where it is seen.
+            (height, width) booleans, true where the body or link is visible.
 
         Raises:
             KeyError: No such body or link existed when the image was taken.
@@ -116,7 +116,7 @@ class CameraImage:
         return found
 
     def names(self) -> dict[str, int]:
-        """Number of pixels of everything in view, by `body/link` names."""
+        """Number of pixels of each visible link, by its name as `body/link`."""
         labels, counts = np.unique(
             np.stack([self.body_ids, self.link_indices], axis=-1).reshape(-1, 2), axis=0, return_counts=True
         )
@@ -151,7 +151,7 @@ class CameraImage:
         if isinstance(body, str):
             found = [identifier for identifier, (name, _) in self._names.items() if name == body]
         else:
-            identifier = body if isinstance(body, int) else body.id
+            identifier = int(body) if isinstance(body, (int, np.integer)) else body.id
             found = [identifier] if identifier in self._names else []
         if not found:
             raise KeyError(f"there was no body {body!r} when the image was taken")
@@ -163,7 +163,7 @@ class CameraImage:
             if link not in links:
                 raise KeyError(f"body {body!r} has no link {link!r}")
             return links.index(link) - 1
-        index = link if isinstance(link, int) else link.index
+        index = int(link) if isinstance(link, (int, np.integer)) else link.index
         if not -1 <= index < len(links) - 1:
             raise KeyError(f"body {body!r} has no link {index}")
         return index
@@ -172,8 +172,8 @@ class CameraImage:
 class Camera:
     """A pinhole camera. It looks along z, its x axis points to the right of the image, its y axis down.
 
-    A point (x, y, z) of the camera's frame is seen at column fx x / z + cx and row fy y / z + cy; pixel
-    (0, 0) is the middle of the top left one.
+    A point (x, y, z) of the camera's frame is projected to column fx x / z + cx and row fy y / z + cy;
+    (0, 0) is the centre of the top left pixel.
 
     Args:
         width: Number of columns.
@@ -238,7 +238,7 @@ class Camera:
     def with_field_of_view(
         cls, width: int, height: int, degrees: float, *, near: float = 0.01, far: float = 100.0
     ) -> Camera:
-        """A camera by its vertical field of view, in the origin of the world.
+        """A camera with a given vertical field of view, at the origin of the world.
 
         Args:
             width: Number of columns.
@@ -255,7 +255,7 @@ class Camera:
         return cls(width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far)
 
     def _repr_html_(self) -> str:
-        """Its pose and field of view, for notebooks."""
+        """Its image size and position, for notebooks."""
         position = ", ".join(f"{value:.4g}" for value in self.pose.position)
         where = f"at ({position}) m" if self.link is None else f"on link {self.link.name}, at ({position}) m"
         return f"<b>Camera</b>: {self.width} x {self.height} pixels, {escape(where)}"
@@ -267,7 +267,7 @@ class Camera:
         return np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
 
     def place(self, position: ArrayLike, orientation: ArrayLike) -> None:
-        """Moves the camera.
+        """Move the camera.
 
         Args:
             position: [m], in the world or, if it is mounted, in the frame of its link.
@@ -284,10 +284,10 @@ class Camera:
         self._local = Pose((x, y, z), (qx, qy, qz, qw))
 
     def look_at(self, eye: ArrayLike, target: ArrayLike, up: Sequence[float] = (0.0, 0.0, 1.0)) -> Camera:
-        """Moves the camera so that it looks from one point at another.
+        """Move the camera so that it looks from one point at another.
 
         Args:
-            eye: Where it is [m], in the world or, if it is mounted, in the frame of its link.
+            eye: Position of the camera [m], in the world or, if it is mounted, in the frame of its link.
             target: The point in the middle of the image [m].
             up: Direction that is upwards in the image.
 
@@ -306,7 +306,7 @@ class Camera:
         return self
 
     def mount(self, link: Link | None) -> Camera:
-        """Mounts the camera on a link, or, with None, in the world; use `place` or `look_at` for its pose.
+        """Mount the camera on a link, or fix it in the world (None); `place` and `look_at` set its pose.
 
         Returns:
             The camera itself.
@@ -326,7 +326,7 @@ class Camera:
         return LinkPose(np.array(pose.position), np.array(pose.orientation))
 
     def capture(self, world: World | None = None) -> CameraImage:
-        """Takes an image.
+        """Take an image.
 
         Args:
             world: The world it looks at; by default that of the link it is mounted on.
@@ -357,7 +357,7 @@ class Camera:
 
 
 def _inverse(matrix: Array) -> Array:
-    """The inverse of a rotation and a shift, as a matrix of shape (4, 4)."""
+    """Inverse of a homogeneous transformation (rotation and translation), shape (4, 4)."""
     inverse = np.eye(4)
     inverse[:3, :3] = matrix[:3, :3].T
     inverse[:3, 3:] = -product(matrix[:3, :3].T, matrix[:3, 3:])

@@ -1,4 +1,4 @@
-"""Checks of numbers from users, which become arrays."""
+"""Checks of numbers from users, which are converted to arrays."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ Array = NDArray[np.float64]
 
 
 class OnDevice:
-    """Base of arrays on another device than the processor. Their numbers are not read back to be checked."""
+    """Base class of arrays on a device other than the CPU; checks do not read their numbers back."""
 
 
 def finite(value: ArrayLike, name: str) -> Array:
     """A copy of `value` as an array of finite doubles.
 
     Raises:
-        ValueError: Something in it is NaN or infinite; the message calls it `name`.
+        ValueError: A number is NaN or infinite; the message refers to the value as `name`.
     """
     if isinstance(value, OnDevice):
         return value  # type: ignore[return-value]
@@ -30,7 +30,7 @@ def vector(value: ArrayLike, length: int, name: str) -> Array:
     """A copy of `value` as `length` finite doubles.
 
     Raises:
-        ValueError: It has another shape, or something in it is NaN or infinite.
+        ValueError: The shape is wrong, or a number is NaN or infinite.
     """
     array = finite(value, name)
     if array.shape != (length,):
@@ -39,7 +39,7 @@ def vector(value: ArrayLike, length: int, name: str) -> Array:
 
 
 def one_or_each(value: ArrayLike, count: int, name: str) -> Array:
-    """`value` as `count` doubles: one number stands for all. Infinity is allowed.
+    """`value` as `count` doubles; a single number is repeated. Infinity is allowed.
 
     Raises:
         ValueError: It is neither one number nor `count` of them.
@@ -54,7 +54,7 @@ def positive(value: ArrayLike, name: str) -> Array:
     """A copy of `value` as an array of finite doubles greater than 0.
 
     Raises:
-        ValueError: A number is not.
+        ValueError: A number is not positive or not finite.
     """
     array = _numbers(value, name)
     if not (np.isfinite(array).all() and (array > 0.0).all()):
@@ -66,7 +66,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
     """A copy of `value` as an array of doubles >= 0; infinity is allowed.
 
     Raises:
-        ValueError: A number is not.
+        ValueError: A number is negative or NaN.
     """
     if isinstance(value, OnDevice):
         return value  # type: ignore[return-value]
@@ -78,7 +78,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
 
 def _numbers(value: ArrayLike, name: str) -> Array:
     try:
-        # PyTorch's tensors warn when NumPy asks them for a copy.
+        # Copied separately, because PyTorch's tensors warn when NumPy requests a copy from them.
         return np.asarray(value, dtype=np.float64).copy()
     except (TypeError, ValueError):
         raise ValueError(f"{name} must be a number or an array of numbers, not {value!r}") from None

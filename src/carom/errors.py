@@ -13,9 +13,9 @@ class DescriptionError(CaromError):
     """A robot or mesh file cannot be used.
 
     Attributes:
-        reason: What is wrong, in words.
+        reason: Description of the error.
         file: The file at fault.
-        line: Line in that file, counted from 1, where one is known.
+        line: Line in that file, counted from 1, if known.
         element: The XML element at fault, written as `robot > link "arm" > inertial`.
     """
 
@@ -39,8 +39,8 @@ class StateError(CaromError):
 
 
 class SimulationWarning(RuntimeWarning):
-    """One of many worlds has been halted."""
+    """One of the worlds of `carom.Worlds` has been halted."""
 
 
 class NativeLibraryError(CaromError):
-    """The compiled kernels are missing, damaged or of another version; the message says what to do."""
+    """The compiled kernels are missing, damaged or of another version; the message explains what to do."""

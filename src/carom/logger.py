@@ -1,4 +1,4 @@
-"""Loggers that import `logging` at first use: importing it takes as long as ten of our modules."""
+"""Loggers that import `logging` at first use, because importing it takes as long as ten modules of Carom."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class Logger:
-    """A logger of the module `logging`, by its name.
+    """A logger of the module `logging`, found by name when it is first used.
 
     Args:
         name: The logger's name.
@@ -22,7 +22,7 @@ class Logger:
         self._name = name
 
     def info(self, message: str, *values: object) -> None:
-        """As `logging.Logger.info`; nobody listens if `logging` has not been imported."""
+        """As `logging.Logger.info`, but only if `logging` has been imported: else there are no handlers."""
         if "logging" in sys.modules:
             self._logger().info(message, *values, stacklevel=2)
 

@@ -1,8 +1,9 @@
 """Data classes that are quick to define: `@record` in place of `@dataclass(frozen=True, slots=True)`.
 
-`dataclasses` writes and compiles up to eight methods for every class, about half a millisecond. Sixty classes
-are defined before a process has made its first step, of which this was a fifth. The methods here are the same
-for all classes and were compiled with this module; making an object takes a few microseconds instead of one.
+`dataclasses` generates and compiles up to eight methods for every class, which takes about half a
+millisecond. A process defines sixty classes before its first step; this was a fifth of the time until then.
+The methods here are the same for all classes and are compiled with this module. Making an object takes a few
+microseconds instead of one.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 else:
 
     def dataclass_transform(**_: Any) -> Callable[[Any], Any]:
-        """Tells type checkers something; from Python 3.11 on it is in `typing`."""
+        """Stand-in for `typing.dataclass_transform` (Python 3.11), which only type checkers use."""
         return lambda function: function
 
 
@@ -34,10 +35,10 @@ def record(cls: type | None = None, /, *, frozen: bool = True, eq: bool = True) 
     """Make a class a data class with slots, as `dataclasses.dataclass` does.
 
     Args:
-        cls: The class, when the decorator stands without brackets.
+        cls: The class, if the decorator is used without parentheses.
         frozen: Whether objects cannot be changed.
-        eq: Whether objects with equal fields are equal, and hashable if they are frozen. Without it an
-            object equals itself only, as those that hold arrays have to.
+        eq: Whether objects with equal fields are equal, and hashable if they are frozen. Otherwise objects
+            are compared by identity, which classes with arrays as fields need.
     """
 
     def made(cls: type) -> type:
@@ -60,10 +61,10 @@ def record(cls: type | None = None, /, *, frozen: bool = True, eq: bool = True) 
 
 
 def _init(self: Any, /, *values: Any, **named: Any) -> None:
-    """Set the fields, from values in order and by name, or to their defaults."""
+    """Set the fields from positional and keyword arguments, or to their defaults."""
     known = self.__dataclass_fields__
     put = object.__setattr__
-    for value, name in zip(values, known):  # noqa: B905  # the rest of the names comes below
+    for value, name in zip(values, known):  # noqa: B905  # `_fill` sets the remaining fields
         put(self, name, value)
     if named or len(values) != len(known):
         _fill(self, len(values), named)
@@ -72,7 +73,7 @@ def _init(self: Any, /, *values: Any, **named: Any) -> None:
 
 
 def _fill(self: Any, given: int, named: dict[str, Any]) -> None:
-    """Set the fields behind those that were given in order."""
+    """Set the fields that were not given by position."""
     known = self.__dataclass_fields__
     put = object.__setattr__
     if given > len(known):
@@ -101,7 +102,7 @@ def _repr(self: Any) -> str:
 
 
 def _values(self: Any) -> tuple[Any, ...]:
-    """What is compared."""
+    """Values of the fields that are compared."""
     return tuple([getattr(self, name) for name in self.__compared__])
 
 
@@ -114,7 +115,7 @@ def _hash(self: object) -> int:
 
 
 def _reduce(self: Any) -> tuple[type, tuple[Any, ...]]:
-    """For pickling and copying: slots alone cannot be put back into what is frozen."""
+    """For pickling and copying, which by default would assign to the slots; frozen objects refuse that."""
     return type(self), tuple(getattr(self, name) for name in self.__dataclass_fields__)
 
 
@@ -127,7 +128,7 @@ def _refuse_to_delete(self: object, name: str) -> NoReturn:
 
 
 class _Signature:
-    """What `inspect` and `help` show of a class's arguments, worked out when they ask."""
+    """The signature of a class that `inspect` and `help` show, computed on demand."""
 
     def __get__(self, instance: object, owner: Any) -> Signature:
         from inspect import Parameter, Signature

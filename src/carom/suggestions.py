@@ -19,7 +19,7 @@ Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]
 def suggestion(problem: BaseException) -> str | None:
     """The argument that was probably meant; None for other errors, and if no name is similar.
 
-    Computed when a script has failed, so that it costs nothing in calls.
+    Computed only after a script has failed, so calls take no longer.
     """
     found = _UNKNOWN.match(str(problem)) if isinstance(problem, TypeError) else None
     if found is None:
@@ -30,13 +30,13 @@ def suggestion(problem: BaseException) -> str | None:
     from difflib import get_close_matches
 
     names = [name for name in inspect.signature(function).parameters if name != "self"]
-    # Names that differ only at their beginning are more likely than names of the same length.
+    # The parameter with the highest similarity ratio of `difflib`.
     near = get_close_matches(found[2], names, 1, _LIKENESS)
     return f"Did you mean {near[0]!r}?" if near else f"Its arguments are {', '.join(names)}."
 
 
 def install() -> None:
-    """Adds suggestions to the errors that Python or a notebook prints; calling it again changes nothing."""
+    """Add suggestions to the errors that Python or a notebook prints; calling it again changes nothing."""
     _install_in_notebook()
     if getattr(sys.excepthook, "suggests", False):
         return
@@ -72,7 +72,7 @@ def _install_in_notebook() -> None:
 
 
 def _function_called(name: str) -> Callable[..., Any] | None:
-    """The function of one of our modules with a qualified name."""
+    """The function of Carom or the drop-in with this qualified name."""
     for module_name in sorted(sys.modules):
         if module_name.partition(".")[0] not in _PACKAGES:
             continue

@@ -1,7 +1,7 @@
-"""PyBullet's interface, on Carom.
+"""PyBullet's interface, implemented with Carom.
 
 The module has the names, arguments, defaults, results and errors of PyBullet 3.2.7, so that scripts
-written for it run unmodified. Physics is in `carom`; this module is the interface for scripts.
+written for it run unmodified. The simulation itself is in `carom`.
 
 Lengths are in metres, masses in kilograms, times in seconds, angles in radians except for cameras;
 quaternions are (x, y, z, w). A link has the index of its parent joint; -1 is the base.

@@ -196,7 +196,7 @@ class TestCollada:
     @pytest.mark.parametrize(
         ("before", "after", "words"),
         [
-            ("<COLLADA>", "<DAE>", "no <COLLADA>|is due"),
+            ("<COLLADA>", "<DAE>", "no <COLLADA>|does not match"),
             ('url="#g"', 'url="#h"', "no geometry 'h'"),
             ('url="#x"', 'url="#y"', "shows no triangles"),
             ('source="#s"', 'source="#t"', "no POSITION input"),
@@ -246,10 +246,10 @@ def test_bounds_of_distance_fields_are_read(write: Write) -> None:
         (0.0, -1.0, -2.0),
         (1.0, 2.0, 3.0),
     )
-    with pytest.raises(DescriptionError, match="cut off"):
+    with pytest.raises(DescriptionError, match="cut off before the bounds"):
         read_field_bounds(write("f.cdf", b"short"))
     for high in (-1.0, np.nan):
-        with pytest.raises(DescriptionError, match="no box"):
+        with pytest.raises(DescriptionError, match="not in order"):
             read_field_bounds(write("f.cdf", struct.pack("<6d", 0, 0, 0, 1, 1, high)))
     with pytest.raises(DescriptionError, match="cannot be read"):
         read_field_bounds(Path("nowhere.cdf"))

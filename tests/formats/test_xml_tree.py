@@ -99,9 +99,9 @@ def test_a_nul_character_is_white_space() -> None:
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("<a>\n<b>\n</a>", 3, "</a> where </b> of line 2"),
+        ("<a>\n<b>\n</a>", 3, "</a> does not match <b> on line 2"),
         ("<a>\n<b>\n</b>", 1, "<a> is never closed"),
-        ("<!-- c -->\n</b><a/>", 2, "closes nothing"),
+        ("<!-- c -->\n</b><a/>", 2, "without a start tag"),
         ("<a/>\n</b", 2, "without a closing"),
         ("<a\n x=1/>", 2, 'name="value"'),
         ("<a\n x='1' x='2'/>", 2, "twice"),

@@ -32,6 +32,16 @@ def assert_is_closed_convex(solid: Polyhedron, points: np.ndarray, outside: floa
     np.testing.assert_allclose(np.linalg.norm(solid.planes[:, :3], axis=1), 1.0, rtol=1e-12)
 
 
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 50.0, 1e3, 1e6, 1e14, 1e60])
+@pytest.mark.parametrize("count", [1, 2, 3, 4])
+def test_flat_sets_of_any_size_have_a_slab(size: float, count: int) -> None:
+    points = size * np.array([[0.0, 0.0, 0.0], [1.0, 0.3, 0.2], [-0.2, 1.0, 0.4], [0.8, 1.3, 0.6]])[:count]
+    solid = convex_hull(points)
+    assert_is_closed_convex(solid, points, 1e-5 * size)
+    assert len(solid.vertices) == {1: 8, 2: 8, 3: 6, 4: 8}[count]
+
+
 def volume(solid: Polyhedron) -> float:
     total = 0.0
     for first, count in zip(solid.first_corner, solid.corner_count, strict=True):

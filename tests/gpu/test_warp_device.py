@@ -262,6 +262,8 @@ def test_arrays_are_indexed_as_numpy_does(device: str) -> None:
             array[wrong]
     with pytest.raises(ValueError, match="does not broadcast"):
         array[0] = np.zeros((3, 5))
+    with pytest.raises(ValueError, match="arrays of 4 axes cannot be combined"):
+        _ = array.reshape(1, *values.shape) + 1.0
     np.testing.assert_array_equal((2.0 * array / 4.0 - 1.0).numpy(), values / 2.0 - 1.0)
     np.testing.assert_array_equal(
         np.clip(array, 3.0, values[..., :1] + 2.0), np.clip(values, 3.0, values[..., :1] + 2.0)

@@ -117,5 +117,5 @@ def test_too_many_worlds_are_refused_before_there_is_any(arm) -> None:
 
 
 def test_threads_are_of_the_processor_only(arm) -> None:
-    with pytest.raises(ValueError, match="threads share worlds on the device 'cpu' only"):
+    with pytest.raises(ValueError, match="threads can be set for the device 'cpu' only"):
         Worlds(arm[0], 2, device=NativeDevice(), threads=2)

@@ -144,6 +144,13 @@ def test_joints_and_masses_are_drawn(page: Page, arm: int):
         page.page.locator(f"input[name={name}]").uncheck()
 
 
+def test_masses_of_removed_bodies_are_forgotten(page: Page, arm: int):
+    show(page, "masses")
+    page.until(f"app.scene.dynamics.has({arm})")
+    p.removeBody(arm)
+    page.until(f"!app.scene.dynamics.has({arm})")
+
+
 def test_constraints_and_rays_are_drawn(page: Page, arm: int):
     p.createConstraint(arm, 7, -1, -1, p.JOINT_POINT2POINT, [0, 0, 0], [0, 0, 0], [0.5, 0, 1])
     show(page, "constraints", "rays")

@@ -185,7 +185,7 @@ def test_an_arm_with_limits_goes_on_alone() -> None:
         (-1, {"mass": [1.0, 0.0, 1.0, 1.0]}, ValueError, "greater than 0"),
         (-1, {"mass": [1.0, 2.0]}, ValueError, r"mass has shape \(2,\); it must have shape \(4,\)"),
         (-1, {"lateral_friction": np.nan}, ValueError, "lateral_friction must be finite"),
-        (-1, {"colour": 1.0}, TypeError, "no parameter 'colour' that can differ"),
+        (-1, {"colour": 1.0}, TypeError, "no parameter 'colour' can differ"),
         (-1, {"joint_damping": 1.0}, ValueError, "the base has no joint"),
         ("wheel", {"mass": 1.0}, KeyError, "no link is called 'wheel'"),
         (3, {"mass": 1.0}, IndexError, "link 3 is out of range"),

@@ -1,4 +1,4 @@
-"""The command line: `python -m carom info robot.urdf`, `view robot.urdf`, `convert`, `serve`, `warmup`."""
+"""The command line `python -m carom`: the commands info, view, record, convert, serve and warmup."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command.
 
     Args:
-        arguments: Words of the command line; those of the process by default.
+        arguments: Words of the command line; None for those of the process.
 
     Returns:
-        Exit status: 0 when all went well, 1 when a file cannot be used. For a wrong command argparse ends the
-        process with status 2.
+        Exit status: 0 for success, 1 if the command failed, for example because a file cannot be used. For a
+        wrong command line argparse ends the process with status 2.
     """
     options = _parser().parse_args(arguments)
     try:
         options.command(options)
         sys.stdout.flush()
     except BrokenPipeError:
-        # The reader has closed its end, as `head` does; keep Python from writing the rest at exit.
+        # The reader has closed the pipe, as `head` does; keep Python from writing the rest at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (CaromError, OSError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
@@ -91,7 +91,7 @@ def _parser() -> argparse.ArgumentParser:
 
     serve = commands.add_parser("serve", help="serve a world that scripts in other processes can join")
     serve.add_argument(
-        "--key", type=int, default=12347, help="of shared memory, as in connect (default 12347)"
+        "--key", type=int, default=12347, help="shared-memory key, as in connect (default 12347)"
     )
     for transport, port in (("tcp", 6667), ("udp", 1234)):
         serve.add_argument(
@@ -100,7 +100,7 @@ def _parser() -> argparse.ArgumentParser:
             nargs="?",
             const=port,
             metavar="PORT",
-            help=f"be found by connect(p.{transport.upper()}) as well (port {port} if none is stated)",
+            help=f"also accept clients of connect(p.{transport.upper()}) (default port {port})",
         )
     serve.add_argument("--bind", default="127.0.0.1", help="address of these ports (default 127.0.0.1)")
     serve.add_argument(
@@ -145,7 +145,7 @@ def _view(options: argparse.Namespace) -> None:
 
     search = AssetSearch(Path(pybullet_data.getDataPath()))
     view = RobotView(options.file, search, options.host, options.port)
-    # Terminals take text that follows an address without a space as part of it.
+    # The address ends the line, because terminals take text right after an address as part of it.
     print(f"Ctrl-C ends it. {options.file.name} is shown at {view.viewer.address}", flush=True)
     if tunnel := tunnel_command(view.viewer.address):
         print(f"Over SSH: run '{tunnel}' on your own machine, then open the address there.", flush=True)
@@ -247,7 +247,7 @@ def _link_table(spec: BodySpec) -> str:
 
 
 def link_poses(spec: BodySpec) -> dict[int, Pose]:
-    """Link frames in the base's link frame with all joints at 0, by link index."""
+    """Poses of the link frames in the base's link frame, with all joints at 0, by link index."""
     poses = {BASE: IDENTITY}
     for index, link in enumerate(spec.links):
         poses[index] = compose(poses[link.parent], link.joint_frame)
@@ -255,7 +255,7 @@ def link_poses(spec: BodySpec) -> dict[int, Pose]:
 
 
 def _numbers(values: Iterable[float]) -> str:
-    # Adding 0 turns -0 into 0.
+    # Adding 0 converts -0 to 0.
     return " ".join(f"{value + 0.0:.4g}" for value in values)
 
 

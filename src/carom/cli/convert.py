@@ -1,4 +1,4 @@
-"""Any robot file as URDF."""
+"""Converting robot files to URDF: `python -m carom convert`."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from carom.model.mjcf_inertia import set_mjcf_inertias
 
 
 def convert(source: Path, target: Path, model: str | None = None) -> None:
-    """Writes a robot as URDF. Its pose in the world of the file is not kept.
+    """Write a robot as URDF. Its pose in the world of the file is not kept.
 
-    A robot that the file fixes to the world gets a base without mass, which PyBullet and Carom do not
-    move. Links without moments of inertia, as in MJCF files, get those that Carom computes from their
-    collision shapes. Meshes are not copied.
+    A robot that the file fixes to the world gets a base of mass 0, which is fixed in PyBullet and Carom.
+    Links without moments of inertia, as in MJCF files, get those that Carom computes from their collision
+    shapes. Meshes are not copied.
 
     Args:
-        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file; one that comes with `pybullet_data` is found by
-            its name.
+        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file; files of `pybullet_data` are found by name.
         target: The file to write.
-        model: Name of the robot, of its root link, or its number from 0; needed where there are several.
+        model: Name of the robot, name of its root link, or its number from 0; required if the file has
+            several robots.
 
     Raises:
-        DescriptionError: The source cannot be used or holds no such robot, or URDF cannot say what is in it.
+        DescriptionError: The source cannot be used, has no such robot, or cannot be expressed in URDF.
         OSError: The target cannot be written.
     """
     robot = _with_moments(
@@ -43,7 +43,7 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
 
 
 def _with_moments(robot: Robot, *, is_mjcf: bool) -> Robot:
-    """The robot with moments of inertia for each link that has mass and none of its own."""
+    """The robot, with computed moments of inertia for each link that has mass but no moments of inertia."""
     without = {link.name for link in robot.links if link.inertial.mass and not any(link.inertial.tensor)}
     if not without:
         return robot

@@ -18,14 +18,14 @@ from carom.world.world import World
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """What is to be recorded.
+    """The settings of a recording.
 
     Attributes:
         script: The script.
-        output: The HTML file. Further worlds of the script go to `output-2.html` and so on.
-        arguments: Of the script.
-        seconds: Simulated time after which the script is ended [s]; None: when it ends by itself.
-        fps: Frames for each second of simulated time.
+        output: The HTML file. Replays of further worlds are written to `output-2.html` and so on.
+        arguments: Arguments of the script.
+        seconds: Simulated time after which the script is ended [s]; None if it ends by itself.
+        fps: Number of frames per second of simulated time.
     """
 
     script: Path
@@ -36,7 +36,7 @@ class Take:
 
 
 class _Enough(BaseException):
-    """Ends a script; `except Exception` does not catch it."""
+    """Raised to end the script; `except Exception` does not catch it."""
 
 
 class _Watch:
@@ -48,10 +48,10 @@ class _Watch:
         self.over = False
 
     def before_step(self) -> None:
-        """Nothing."""
+        """Do nothing."""
 
     def after_step(self) -> None:
-        """Checks the clock."""
+        """End the script if the simulated time is over."""
         if self._world.time < self._seconds:
             return
         self.over = True
@@ -62,16 +62,16 @@ class _Watch:
 
 
 def record(take: Take) -> list[Path]:
-    """Runs a script and writes a replay of each world it makes, even if the script fails.
+    """Run a script, and write a replay of each world it creates, even if the script fails.
 
     Returns:
         The files that were written.
 
     Raises:
-        OSError: The script cannot be read, or a file not be written.
-        Exception: Whatever the script raises.
+        OSError: The script cannot be read, or a replay cannot be written.
+        Exception: An exception of the script.
     """
-    # There is no user: what the script does by itself is recorded.
+    # As in continuous integration, no browser is opened, because there is no user.
     os.environ.setdefault("CI", "1")
     recorders: list[tuple[Path, ReplayRecorder]] = []
     watches: list[_Watch] = []

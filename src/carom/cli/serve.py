@@ -12,7 +12,7 @@ import pybullet
 from carom.cli.warmup import warmup
 from carom.errors import CaromError
 
-# Signals that end a process; on Windows processes can send each other only Ctrl-Break.
+# Signals that end the server. On Windows a process can send only Ctrl-Break to another one.
 _REQUESTS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name)]
 # How often to check whether the window has been closed [s].
 _LOOK = 0.25
@@ -20,12 +20,12 @@ _LOOK = 0.25
 
 @dataclass(frozen=True)
 class Service:
-    """What to serve.
+    """The settings of a physics server.
 
     Attributes:
-        key: Of shared memory, by which clients find the server.
-        window: Show the world in the browser.
-        options: Of `pybullet.connect`: more ports, the key, the window.
+        key: Shared-memory key, by which clients find the server.
+        window: Whether to show the world in the browser.
+        options: Options of `pybullet.connect`: ports for TCP and UDP, key file, port of the page.
     """
 
     key: int = pybullet.SHARED_MEMORY_KEY
@@ -34,17 +34,17 @@ class Service:
 
 
 def serve(service: Service) -> None:
-    """Serves a world until the process is asked to end, or the window is closed.
+    """Serve a world until the process gets a signal to end, or the window is closed.
 
     Raises:
-        CaromError: There is a server with this key already, or it cannot listen at its ports.
+        CaromError: There is a server with this key already, or the ports cannot be used.
     """
     ending = Event()
 
     def end(_signal: int, _frame: FrameType | None) -> None:
         ending.set()
 
-    # Clients should not have to wait for kernels to be compiled.
+    # Before clients can connect, because kernels may have to be compiled.
     warmup()
     method = pybullet.GUI_SERVER if service.window else pybullet.SHARED_MEMORY_SERVER
     try:

@@ -1,4 +1,4 @@
-"""Looking at a robot: a slider for each joint, no gravity."""
+"""Viewing a robot: `python -m carom view`, with a slider for each joint and no gravity."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from carom.viewer.viewer import Viewer
 from carom.world.world import World
 
 _PERIOD = 1.0 / 60.0
-# Reach of the sliders of joints without limits [rad or m].
+# Range of the sliders of joints without limits, to either side of 0 [rad or m].
 _FULL_TURN = pi
 _SLIDE = 1.0
-# How far from a robot the camera is, in sizes of the robot.
+# Distance of the camera from the robot, in sizes of the robot.
 _DISTANCE = 1.1
 _LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
 
@@ -31,16 +31,16 @@ class RobotView:
 
     Args:
         file: URDF, SDF or MJCF file.
-        search: Folders in which the file, if not found as named, and meshes are searched.
+        search: Search folders for meshes, and for the file if it does not exist under its name.
         host: Address to serve the page at.
-        port: Port to serve it at; None for the default port or any free one.
+        port: Port to serve the page at; None for the default port or any free port.
 
     Raises:
         DescriptionError: The file cannot be used, or there is no robot in it.
-        OSError: The page cannot be served there.
+        OSError: The page cannot be served at this address and port.
 
     Attributes:
-        viewer: The viewer that shows it.
+        viewer: The viewer.
     """
 
     def __init__(self, file: Path, search: AssetSearch, host: str, port: int | None) -> None:
@@ -64,13 +64,13 @@ class RobotView:
         self.viewer.open_browser()
 
     def run(self) -> None:
-        """Follows the sliders until the user closes the page."""
+        """Update the joints from the sliders until the user closes the page."""
         while self.viewer.is_open:
             self.follow()
             time.sleep(_PERIOD)
 
     def follow(self) -> None:
-        """Puts the joints where the sliders are."""
+        """Set the joint positions to the values of the sliders."""
         for body, joint, slider in self._sliders:
             if body.joints[joint].position != slider.value:
                 body.set_joint_state(joint, [slider.value], [0.0])
@@ -88,7 +88,7 @@ class RobotView:
             self._sliders.append((body, joint, slider))
 
     def _look_at_it(self) -> None:
-        """Moves the camera so that everything is in view."""
+        """Move the camera so that all links are in view."""
         self.follow()
         points = self._world.link_pose[:, :3]
         lower, upper = points.min(axis=0), points.max(axis=0)

@@ -1,4 +1,4 @@
-"""Builds and loads the native library before it is needed."""
+"""Building and loading the native library before the first world: `python -m carom warmup`."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from carom.native.library import library
 
 
 def warmup() -> None:
-    """Load the native library; where kernels have been edited it is compiled first.
+    """Load the native library; if kernels have been edited, it is compiled first.
 
     Raises:
-        NativeLibraryError: There is none, and it cannot be compiled.
+        NativeLibraryError: There is no library, and it cannot be compiled.
     """
     library()

@@ -1,4 +1,4 @@
-"""Rollouts on many machines, by Ray: a vector environment on each; losing one changes no episode."""
+"""Rollouts on the nodes of a Ray cluster: a vector environment on each; losing a node changes no episode."""
 
 from __future__ import annotations
 

@@ -17,8 +17,8 @@ class Report:
 
     Attributes:
         episodes_of_nodes: Number of its episodes that each node played.
-        lost_nodes: Nodes, or processes on them, that died meanwhile, and what Ray says about it.
-        repeated: Number of episodes that were therefore repeated on other nodes.
+        lost_nodes: Nodes that died during the collection, or on which a process died, with Ray's message.
+        repeated: Number of episodes that were repeated because their node or process died.
     """
 
     episodes_of_nodes: dict[str, int] = field(default_factory=dict)
@@ -33,11 +33,11 @@ class Steps:
     Attributes:
         observations: Observations before each step, (steps, ...).
         actions: Actions, (steps, ...).
-        rewards: (steps,).
+        rewards: Rewards, (steps,).
         next_observations: Observations after each step, (steps, ...).
-        terminations: Where the episode was over, (steps,).
-        truncations: Where it was cut off, (steps,).
-        ids: The episode of each step, (steps,).
+        terminations: Whether the environment ended the episode at the step, (steps,).
+        truncations: Whether the episode was truncated at the step, (steps,).
+        ids: Id of the episode of each step, (steps,).
     """
 
     observations: np.ndarray
@@ -51,11 +51,11 @@ class Steps:
 
 @dataclass(frozen=True, eq=False)
 class Collection(Sequence[Episode]):
-    """Episodes in the order of their ids, which follow each other without a gap.
+    """Episodes in the order of their ids, which are consecutive.
 
     Attributes:
         episodes: The episodes.
-        report: Who played them.
+        report: Statistics: which nodes played them, and which were lost.
     """
 
     episodes: tuple[Episode, ...]
@@ -75,22 +75,22 @@ class Collection(Sequence[Episode]):
 
     @property
     def ids(self) -> np.ndarray:
-        """The ids, (episodes,)."""
+        """The ids of the episodes, (episodes,)."""
         return np.array([episode.id for episode in self.episodes])
 
     @property
     def lengths(self) -> np.ndarray:
-        """Number of steps of each, (episodes,)."""
+        """Number of steps of each episode, (episodes,)."""
         return np.array([episode.length for episode in self.episodes])
 
     @property
     def returns(self) -> np.ndarray:
-        """The sum of rewards of each, (episodes,)."""
+        """Sum of the rewards of each episode, (episodes,)."""
         return np.array([episode.total_reward for episode in self.episodes])
 
     @property
     def step_count(self) -> int:
-        """Number of steps of all together."""
+        """Number of steps of all episodes."""
         return int(self.lengths.sum())
 
     def steps(self) -> Steps:

@@ -1,4 +1,4 @@
-"""The actors of a rollout: which are idle, busy or lost."""
+"""The Ray actors of a rollout, and which of them are idle, busy or lost."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from carom.cluster.nodes import Failed, Failure, Node, living_nodes
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"
 _MOST_LOSSES = 3
-"""How many processes may die on a node in a collection before the node is given up."""
+"""Number of processes that may die on a node during a collection; after that the node is not used."""
 _PATIENCE = 30.0
-"""How long nothing may happen before it is said what is waited for [s]."""
+"""Time without a result after which a warning says for which nodes the rollout is waiting [s]."""
 
 
 @dataclass(eq=False)
@@ -28,8 +28,8 @@ class Member:
     """An actor on a node.
 
     Attributes:
-        node: Where it is.
-        actor: Its handle.
+        node: The node.
+        actor: Ray's handle of the actor.
         is_ready: Whether its environment has been made.
     """
 
@@ -40,7 +40,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Returned:
-    """A batch that came back; `outcome` is None if its actor was lost, for the reason `lost`."""
+    """The result of a batch; `outcome` is None if its actor was lost, and `lost` is then the reason."""
 
     node: Node
     batch: range
@@ -50,14 +50,14 @@ class Returned:
 
 @dataclass
 class Crew:
-    """One actor on each of some nodes.
+    """The actors of a rollout, at most one on each node.
 
     Args:
-        make_env: Makes the vector environments; packed.
-        num_envs: Number of environments of each.
+        make_env: The function that makes vector environments, pickled.
+        num_envs: Number of environments of each vector environment.
         max_episode_steps: Number of steps after which episodes are truncated.
         nodes: Maximum number of nodes, or "all".
-        cpus: Processors that Ray is to count as taken on each.
+        cpus: Number of CPUs that Ray reserves for each actor.
     """
 
     make_env: bytes
@@ -72,14 +72,14 @@ class Crew:
     _losses: Counter[str] = field(default_factory=Counter)
 
     def begin(self) -> None:
-        """A collection begins: forget the last one, and see which nodes there are.
+        """Prepare for a new collection: reset the counts of losses, and update the list of nodes.
 
         Raises:
-            ClusterError: There is none.
+            ClusterError: No node has enough CPUs.
         """
         self.lost.clear()
         self._losses.clear()
-        # Actors that play episodes no longer needed get new work when they have finished.
+        # Results of batches of the last collection are ignored; their actors first finish these batches.
         self._jobs = {ref: job for ref, job in self._jobs.items() if job[1] is None}
         self.idle = [member for member in self.members if member.is_ready]
         living = {node.id for node in living_nodes(self.cpus)}
@@ -90,7 +90,7 @@ class Crew:
             raise ClusterError(f"no node of the cluster offers {self.cpus:g} processors")
 
     def fill_up(self) -> None:
-        """Start actors on nodes that have none, as far as they are wanted."""
+        """Start actors on nodes that have none, up to the maximum number of nodes."""
         taken = {member.node.id for member in self.members}
         for node in living_nodes(self.cpus):
             is_enough = self.nodes != _ALL and len(self.members) >= int(self.nodes)
@@ -101,15 +101,15 @@ class Crew:
                 self._jobs[prepared] = (member, None)
 
     def give(self, member: Member, batch: range, policy: Any, seed: int, keep_steps: bool) -> None:
-        """Let one of the idle play a batch; `policy` is a reference to a packed one."""
+        """Let an idle actor play a batch; `policy` is a Ray reference to the pickled policy."""
         self.idle.remove(member)
         self._jobs[member.actor.play.remote(policy, batch, seed, keep_steps)] = (member, batch)
 
     def wait(self) -> Returned | None:
-        """Wait for an event; returns a batch if one came back.
+        """Wait for the next event; if it is the end of a batch, return its result.
 
         Raises:
-            ClusterError: No node is left, or an environment cannot be made on one of them.
+            ClusterError: No node is left, or a node cannot make an environment or unpickle the policy.
         """
         if not self._jobs:
             raise ClusterError("no node is left: " + "; ".join(self.lost))
@@ -118,7 +118,7 @@ class Crew:
         try:
             outcome: Any = ray.get(done)
         except RayTaskError as error:
-            # What environments and policies raise is returned; so the policy could not even be unpacked.
+            # Exceptions of environments and policies are returned, so this one comes from unpickling.
             self.idle.append(member)
             raise ClusterError(f"the policy cannot be sent to {member.node}: {error.cause}") from error
         except RayError as error:
@@ -131,7 +131,7 @@ class Crew:
         return None if batch is None else Returned(member.node, batch, _received(outcome))
 
     def close(self) -> None:
-        """End all actors."""
+        """Kill all actors."""
         if ray.is_initialized():
             for member in self.members:
                 ray.kill(member.actor)
@@ -152,7 +152,7 @@ class Crew:
             raise error from failure.cause()
 
     def _lose(self, member: Member, error: RayError) -> str:
-        """An actor was lost; its node may get another one."""
+        """Handle the loss of an actor, and return the reason; a new actor may be started on its node."""
         self._dismiss(member)
         self._losses[member.node.id] += 1
         reason = " ".join(str(error).split())
@@ -165,7 +165,7 @@ class Crew:
         self.members.remove(member)
         self.idle = [other for other in self.idle if other is not member]
         self._jobs = {ref: job for ref, job in self._jobs.items() if job[0] is not member}
-        # It may be alive and only out of reach.
+        # The actor may be alive and only unreachable.
         ray.kill(member.actor)
 
     def _say_what_is_waited_for(self) -> None:
@@ -179,8 +179,8 @@ class Crew:
 
 
 def _received(outcome: list[Episode] | Failed) -> Outcome:
-    """What came back from another process, as it is used here."""
+    """The result of a batch from another process: an exception, or episodes with writable arrays."""
     if isinstance(outcome, Failed):
         return outcome.error()
-    # Arrays from there lie, not to be written, in Ray's store, which would fill up.
+    # The received arrays are read-only memory of Ray's object store, which would fill up.
     return [episode.copy() for episode in outcome]

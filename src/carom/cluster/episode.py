@@ -1,4 +1,4 @@
-"""One episode, and the steps from which it is cut."""
+"""Episodes, and the recording of steps from which they are extracted."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ _FIRST_ROOM = 64
 
 @dataclass(frozen=True, eq=False)
 class Episode:
-    """One episode from its beginning to its end.
+    """One complete episode.
 
     Attributes:
-        id: Its number; no other of the same `Rollouts` has it.
+        id: Number of the episode, unique within its `Rollouts`.
         seed: Its seed: `env.reset(seed=seed)` of a single environment begins the same episode.
         observations: From the first to the last one, (length + 1, ...); (0, ...) if they were not kept.
-        actions: (length, ...); (0, ...) if they were not kept.
-        rewards: (length,).
-        terminated: Whether the environment says that it is over.
-        truncated: Whether it was cut off.
+        actions: Actions, (length, ...); (0, ...) if they were not kept.
+        rewards: Rewards, (length,).
+        terminated: Whether the environment ended the episode.
+        truncated: Whether the episode was truncated.
         info: The environment's info of the last step.
     """
 
@@ -36,16 +36,16 @@ class Episode:
 
     @property
     def length(self) -> int:
-        """Number of its steps."""
+        """Number of steps."""
         return len(self.rewards)
 
     @property
     def total_reward(self) -> float:
-        """The sum of its rewards."""
+        """Sum of the rewards."""
         return float(self.rewards.sum())
 
     def copy(self) -> Episode:
-        """The same with arrays of its own."""
+        """A copy of the episode, with copies of its arrays."""
         return replace(
             self,
             observations=self.observations.copy(),
@@ -55,10 +55,10 @@ class Episode:
 
 
 class StepLog:
-    """All steps of a vector environment, in arrays that grow.
+    """Records all steps of a vector environment, in arrays that grow.
 
     Args:
-        keep_steps: Whether observations and actions are kept, besides the rewards.
+        keep_steps: Whether to keep observations and actions, besides the rewards.
     """
 
     def __init__(self, keep_steps: bool) -> None:
@@ -67,7 +67,7 @@ class StepLog:
         self._observations = self._actions = self._rewards = np.zeros((0, 0))
 
     def add(self, observations: np.ndarray, actions: np.ndarray) -> None:
-        """Adds the observations and actions of a step, (num_envs, ...)."""
+        """Add the observations and actions of a new step, (num_envs, ...)."""
         if self._length == 0:
             room = _FIRST_ROOM if self._keep_steps else 0
             self._observations = np.empty((room, *observations.shape), observations.dtype)
@@ -84,7 +84,7 @@ class StepLog:
         self._length += 1
 
     def reward(self, rewards: np.ndarray) -> None:
-        """The step has ended, with rewards (num_envs,)."""
+        """Set the rewards of the step added last, (num_envs,)."""
         self._rewards[self._length - 1] = rewards
 
     def last(
@@ -100,7 +100,7 @@ class StepLog:
 
 
 def info_of(row: int, infos: dict[str, Any]) -> dict[str, Any]:
-    """What Gymnasium's infos of many environments say of one."""
+    """The infos of one environment, from Gymnasium's infos of a vector environment."""
     found: dict[str, Any] = {}
     for name, values in infos.items():
         told = infos.get(f"_{name}")

@@ -1,4 +1,4 @@
-"""What goes wrong in a rollout."""
+"""Exceptions of rollouts."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ class ClusterError(CaromError):
 
 
 class EpisodeError(ClusterError):
-    """The policy or the environment failed; the exception is the cause of this one.
+    """The policy or the environment failed; its exception is the cause of this one.
 
     Attributes:
-        what: Which of the two.
-        ids: The episodes that were being played.
-        seeds: Their seeds.
+        what: "the policy" or "the environment".
+        ids: Ids of the episodes that were being played.
+        seeds: Seeds of these episodes.
     """
 
     def __init__(self, what: str, ids: Sequence[int], seeds: Sequence[int], reason: str) -> None:
@@ -35,7 +35,7 @@ class EpisodeError(ClusterError):
 
 
 def named(ids: Sequence[int]) -> str:
-    """Episodes in words."""
+    """Ids of episodes as text, such as "episodes 3 to 7"."""
     return _counted("episode", ids)
 
 

@@ -1,4 +1,4 @@
-"""Which episodes are still to be played, are being played, and have been: each counts once."""
+"""Bookkeeping of a collection: which episodes are to be played, and which count; each counts once."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError, EpisodeError, named
 
 Outcome: TypeAlias = list[Episode] | EpisodeError
-"""What came of a batch."""
+"""Result of a batch."""
 
 
 class Ledger:
-    """The account of one collection.
+    """The bookkeeping of one collection.
 
-    Work is handed out in *batches*, runs of consecutive episodes, and counted in the order of the episodes,
-    whatever the order in which it comes back. So what is collected does not depend on who plays what, and a
-    failure is reported if, and only if, all episodes before it were not enough.
+    Nodes play *batches* of consecutive episodes. Finished batches are counted in the order of their episodes,
+    not in the order in which they finish. So the collected episodes do not depend on which node plays which
+    batch, and a failure is reported if, and only if, the episodes before it were not enough.
 
     Attributes:
-        counted: The episodes that count, in the order of their ids, without a gap.
+        counted: The episodes that count, in the order of their ids, which are consecutive.
         repeated: Number of episodes that were repeated.
 
     Args:
         first: The id of the first episode.
-        batch_size: Episodes of a batch.
-        episodes: Number of episodes; None if the number of steps is given.
-        steps: Minimum number of steps of all together; the last episode is the one that reaches it.
-        attempts: Number of attempts after which a batch is believed to kill its processes.
+        batch_size: Number of episodes of a batch.
+        episodes: Number of episodes to collect; None if the number of steps is given.
+        steps: Minimum total number of steps; the episode that reaches it is the last one.
+        attempts: Number of times a batch may lose its process before the collection fails.
     """
 
     def __init__(
@@ -44,37 +44,37 @@ class Ledger:
         self._lost: list[tuple[int, range]] = []
         self._losses: Counter[int] = Counter()
         self._early: dict[int, Outcome] = {}
-        """Outcomes by the first id of their batch, while batches before them are missing."""
+        """Outcomes that are not counted yet because earlier batches are missing, by the batch's first id."""
         self._sizes: dict[int, int] = {}
         self._next = first
-        """The first episode that is not counted yet."""
+        """Id of the first episode that is not counted yet."""
         self._has_failed = False
         self._steps_counted = 0
 
     @property
     def is_full(self) -> bool:
-        """Whether there is as much as was asked for."""
+        """Whether the requested number of episodes or steps is reached."""
         if self._episodes is not None:
             return len(self.counted) >= self._episodes
         return self._steps is not None and self._steps_counted >= self._steps
 
     def take(self) -> range | None:
-        """The ids of the next batch to play; None if there is none now."""
+        """The ids of the next batch to play; None if there is no batch to play at present."""
         if self._lost:
             batch = heapq.heappop(self._lost)[1]
             self.repeated += len(batch)
             return batch
-        # What comes after a failure is not wanted unless what is out there turns out to be enough.
+        # After a failure no new batches are played: those in progress are enough, or the failure is raised.
         return None if self._has_failed or self.is_full else next(self._fresh, None)
 
     def finish(self, batch: range, outcome: Outcome) -> bool:
-        """A batch has come back.
+        """Enter the outcome of a batch.
 
         Returns:
-            Whether it counts: it does not if it has come back before.
+            Whether the outcome is used: it is not if there is an outcome of this batch already.
 
         Raises:
-            EpisodeError: It, or one after it that was waiting for it, has failed.
+            EpisodeError: This batch failed, or a later one that could not be counted before it.
         """
         if batch.start < self._next or batch.start in self._early:
             return False
@@ -85,10 +85,10 @@ class Ledger:
         return True
 
     def lose(self, batch: range, reason: str) -> None:
-        """The actor of a batch was lost.
+        """Enter that the actor that played a batch was lost; the batch will be played again.
 
         Raises:
-            ClusterError: It has happened to this batch too often.
+            ClusterError: This batch has lost its actor too often.
         """
         if batch.start < self._next or batch.start in self._early:
             return

@@ -1,4 +1,4 @@
-"""The nodes of Ray's cluster, and an actor on each that plays episodes."""
+"""The nodes of the Ray cluster, and the actor that plays episodes on a node."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from carom.cluster.player import Player
 from carom.cluster.policies import Policy
 
 MakeEnv = Callable[[int], VectorEnv]
-"""Makes a vector environment of as many as it is told."""
+"""Makes a vector environment with the given number of environments."""
 
 
 def packed(value: Any, name: str) -> bytes:
-    """Something to be sent. Packed by Ray itself it would arrive with arrays that must not be written.
+    """An object as bytes, to be sent. If Ray itself pickled it, its arrays would be read-only on arrival.
 
     Raises:
-        TypeError: It cannot be sent; the message calls it `name`.
+        TypeError: The object cannot be pickled; the message calls it `name`.
     """
     try:
         return cloudpickle.dumps(value)  # type: ignore[reportPrivateImportUsage]
@@ -38,17 +38,17 @@ def packed(value: Any, name: str) -> bytes:
 
 
 def unpacked(sent: bytes) -> Any:
-    """Unpacks an object that was sent."""
+    """The object that `packed` has converted to bytes."""
     return cloudpickle.loads(sent)
 
 
 @dataclass(frozen=True)
 class Failure:
-    """An exception on its way from another process.
+    """An exception that is sent from another process.
 
     Attributes:
-        error: The exception; None if it cannot be sent.
-        text: How it would have been printed where it was raised.
+        error: The exception; None if it cannot be pickled.
+        text: Its traceback in the process that raised it.
     """
 
     error: Exception | None
@@ -56,7 +56,7 @@ class Failure:
 
     @classmethod
     def of(cls, error: BaseException) -> Failure:
-        """What can be sent of an exception."""
+        """The failure that describes an exception."""
         text = "".join(traceback.format_exception(error))
         try:
             copy = unpacked(packed(error, "the exception"))
@@ -65,7 +65,7 @@ class Failure:
         return cls(copy if isinstance(copy, Exception) else None, text)
 
     def cause(self) -> Exception:
-        """An exception to raise others from, which shows where it came from."""
+        """The exception, to be used as a cause; its own cause is the traceback of the other process."""
         elsewhere = RemoteError(self.text)
         if self.error is None:
             return elsewhere
@@ -82,7 +82,7 @@ class RemoteError(Exception):
 
 @dataclass(frozen=True)
 class Failed:
-    """A batch that failed: what `EpisodeError` says, and why."""
+    """A batch that failed: the arguments of `EpisodeError`, and the exception that caused it."""
 
     what: str
     ids: tuple[int, ...]
@@ -91,20 +91,20 @@ class Failed:
     failure: Failure
 
     def error(self) -> EpisodeError:
-        """The exception to be raised here."""
+        """The exception to raise in the process of the rollout."""
         error = EpisodeError(self.what, self.ids, self.seeds, self.reason)
         error.__cause__ = self.failure.cause()
         return error
 
 
 class NodePlayer:
-    """The actor. It keeps its environment, which may take long to make, for as long as it lives."""
+    """The actor that plays episodes. It keeps its environment, because making one may take long."""
 
     def __init__(self) -> None:
         self._player: Player | None = None
 
     def prepare(self, make_env: bytes, num_envs: int, max_episode_steps: int | None) -> Failure | None:
-        """Makes the environment from packed arguments; returns what went wrong."""
+        """Make the environment with the pickled function `make_env`; return the failure if it raises."""
         try:
             env = unpacked(make_env)(num_envs)
             if env.num_envs != num_envs:
@@ -115,7 +115,7 @@ class NodePlayer:
         return None
 
     def play(self, policy: bytes, ids: range, seed: int, keep_steps: bool) -> list[Episode] | Failed:
-        """Play episodes, with a policy that is packed; see `Player.play`."""
+        """Play episodes with a pickled policy; see `Player.play`."""
         assert self._player is not None
         fresh: Policy = unpacked(policy)
         try:
@@ -127,11 +127,11 @@ class NodePlayer:
 
 @dataclass(frozen=True)
 class Node:
-    """A machine of the cluster that is alive.
+    """A live node of the cluster.
 
     Attributes:
-        id: Ray's name for it.
-        address: Where it is.
+        id: Ray's id of the node.
+        address: Its network address.
     """
 
     id: str
@@ -141,8 +141,8 @@ class Node:
         return f"{self.address} (node {self.id[:8]})"
 
     def start(self, cpus: float) -> Any:
-        """Start an actor there, and nowhere else; returns its handle."""
-        # Ray does not restart it: it would have no environment, and play a lost batch twice.
+        """Start an actor on this node only; return its handle."""
+        # No restarts by Ray: a restarted actor would have no environment, and would repeat a lost batch.
         options = {"num_cpus": cpus, "max_restarts": 0, "max_task_retries": 0}
         here = NodeAffinitySchedulingStrategy(self.id, soft=False)
         actor = ray.remote(NodePlayer).options(scheduling_strategy=here, **options)
@@ -150,7 +150,7 @@ class Node:
 
 
 def living_nodes(cpus: float) -> list[Node]:
-    """The nodes that offer so many processors, whether taken or not, in an order that stays."""
+    """The live nodes with at least so many CPUs, free or in use, sorted by id."""
     found = [
         Node(node["NodeID"], node["NodeManagerAddress"])
         for node in ray.nodes()

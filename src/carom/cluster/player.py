@@ -1,4 +1,4 @@
-"""Plays episodes in a vector environment, each decided by its seed alone."""
+"""Playing episodes in a vector environment; each episode depends on its seed and the policy only."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ _NOBODY = -1
 
 
 class Player:
-    """Plays runs of episodes, as many at once as the environment is many.
+    """Plays batches of episodes, in parallel in the environments of a vector environment.
 
     Args:
-        env: A vector environment that leaves it to others when episodes begin (`AutoresetMode.DISABLED`), and
-            whose `reset` takes `options={"reset_mask": mask}` and a list of seeds.
+        env: A vector environment that does not reset itself (`AutoresetMode.DISABLED`), and whose `reset`
+            takes `options={"reset_mask": mask}` and a list of seeds.
         max_episode_steps: Number of steps after which episodes are truncated; None: as in the environment.
 
     Raises:
-        ValueError: The environment begins episodes on its own.
+        ValueError: The environment resets itself.
     """
 
     def __init__(self, env: VectorEnv, max_episode_steps: int | None = None) -> None:
         mode = env.metadata.get("autoreset_mode")
         if mode != AutoresetMode.DISABLED:
             raise ValueError(
-                "the environment must leave it to the rollout when episodes begin: make it with "
+                "the environment must not reset itself, because the rollout does: make it with "
                 f"autoreset_mode=AutoresetMode.DISABLED, not {mode}"
             )
         self._env = env
@@ -41,10 +41,10 @@ class Player:
         """Play episodes, which do not depend on episodes played before.
 
         Args:
-            policy: Says what to do.
-            ids: Their numbers; at least one.
-            seed: Episode k is decided by `seed + k`.
-            keep_steps: Whether observations and actions are kept, besides the rewards.
+            policy: The policy.
+            ids: Ids of the episodes; at least one.
+            seed: Episode k has the seed `seed + k`.
+            keep_steps: Whether to keep observations and actions, besides the rewards.
 
         Raises:
             EpisodeError: The policy or the environment failed.
@@ -78,7 +78,7 @@ class Player:
 
     def _begin(self, policy: Policy, seats: _Seats, where: np.ndarray) -> np.ndarray:
         with _blaming("the environment", seats):
-            # An array of its own: environments take the mask out of the options they are given.
+            # New options and a copy of the mask, because environments take the mask out of the options.
             options = {"reset_mask": where.copy()}
             observations, _ = self._env.reset(seed=seats.seeds.tolist(), options=options)
         with _blaming("the policy", seats):
@@ -94,7 +94,7 @@ class Player:
 
 
 class _Seats:
-    """Which episode is played in which row. Rows for which there is none left play their last one again."""
+    """Which episode is played in which environment (row); rows without one repeat their last episode."""
 
     def __init__(self, count: int, ids: range, seed: int) -> None:
         self.count = count
@@ -110,7 +110,7 @@ class _Seats:
         return bool((self.ids != _NOBODY).any())
 
     def call_next(self, where: np.ndarray) -> None:
-        """The next episodes take seats."""
+        """Assign the next episodes to the rows of a mask."""
         self.steps[where] = 0
         for row in np.flatnonzero(where).tolist():
             number = next(self._waiting, None)
@@ -121,7 +121,7 @@ class _Seats:
 
 @contextmanager
 def _blaming(what: str, seats: _Seats) -> Iterator[None]:
-    """Say of an exception in which episodes it was raised."""
+    """Turn an exception into an `EpisodeError` with the ids of the episodes being played."""
     try:
         yield
     except Exception as error:

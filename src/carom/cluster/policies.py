@@ -8,10 +8,10 @@ import numpy as np
 
 
 class Policy(Protocol):
-    """Says what to do in each of many environments.
+    """A policy: chooses the actions in many environments.
 
-    Each row of the actions has to depend on the same row of the observations alone. Ray sends the policy to
-    the nodes, so it has to be something that can be pickled; a function of the script will do.
+    Each row of the actions has to depend on the same row of the observations only. Ray sends the policy to
+    the nodes, so it must be possible to pickle it; a function of the script can be pickled.
     """
 
     def __call__(self, observations: np.ndarray, /) -> Any:
@@ -22,23 +22,23 @@ class Policy(Protocol):
 class PolicyWithMemory(Policy, Protocol):
     """A policy that draws random numbers, or has a memory.
 
-    What it does in an episode must depend on nothing but that episode, lest one that is played again turns
-    out differently: `begin_episodes` forgets the last one, and seeds a generator of its own for each row.
+    Its actions in an episode must depend on this episode only, so that a repeated episode is the same:
+    `begin_episodes` has to clear the memory and seed a random number generator for each row.
     """
 
     def begin_episodes(self, rows: np.ndarray, seeds: np.ndarray) -> None:
-        """Episodes begin in some of the environments, before their first observations are shown.
+        """Prepare for new episodes in some environments; called before their first observations are passed.
 
         Args:
-            rows: Which ones, (n,).
+            rows: Indices of the environments, (n,).
             seeds: The seeds of the episodes, (n,). The environment draws from `default_rng(seed)`; for
-                numbers that have nothing to do with its own take, say, `default_rng([seed, 1])`.
+                independent random numbers use, for example, `default_rng([seed, 1])`.
         """
         ...
 
 
 def begin_episodes(policy: Policy, rows: np.ndarray, seeds: np.ndarray) -> None:
-    """Tell a policy that episodes begin, if it wants to know."""
+    """Call `begin_episodes` of a policy, if it has this method."""
     begin = getattr(policy, "begin_episodes", None)
     if begin is not None:
         begin(rows, seeds)

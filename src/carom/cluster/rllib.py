@@ -1,4 +1,4 @@
-"""RLlib trains on vector environments, one in each of its environment runners."""
+"""Training with RLlib on vector environments, one in each environment runner."""
 
 from __future__ import annotations
 
@@ -24,16 +24,17 @@ _NAME = "carom"
 def train_on(config: Config, make_env: MakeEnv, num_envs_per_runner: int, *, name: str = _NAME) -> Config:
     """Let an algorithm of RLlib train on a vector environment.
 
-    RLlib's runners are spread over the nodes. What is lost with a node RLlib samples again, as
-    `config.fault_tolerance(...)` says; its episodes have no ids.
+    RLlib's runners are spread over the nodes. If a node is lost, RLlib samples again, as set by
+    `config.fault_tolerance(...)`; its episodes have no ids.
 
     Args:
-        config: The algorithm's settings, of the new API stack. `env_runners(num_env_runners=...)` says how
-            many runners there are: as many as nodes, say, since each uses all processors it is given.
-        make_env: Makes a vector environment with a given number of environments. Episodes that are over
-            have to begin with the next step, as Gymnasium's do (`AutoresetMode.NEXT_STEP`).
+        config: The algorithm's settings, of the new API stack. `env_runners(num_env_runners=...)` sets the
+            number of runners, for example one for each node, since each uses all CPUs it is given.
+        make_env: Makes a vector environment with a given number of environments. It has to reset the
+            environments of ended episodes at the next step, as is Gymnasium's default
+            (`AutoresetMode.NEXT_STEP`).
         num_envs_per_runner: Number of environments of each runner.
-        name: What RLlib calls the environment.
+        name: Name under which RLlib registers the environment.
 
     Returns:
         `config`, changed.
@@ -44,7 +45,7 @@ def train_on(config: Config, make_env: MakeEnv, num_envs_per_runner: int, *, nam
         mode = env.metadata.get("autoreset_mode")
         if mode != AutoresetMode.NEXT_STEP:
             raise ValueError(
-                "RLlib counts on episodes that begin with the step after the last one: make the environment "
+                "RLlib needs environments that are reset by the step after an episode: make the environment "
                 f"with autoreset_mode=AutoresetMode.NEXT_STEP, not {mode}"
             )
         return env

@@ -1,4 +1,4 @@
-"""`Rollouts`: episodes from all nodes of a cluster."""
+"""`Rollouts`: collecting episodes on all nodes of a cluster."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from carom.cluster.policies import Policy
 class Rollouts:
     """Plays episodes on the nodes of Ray's cluster, one vector environment on each.
 
-    Every episode has an id, which counts up from 0, and a seed, `seed + id`, that decides it. So it is the
-    same wherever it is played; and when a node is lost, what it was playing is played again on those that are
-    left. What is collected does not depend on how many nodes there are, or on which of them die.
+    Every episode has an id, counted from 0, and the seed `seed + id`, which determines it. So it is the same
+    on every node; if a node is lost, the remaining nodes repeat the episodes that it was playing. The
+    collected episodes do not depend on the number of nodes, or on which of them die.
 
-    If Ray is not running, `ray.init()` is called: it joins the cluster there is, or starts one of this
-    machine alone.
+    If Ray is not running, `ray.init()` is called: it joins an existing cluster, or starts one on this machine
+    only.
 
     Attributes:
         next_id: The id of the next episode.
 
     Args:
-        make_env: Makes a vector environment of as many environments as it is told, on a node. It has to leave
-            it to others when episodes begin (`autoreset_mode=AutoresetMode.DISABLED`).
-        num_envs_per_node: Number of environments of each.
+        make_env: Called on a node with a number of environments; returns a vector environment with so many.
+            It must not reset environments itself (`autoreset_mode=AutoresetMode.DISABLED`).
+        num_envs_per_node: Number of environments on each node.
         nodes: Maximum number of nodes, or "all" nodes present when a collection begins.
         batch_size: Number of episodes given to a node at a time, and repeated if the node is lost; None for
-            as many as it has environments. With more of them fewer environments stand idle while the last
-            episodes of a batch end.
+            its number of environments. Some environments are idle while the last episodes of a batch end;
+            the larger the batches, the smaller the idle share.
         max_episode_steps: Number of steps after which episodes are truncated; None: as in the environment.
-        cpus_per_node: Processors that Ray is to count as taken on each node. How many an environment really
-            uses is for `make_env` to say.
+        cpus_per_node: Number of CPUs that Ray reserves on each node. `make_env` determines how many an
+            environment really uses.
         seed: Seed of episode 0.
         attempts: Maximum number of processes that may die while they play the same batch.
 
@@ -81,23 +81,24 @@ class Rollouts:
         """Play episodes.
 
         Args:
-            policy: Called with observations (num_envs, ...), returns actions (num_envs, ...). One that draws
-                random numbers or remembers what it saw needs `begin_episodes`; see `PolicyWithMemory`.
-            episodes: How many.
-            steps: Or so many as have this many steps together, the last one being the one that reaches it.
-            first: The id of the first one: with the same one the same episodes begin again, to compare
-                policies. None goes on after the last collection.
-            keep_steps: Whether observations and actions are kept, besides the rewards.
+            policy: Called with observations (num_envs, ...), returns actions (num_envs, ...). A policy that
+                draws random numbers or has a memory needs `begin_episodes`; see `PolicyWithMemory`.
+            episodes: Number of episodes.
+            steps: Minimum total number of steps, instead of `episodes`; the episode that reaches it is the
+                last one.
+            first: Id of the first episode. Collections with the same `first` play the same episodes, to
+                compare policies. None continues after the last collection.
+            keep_steps: Whether to keep observations and actions, besides the rewards.
 
         Returns:
             The episodes, in the order of their ids.
 
         Raises:
-            ValueError: Not either episodes or steps are given, or a number is too small.
+            ValueError: Both or neither of `episodes` and `steps` are given, or a number is too small.
             TypeError: The policy refers to something that cannot be sent to other processes.
-            EpisodeError: The policy or the environment failed; it is the cause of this exception.
-            ClusterError: No node is left, an environment cannot be made, or processes die again and again of
-                the same episodes.
+            EpisodeError: The policy or the environment failed; its exception is the cause of this one.
+            ClusterError: No node is left, an environment cannot be made, or processes die repeatedly while
+                they play the same episodes.
         """
         if (episodes is None) == (steps is None):
             raise ValueError("give either episodes or steps")
@@ -107,7 +108,7 @@ class Rollouts:
         if not ray.is_initialized():
             ray.init()
         ledger = Ledger(first, self._batch_size, episodes=episodes, steps=steps, attempts=self._attempts)
-        # Who played which episode, whether it counts in the end or not.
+        # Node that played each episode, including episodes that are not counted in the end.
         players: dict[int, str] = {}
         self._crew.begin()
         sent = ray.put(packed(policy, "the policy"))
@@ -144,7 +145,7 @@ class Rollouts:
 
 
 def _check(least: int = 1, **numbers: Any) -> None:
-    """Refuse numbers that are too small; what is None or a word has no number."""
+    """Raise `ValueError` for numbers less than `least`; None and strings are ignored."""
     for name, number in numbers.items():
         if not isinstance(number, (str, type(None))) and number < least:
             raise ValueError(f"{name} must be at least {least}, not {number}")

@@ -25,10 +25,10 @@ class PID:
     running does not make the output jump. It is kept from winding up in two ways:
 
     - it never leaves `integral_limits`;
-    - while the output is saturated it is handled by *conditional integration* (the default: an
+    - while the output is saturated, either *conditional integration* is used (the default: an
       element whose error would push its output further past the limit is not integrated) or, with
-      a `tracking_time`, by *back-calculation* (the excess over the limit is bled off the integral
-      with that time constant).
+      a `tracking_time`, *back-calculation* (the excess over the limit is subtracted from the
+      integral with that time constant).
 
     *D*, the derivative term, is `kd·de/dt`, or `-kd·d(measurement)/dt` which has no kick when the
     setpoint steps, behind a first-order low-pass of time constant `derivative_filter`. It is zero
@@ -54,7 +54,7 @@ class PID:
         derivative_filter: float = 0.0,
         tracking_time: float | None = None,
     ) -> None:
-        """Make a controller with an empty memory.
+        """Make a controller in its reset state.
 
         Args:
             kp: Proportional gain.
@@ -118,7 +118,7 @@ class PID:
         return self._integral
 
     def reset(self, integral: ArrayLike = 0.0) -> None:
-        """Forget the past and start from the given integral term, clipped to its limits."""
+        """Clear the state, and set the integral term to `integral`, clipped to its limits."""
         self._integral = np.clip(finite(integral, "integral"), *self._integral_limits)
         self._previous: Array | None = None
         self._derivative = np.float64(0.0)
@@ -128,8 +128,8 @@ class PID:
     ) -> None:
         """Take over from `output` without a jump (bumpless transfer from manual control).
 
-        Resets, then chooses the integral term, as far as `integral_limits` allow, such that the next
-        update with the same signals gives `output` plus only what it integrates itself.
+        Resets, then sets the integral term, within `integral_limits`, so that the next update with the
+        same signals returns `output` plus the integration step of that update.
         """
         error = finite(setpoint, "setpoint") - finite(measurement, "measurement")
         rest = finite(output, "output") - self._kp * error - finite(feed_forward, "feed_forward")
@@ -141,17 +141,17 @@ class PID:
         """Advance by one sample and return the output.
 
         Args:
-            setpoint: Where the measurement should be.
-            measurement: Where it is.
+            setpoint: Desired value of the measurement.
+            measurement: Measured value.
             dt: Time since the last update [s].
             feed_forward: Added to the output before it is limited, a gravity torque for example.
 
         Returns:
             The output, within `output_limits`: an array in the broadcast shape of gains and signals, or
-            a float where all of them are scalars.
+            a float if all of them are scalars.
 
         Raises:
-            ValueError: `dt` is not positive or a signal is not finite; the memory is unchanged.
+            ValueError: `dt` is not positive or a signal is not finite; the state is unchanged.
         """
         positive(dt, "dt")
         measurement = finite(measurement, "measurement")
@@ -172,7 +172,7 @@ class PID:
         return np.clip(rest + self._integral, *self._output_limits)[()]
 
     def _integrate(self, error: Array, rest: Array, dt: float) -> Array:
-        """The next integral term, where `rest` is the output without it."""
+        """The next integral term; `rest` is the output without it."""
         step = self._ki * error * dt
         integral = np.clip(self._integral + step, *self._integral_limits)
         excess = rest + integral - np.clip(rest + integral, *self._output_limits)

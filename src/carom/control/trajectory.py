@@ -11,7 +11,7 @@ from carom.checks import Array, finite, positive
 
 
 class Sample(NamedTuple):
-    """Where a trajectory is at one time (or at several).
+    """Position, velocity and acceleration of a trajectory at one time or at several.
 
     Attributes:
         position: [rad or m], shape (*times, *joints).
@@ -56,14 +56,14 @@ class QuinticTrajectory:
 
 
 class TrapezoidalTrajectory:
-    """The fastest rest-to-rest motion within a speed and an acceleration, speed over time a trapezium.
+    """Fastest rest-to-rest motion within velocity and acceleration limits: a trapezoidal velocity profile.
 
-    The slowest joint decides the duration; all share its profile, so the path is a straight line in
-    joint space. Where the way is too short to reach full speed the profile is a triangle.
+    All joints share one profile, which the tightest limits determine, so the path is a straight line
+    in joint space. If the distance is too short to reach full speed, the profile is a triangle.
 
     Attributes:
-        duration: Time from start to goal [s]; 0 where they are the same.
-        ramp: Time spent accelerating, and again slowing down [s].
+        duration: Time from start to goal [s]; 0 if they are equal.
+        ramp: Duration of the acceleration, and also of the deceleration [s].
     """
 
     def __init__(
@@ -86,7 +86,8 @@ class TrapezoidalTrajectory:
         velocity = positive(max_velocity, "max_velocity")
         acceleration = positive(max_acceleration, "max_acceleration")
         distance = np.abs(self.goal - self.start)
-        # Bounds on the rate and acceleration of the share of the way done, which all joints have in common.
+        # Reciprocals of the limits on the first and second derivative of the path parameter, which all joints
+        # share; it is 0 at the start and 1 at the goal.
         slowest = float(np.max(distance / velocity, initial=0.0))
         laziest = float(np.max(distance / acceleration, initial=0.0))
         if min(slowest, laziest) < np.finfo(np.float64).tiny:

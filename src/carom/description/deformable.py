@@ -9,12 +9,12 @@ from carom.record import record
 
 @record
 class SpringCoefficients:
-    """`<spring>`: along the edges of cells.
+    """`<spring>`: springs along the edges of cells.
 
     Attributes:
-        elastic: [N/m].
-        damping: [N s/m].
-        bending: Between nodes with a neighbour in common [N/m]; 0 for none.
+        elastic: Stiffness [N/m].
+        damping: Damping coefficient [N s/m].
+        bending: Stiffness of springs between nodes with a neighbour in common [N/m]; 0 for none.
     """
 
     elastic: float
@@ -24,12 +24,12 @@ class SpringCoefficients:
 
 @record
 class LameCoefficients:
-    """`<neohookean>` or `<corotated>`: of tetrahedra.
+    """`<neohookean>` or `<corotated>`: Lamé coefficients of tetrahedra.
 
     Attributes:
-        mu: First coefficient [Pa].
-        lam: Second one [Pa].
-        damping: Viscosity as a share of these [s].
+        mu: Coefficient μ [Pa].
+        lam: Coefficient λ [Pa].
+        damping: Viscosity divided by these coefficients [s].
     """
 
     mu: float
@@ -42,17 +42,17 @@ class Deformable:
     """`<deformable>` or `<reduced_deformable>`.
 
     Attributes:
-        visual: The mesh that is seen, and simulated if there is no other.
-        mass: Of all nodes together [kg].
+        visual: The visual mesh; it is also simulated if `simulated` is None.
+        mass: Mass of all nodes together [kg].
         margin: Distance at which nodes rest on other surfaces [m].
         friction: Coulomb coefficient.
         simulated: The mesh that is simulated.
-        gravity_factor: Share of the world's gravity that pulls it.
+        gravity_factor: Factor on the world's gravity.
         springs: Springs, if there are any.
-        neo_hookean: What its tetrahedra are like for any strain.
-        corotated: The material for small strains.
-        stiffness_scale: Of a reduced body: factor on the stiffness of its modes.
-        mode_damping: Of a reduced body: its damping, as a share of that stiffness [s].
+        neo_hookean: Neo-Hookean material of its tetrahedra, for strains of any size.
+        corotated: Corotated material of its tetrahedra, for small strains.
+        stiffness_scale: Factor on the stiffness of the modes of a reduced body; None for other bodies.
+        mode_damping: Damping of the modes of a reduced body divided by their stiffness [s].
     """
 
     visual: Path

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @record
 class Sphere:
-    """A ball around the origin of its frame."""
+    """A sphere centred on its frame."""
 
     radius: float
 
@@ -38,7 +38,7 @@ class Cylinder:
 
 @record
 class Capsule:
-    """A cylinder of height `length` along z with a half ball of `radius` on each end."""
+    """A cylinder of height `length` along z with a hemisphere of `radius` on each end."""
 
     radius: float
     length: float
@@ -56,10 +56,10 @@ class Mesh:
     """A triangle mesh from a file.
 
     Attributes:
-        path: The file, resolved to where it was found.
+        path: The file, as it was found.
         scale: Factor along x, y and z, the global scaling included.
         concave: The triangles themselves collide, not their convex hull (static bodies only).
-        asked_for: The name under which a script asked for the file; empty if none did.
+        asked_for: The file name that a script passed; empty if no script did.
     """
 
     path: Path
@@ -95,7 +95,7 @@ class TriangleMesh:
     Attributes:
         vertices: (n, 3) positions.
         triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
-        margin: Distance by which the surface is thought to lie outside the triangles [m].
+        margin: Collision margin: distance of the colliding surface from the triangles [m].
         scale: Factor along x, y and z that the vertices have been multiplied by.
         normals: (n, 3) normals for shading, if there are any.
         uvs: (n, 2) texture coordinates, if there are any.
@@ -111,7 +111,7 @@ class TriangleMesh:
 
 @record(eq=False)
 class Heightfield:
-    """A landscape: heights on a grid, centred on its frame, z up.
+    """Terrain: heights on a grid, centred on its frame, z up.
 
     Attributes:
         heights: (columns along y, rows along x) heights, unscaled.

@@ -1,4 +1,4 @@
-"""A joint: how a child link may move against its parent link."""
+"""A joint: how a child link can move relative to its parent link."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class JointType(Enum):
     SPHERICAL = "spherical"
 
 
-# What files have to say of a joint, by its kind.
+# Which joint types have, or need, an axis and limits in files.
 WITHOUT_AXIS = (JointType.FIXED, JointType.FLOATING)
 NEEDS_AXIS = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.PLANAR)
 WITHOUT_LIMIT = (JointType.CONTINUOUS,)
 NEEDS_LIMIT = (JointType.REVOLUTE, JointType.PRISMATIC)
-# Its positions are lengths, which scale with the robot.
+# Joint types whose positions are lengths, which scale with the robot.
 SLIDES = (JointType.PRISMATIC,)
-# Its type in the engine.
+# Joint types of the engine.
 JOINT_CODE = {
     JointType.REVOLUTE: JointCode.REVOLUTE,
     JointType.CONTINUOUS: JointCode.REVOLUTE,
@@ -47,7 +47,7 @@ class JointLimit:
     Attributes:
         lower: Least position [rad or m].
         upper: Largest position [rad or m].
-        effort: Maximum force the drive can give [N m or N].
+        effort: Maximum torque or force of the drive [N m or N].
         velocity: Maximum speed [rad/s or m/s].
         twist: Largest twist of a spherical joint [rad]; negative means unlimited.
     """

@@ -1,4 +1,4 @@
-"""A rigid link: its inertia, its shapes and how it touches others."""
+"""A rigid link: its inertia, its shapes and its contact parameters."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Inertial:
 
 @record
 class Material:
-    """Looks of a visual: colour, specular colour and texture file."""
+    """Appearance of a visual shape: colour, specular colour and texture file."""
 
     name: str = ""
     rgba: Rgba | None = None
@@ -39,11 +39,11 @@ class Material:
 
 @record
 class Collision:
-    """A shape that touches; `frame` is its pose in the link frame.
+    """A collision shape; `frame` is its pose in the link frame.
 
     Attributes:
-        ends_frame: Frame in which the file gives the ends of a capsule or cylinder, if it does so, in the
-            link frame. PyBullet finds another inertia for such shapes.
+        ends_frame: For a capsule or cylinder whose ends the file states: the frame in which it states them,
+            in the link frame. PyBullet computes a different inertia for such shapes.
     """
 
     geometry: Geometry
@@ -56,7 +56,7 @@ class Collision:
 
 @record
 class Visual:
-    """A shape that is seen; `frame` is its pose in the link frame."""
+    """A visual shape; `frame` is its pose in the link frame."""
 
     geometry: Geometry
     frame: Pose = IDENTITY
@@ -67,7 +67,7 @@ class Visual:
 
 @record
 class ContactParameters:
-    """How a link touches; None means the engine's default.
+    """Contact parameters of a link; None means the engine's default.
 
     Attributes:
         lateral_friction: Coulomb coefficient.

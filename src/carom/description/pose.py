@@ -1,4 +1,4 @@
-"""A rigid transform: where one frame is, seen from another."""
+"""A rigid transform: the pose of one frame in another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A robot: a tree of links held together by joints."""
+"""A robot: a tree of links connected by joints."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Robot:
         root: Index of the link without parent.
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
-        deformable: What it is in place of links and joints, if it is soft; one link of that name stands for
-            it.
+        deformable: Its description if it is a soft body; it then has a single link with the name of the
+            `<deformable>` or `<reduced_deformable>` element, and no joints.
     """
 
     name: str

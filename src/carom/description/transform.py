@@ -1,4 +1,4 @@
-"""Rigid transforms on plain tuples: what readers and `assemble` need, without the cost of small arrays."""
+"""Rigid transforms on plain tuples, for readers and `assemble`: faster than small NumPy arrays."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def rotation_matrix(quaternion: Quaternion) -> Matrix3:
 
 
 def quaternion_from_matrix(m: Matrix3) -> Quaternion:
-    """Unit quaternion of a rotation matrix, its sign fixed.
+    """Unit quaternion of a rotation matrix, with a defined sign.
 
-    w is positive while the trace is; otherwise the largest of x, y and z is positive.
+    w is positive if the trace is; otherwise that of x, y and z with the largest magnitude is positive.
     """
     trace = m[0][0] + m[1][1] + m[2][2]
     if trace > 0.0:
@@ -65,13 +65,13 @@ def turns_about_axes(roll: float, pitch: float, yaw: float) -> Quaternion:
 
 
 def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """Unit quaternion of roll, pitch and yaw [rad] about the fixed axes x, y and z, its sign fixed.
+    """Unit quaternion of roll, pitch and yaw [rad] about the fixed axes x, y and z, with a defined sign.
 
     The sign rule is that of `quaternion_from_matrix`.
     """
     x, y, z, w = turns_about_axes(roll, pitch, yaw)
-    # Only the sign may change here: going through the matrix and back would cost the last digits, and with
-    # them the test whether two frames of a file are the same.
+    # Only the sign may change here: conversion to a matrix and back would change the last digits, and two
+    # equal frames of a file would no longer compare as equal.
     unit = 1.0 / sqrt(x * x + y * y + z * z + w * w)
     x, y, z, w = x * unit, y * unit, z * unit, w * unit
     has_positive_trace = w * w > 0.25  # the trace of the matrix is 4 w² - 1
@@ -82,7 +82,7 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
 def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
     """Roll, pitch and yaw [rad] about the fixed axes x, y and z, as Bullet takes them.
 
-    From a sine of the pitch of ±0.99999 on, roll and yaw turn about the same axis, and roll is 0.
+    In gimbal lock (a sine of the pitch of ±0.99999 or beyond) roll is 0.
 
     Args:
         quaternion: (x, y, z, w), of unit length.
@@ -128,7 +128,7 @@ def dot(a: Vector3, b: Vector3) -> float:
 
 
 def subtracted(a: Vector3, b: Vector3) -> Vector3:
-    """A - b."""
+    """Difference a - b."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
@@ -155,7 +155,7 @@ def conjugate(q: Quaternion) -> Quaternion:
 
 
 def compose(a: Pose, b: Pose) -> Pose:
-    """The frame `b`, given in frame `a`, seen from where `a` is given."""
+    """Product a · b: the pose of a frame in the parent of `a`, from its pose `b` in the frame `a`."""
     if a is IDENTITY:
         return b
     m = rotation_matrix(a.orientation)
@@ -166,14 +166,14 @@ def compose(a: Pose, b: Pose) -> Pose:
 
 
 def inverse(pose: Pose) -> Pose:
-    """The frame `pose` is given in, seen from `pose`."""
+    """The inverse transform: the pose of the parent frame in the frame `pose`."""
     q = conjugate(pose.orientation)
     x, y, z = rotate(q, pose.position)
     return Pose((-x, -y, -z), q)
 
 
 def turn_of_z(axis: Vector3) -> Quaternion:
-    """The shortest turn of the z axis to another unit vector."""
+    """The shortest rotation of the z axis to another unit vector."""
     x, y, z = axis
     if z < -1.0 + 1e-15:
         return (1.0, 0.0, 0.0, 0.0)

@@ -1,1 +1,1 @@
-"""From files to descriptions. Knows no physics."""
+"""Readers of robot, scene and mesh files, and a writer of URDF files; no physics."""

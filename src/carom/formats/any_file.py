@@ -1,4 +1,4 @@
-"""Robots of a file of any kind."""
+"""Reading robots from a file of any supported format."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
 
     Args:
         source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
-        search: Folders in which the file, if not found as named, and meshes are searched.
+        search: Folders in which meshes, and the file if it is not found as named, are searched.
 
     Raises:
-        DescriptionError: The file cannot be used, or its kind is not known.
+        DescriptionError: The file cannot be used, or its format is not known.
     """
     match source.suffix.lower():
         case ".sdf" | ".world":
@@ -33,5 +33,6 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[Plac
             return [PlacedRobot(read_urdf(source, search=search))]
         case suffix:
             raise DescriptionError(
-                f"files of type {suffix!r} are not known; .sdf, .xml, .urdf are", file=source
+                f"files of type {suffix!r} are not known; known are .sdf, .world, .xml, .mjcf and .urdf",
+                file=source,
             )

@@ -1,4 +1,4 @@
-"""Archives whose files are found as if they lay in a folder."""
+"""Zip archives, unpacked into a temporary folder while they are in use."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from carom.errors import DescriptionError
 
 MOST_BYTES = 2 << 30
 MOST_MEMBERS = 100_000
-"""Larger archives, unpacked, are refused: they are made to fill discs."""
+"""Limits on unpacked size and number of members, against archives made to fill discs (zip bombs)."""
 
-# What reading a damaged archive raises. RuntimeError: encrypted, or compressed by a method that zipfile does
-# not know; the last three come from the methods themselves.
+# Exceptions that damaged archives cause. RuntimeError: the archive is encrypted, or zipfile does not know its
+# compression method. The decompressors raise the last three.
 _DAMAGES = (
     OSError, ValueError, RuntimeError, zipfile.BadZipFile, struct.error, EOFError, zlib.error, lzma.LZMAError
 )  # fmt: skip
@@ -27,7 +27,7 @@ class Archive:
 
     Attributes:
         path: The file.
-        folder: Where its members are.
+        folder: The temporary folder that contains its members.
 
     Args:
         path: The file.
@@ -48,7 +48,7 @@ class Archive:
                     raise DescriptionError(
                         f"{len(members)} members of {size} bytes are too many to unpack", file=path
                     )
-                # Names that point out of the folder are changed to names within.
+                # `extractall` changes member names that point outside the folder.
                 archive.extractall(self.folder)
         except _DAMAGES as problem:
             self.close()
@@ -58,5 +58,5 @@ class Archive:
             raise
 
     def close(self) -> None:
-        """Remove what was unpacked."""
+        """Delete the temporary folder."""
         self._temporary.cleanup()

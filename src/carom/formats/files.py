@@ -1,4 +1,4 @@
-"""Reading files in bounds, and a cache that notices every change."""
+"""Reading files up to a maximum size, and a cache that detects changed files."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
 SETTLED_NS = 2_000_000_000
-"""A file changed more recently than this could change again within the resolution of its time stamp."""
+"""A file changed more recently than this could change again without a new time stamp, which is coarse."""
 
 FRESH_NS = 60_000_000_000
-"""Whoever wrote a file more recently than this may be about to remove it."""
+"""A file written more recently than this may be a temporary one that is deleted soon."""
 
 
 class FileStamp(NamedTuple):
-    """What changes when a file changes.
+    """File metadata by which changes are detected.
 
     Attributes:
         modified: Time of the last modification [ns].
@@ -44,7 +44,7 @@ class FileStamp(NamedTuple):
         return cls(status.st_mtime_ns, status.st_size, status.st_ino, time.time_ns())
 
     def same_file(self, other: FileStamp) -> bool:
-        """Both stamps certainly belong to the same content."""
+        """Whether both stamps certainly belong to the same content."""
         return (
             self.modified == other.modified
             and self.size == other.size
@@ -76,7 +76,7 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
         if stamp.size > most_bytes:
             raise DescriptionError(f"{stamp.size} bytes are more than the {most_bytes} accepted", file=file)
         with open(file, "rb") as stream:
-            # One byte more than the stamp promised would show a file that grows, or that has no size.
+            # One byte more than allowed, to detect files that grow or that report no size.
             data = stream.read(most_bytes + 1)
     except OSError as error:
         raise DescriptionError(f"cannot be read: {error.strerror}", file=file) from error
@@ -88,10 +88,10 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
 
 
 class FileCache(Generic[Key, Value]):
-    """Values made from files, kept while the files stay the same; the least recently used go first.
+    """Values made from files, kept while the files are unchanged; the least recently used are dropped first.
 
     Args:
-        capacity: Most values kept.
+        capacity: Maximum number of values.
         outlive: Also return values of deleted files.
     """
 
@@ -102,7 +102,7 @@ class FileCache(Generic[Key, Value]):
         self._lock = Lock()
 
     def get(self, key: Key, file: Path) -> Value | None:
-        """The value made from `file` under `key`, unless the file has changed or may have."""
+        """The value of `key`, made from `file`; None if there is none, or the file may have changed."""
         with self._lock:
             entry = self._entries.get(key)
             if entry is None:
@@ -121,7 +121,7 @@ class FileCache(Generic[Key, Value]):
             return value
 
     def put(self, key: Key, stamp: FileStamp, value: Value) -> None:
-        """Keeps a value made from a file that had this stamp before it was read."""
+        """Keep a value made from a file that had this stamp before it was read."""
         with self._lock:
             self._entries[key] = (stamp, value)
             self._entries.move_to_end(key)

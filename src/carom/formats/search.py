@@ -1,4 +1,4 @@
-"""Where files named by scripts and by robot files are looked for."""
+"""The search for files that scripts and robot files refer to."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SCHEMES = ("package://", "model://")
 
 @record
 class AssetSearch:
-    """The order in which places are searched.
+    """The directories that are searched for files, and their order.
 
     Attributes:
         additional: A directory searched after the working directory, as set by the user.
@@ -30,7 +30,7 @@ class AssetSearch:
         return (self.additional, *self.folders)
 
     def find(self, name: str | os.PathLike[str]) -> Path | None:
-        """The file a script asks for: as named, in nearby data folders, in the additional directories.
+        """The file that a script names: as named or in a nearby `data` folder, then in `places`.
 
         Args:
             name: Path, absolute or relative to one of the searched places.
@@ -52,9 +52,9 @@ class AssetSearch:
     def find_referenced(self, name: str, source: Path) -> Path | None:
         """The file that a robot file refers to.
 
-        `file://`, `package://` and `model://` are taken off. Then the working directory, the directory
+        `file://`, `package://` and `model://` are removed. Then the working directory, the directory
         of the robot file, each directory above that, and the two directories above the working
-        directory are tried. The additional directory is not: it serves scripts only.
+        directory are tried. The additional directory is not: it is for scripts only.
 
         Args:
             name: The reference, as the robot file states it.

@@ -1,4 +1,4 @@
-"""The files that come with `pybullet_data`, for who looks for them by name and for who forgot to."""
+"""Suggestions for files that were not found: files of `pybullet_data`, and files with similar names."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from importlib.util import find_spec
 from pathlib import Path
 
 _CALL = "p.setAdditionalSearchPath(pybullet_data.getDataPath())"
-# How alike names have to be for one to be meant by the other.
+# Least similarity of two names for a suggestion, from 0 to 1; see `difflib.get_close_matches`.
 _LIKENESS = 0.75
-# Longer names match none, and take long to compare.
+# Longer names match no file, and are slow to compare.
 _LONGEST_NAME = 255
 
 
 def shipped_folder() -> Path | None:
-    """Where the files of `pybullet_data` are; None where it is not installed."""
+    """The folder of `pybullet_data`; None if it is not installed."""
     spec = find_spec("pybullet_data")
     if spec is None or not spec.submodule_search_locations:
         return None
@@ -22,10 +22,10 @@ def shipped_folder() -> Path | None:
 
 
 def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
-    """What to do about a file that was not found, as the end of a sentence; empty if there is nothing to say.
+    """A suggestion for a file that was not found, as the end of a sentence; empty if there is none.
 
     Args:
-        name: The name that was searched.
+        name: The name that was searched for.
         searched: Directories that were searched besides the working directory.
     """
     folder = shipped_folder()
@@ -42,7 +42,7 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
 
 
 def _near(name: Path, folder: Path, prefix: Path | None = None) -> str:
-    """A file in a folder whose name is like the one that is missing."""
+    """The file in a folder whose name is most similar to the missing one; empty if none is similar."""
     if len(name.name) > _LONGEST_NAME:
         return ""
     try:

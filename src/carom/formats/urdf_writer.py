@@ -1,4 +1,4 @@
-"""A description as a URDF file."""
+"""Writing a description as a URDF file."""
 
 from __future__ import annotations
 
@@ -34,20 +34,20 @@ from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.errors import DescriptionError
 from carom.native.trigonometry import atan2
 
-# Decimals that angles may have before they are written with all of them.
+# Angles are rounded to fewer decimals than this if that is exact; otherwise all their digits are written.
 _DIGITS = 16
 _GIMBAL_LOCK = 1e-10
-"""Cosine of the pitch below which roll and yaw cannot be told apart."""
+"""Cosine of the pitch below which roll and yaw are about the same axis (gimbal lock)."""
 
 _UNNAMED = "material"
 
 
 def urdf_text(robot: Robot, folder: Path) -> str:
-    """The URDF of a robot; `read_urdf` makes the same robot of it again, rounding aside.
+    """The URDF text of a robot; `read_urdf` reads the same robot from it, except for rounding errors.
 
     Args:
         robot: The robot.
-        folder: Where the file will be: meshes and textures are named as seen from there.
+        folder: Folder of the file: paths of meshes and textures are relative to it.
 
     Raises:
         DescriptionError: It has a shape that URDF does not have, or is a soft body.
@@ -137,7 +137,7 @@ class _Writer:
         yield "      </material>"
 
     def _file(self, path: Path) -> str:
-        """A file as seen from the folder, quoted."""
+        """Path of a file relative to the folder, quoted."""
         try:
             name = os.path.relpath(path, self.folder)
         except ValueError:  # another drive
@@ -226,10 +226,10 @@ def _origin(pose: Pose, depth: int) -> Iterator[str]:
 
 
 def roll_pitch_yaw(quaternion: Quaternion) -> Vector3:
-    """Angles about the fixed axes x, y and z [rad]; yaw is 0 where it and roll are the same.
+    """Angles about the fixed axes x, y and z [rad]; yaw is 0 in gimbal lock.
 
-    They have as few digits as give the same quaternion, if any do: it takes the last one for a shape to lie
-    exactly in the inertial frame, and inertias depend on that.
+    They are rounded to the fewest decimals that give exactly the same quaternion, if any do. The last digit
+    matters: inertias depend on whether a shape lies exactly in the inertial frame.
     """
     angles = _angles(quaternion)
     for digits in range(_DIGITS):

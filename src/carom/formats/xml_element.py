@@ -1,4 +1,4 @@
-"""Elements of XML documents as a small tree that remembers line numbers and keeps within bounds."""
+"""Tree of XML elements with their line numbers; its depth and its number of elements are limited."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from carom.errors import DescriptionError
 
 DOCTYPE_REFUSED = "document types with external or internal declarations (entities) are not accepted"
-"""What is said of a document with entities."""
+"""Error message for a document that declares entities."""
 
 MAX_DEPTH = 100
 """Deepest nesting of elements."""
@@ -60,7 +60,7 @@ class Element:
 
 
 class TreeBuilder:
-    """Grows the tree from a stream of start tags, end tags and text, and keeps it within bounds."""
+    """Builds the tree from a stream of start tags, end tags and text, and enforces the limits."""
 
     def __init__(self, file: Path) -> None:
         self.file = file
@@ -70,7 +70,7 @@ class TreeBuilder:
         self._chunks: list[str] = []
 
     def start(self, tag: str, attributes: dict[str, str], line: int) -> None:
-        """A start tag."""
+        """Open an element, at its start tag."""
         element = Element(tag, attributes, line)
         self._count += 1
         if self._count > MAX_ELEMENTS:
@@ -87,13 +87,13 @@ class TreeBuilder:
         self.open.append(element)
 
     def end(self) -> None:
-        """The end tag of the innermost open element."""
+        """Close the innermost open element, at its end tag."""
         element = self.open.pop()
         if self._chunks:
             self._flush(element)
 
     def data(self, text: str) -> None:
-        """Character data."""
+        """Add character data."""
         self._chunks.append(text)
 
     def error(self, reason: str, line: int) -> DescriptionError:

@@ -1,9 +1,9 @@
-"""The reader for XML that is not well formed, but that PyBullet loads all the same.
+"""Tolerant reader for XML that is not well formed but that PyBullet loads.
 
-It forgives what TinyXML forgives: text and further elements outside the root, white space before the
-declaration, bare ampersands and `<` in attribute values, missing blanks between attributes, double hyphens
-in comments, an end tag too many (the document ends there, whatever follows). What TinyXML refuses is an
-error here too: mismatched or missing end tags, attributes without quotes or given twice, a declaration
+It accepts the same errors as TinyXML: text and further elements outside the root, white space before the
+declaration, bare ampersands and `<` in attribute values, missing spaces between attributes, double hyphens
+in comments, an extra end tag (the document ends there, whatever follows). Errors that TinyXML refuses are
+refused here too: mismatched or missing end tags, attributes without quotes or given twice, a declaration
 after other content.
 """
 
@@ -24,10 +24,10 @@ _ENTITIES = {"quot": '"', "amp": "&", "apos": "'", "lt": "<", "gt": ">"}
 
 
 def read_tolerantly(text: str, builder: TreeBuilder) -> None:
-    """Feeds a sloppy document to the builder.
+    """Feed a document that is not well formed to the builder.
 
     Raises:
-        DescriptionError: It is broken beyond repair; the message names line and reason.
+        DescriptionError: It has an error that TinyXML refuses; the message names line and reason.
     """
     _TolerantReader(text, builder).run()
 
@@ -91,12 +91,12 @@ class _TolerantReader:
         self.at = self._after(">", at)
         if not self.builder.open:
             if not self.builder.roots:
-                raise self._error(f"</{name}> closes nothing", at)
+                raise self._error(f"</{name}> without a start tag", at)
             self.at = len(self.text)
             return
         element = self.builder.open[-1]
         if element.tag != name:
-            raise self._error(f"</{name}> where </{element.tag}> of line {element.line} is due", at)
+            raise self._error(f"</{name}> does not match <{element.tag}> on line {element.line}", at)
         self.builder.end()
 
     def _start_tag(self) -> None:
@@ -151,7 +151,7 @@ def _skip_blank(text: str, at: int) -> int:
 
 
 def _replace_references(text: str) -> str:
-    """Named and numeric character references replaced; unknown ones stay as they are."""
+    """The text with named and numeric character references replaced; unknown ones stay as they are."""
     if "&" not in text:
         return text
 

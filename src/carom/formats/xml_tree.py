@@ -1,7 +1,7 @@
-"""XML from untrusted files, in bounded time.
+"""Parsing XML from untrusted files, in bounded time.
 
-Well-formed documents go through expat. What expat refuses goes to the tolerant reader in `xml_tolerant`,
-because robot files in the wild are sloppy.
+Expat parses well-formed documents. Documents that expat refuses go to the tolerant reader in `xml_tolerant`,
+because many robot files in use are not well formed.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     Entity declarations and external entities are refused; nothing but `data` is ever read.
 
     Args:
-        data: Content of the file, in UTF-8, or in Latin-1 where it is not.
+        data: Content of the file in UTF-8; content that is not valid UTF-8 is read as Latin-1.
         file: Named in errors.
 
     Returns:
-        The elements at the top level: one for a well-formed document, perhaps more for a sloppy one.
+        The elements at the top level: one for a well-formed document, perhaps more for other ones.
 
     Raises:
-        DescriptionError: The document is broken beyond what PyBullet reads, or out of bounds.
+        DescriptionError: The document has an error that PyBullet refuses too, or exceeds the limits.
     """
     if not data.strip():
         raise DescriptionError("the file is empty", file=file)
@@ -41,7 +41,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
     try:
         _run_expat(text, builder)
     except expat.ExpatError:
-        # Few files need it, and its expressions take long to compile.
+        # Imported only here: few files need it, and its regular expressions are slow to compile.
         from carom.formats.xml_tolerant import read_tolerantly
 
         builder = TreeBuilder(file)
@@ -50,7 +50,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
 
 
 def parse_root(data: bytes, file: Path, *tags: str) -> Element:
-    """The element of a document that has one of these names.
+    """The first top-level element of a document that has one of these names.
 
     Raises:
         DescriptionError: There is none, or the document is broken.

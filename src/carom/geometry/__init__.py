@@ -1,1 +1,1 @@
-"""Shapes as numbers: convex hulls and other polyhedra. Knows nothing of robots or worlds."""
+"""Computational geometry: convex hulls and other polyhedra, independent of robots and worlds."""

@@ -1,4 +1,4 @@
-"""Solids cut into pieces that are nearly convex, by the library CoACD."""
+"""Approximate convex decomposition of solids, by the library CoACD."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class DecompositionOptions:
     """How finely a solid is cut.
 
     Attributes:
-        threshold: Concavity that may be left in a piece, from 0.01 (fine) to 1 (coarse).
-        grid: Cells along the longest side with which a mesh that is no closed surface is made one.
-        most_vertices: Of each piece.
-        align: Turn the solid into its principal axes before cutting.
+        threshold: Largest concavity of a piece, from 0.01 (fine) to 1 (coarse).
+        grid: Cells along the longest side of the grid that turns an open mesh into a closed surface.
+        most_vertices: Maximum number of vertices of each piece.
+        align: Rotate the solid to its principal axes before cutting.
     """
 
     threshold: float = 0.05
@@ -36,7 +36,7 @@ def decompose(
     Args:
         vertices: (n, 3) positions.
         triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
-        options: How finely.
+        options: How finely it is cut.
 
     Returns:
         Vertices and triangles of each piece.

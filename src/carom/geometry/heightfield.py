@@ -1,4 +1,4 @@
-"""Heights on a grid become triangles."""
+"""Triangles of height fields."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from carom.geometry.polyhedron import Polyhedron, polyhedron
 
 
 def heightfield_surface(field: Heightfield) -> Polyhedron:
-    """The landscape as triangles, two for each cell, cells row by row with x fastest.
+    """The surface of a height field as triangles, two for each cell, cells row by row with x fastest.
 
     Each cell is cut from its corner (x + 1, y) to its corner (x, y + 1), the lower half first. The
     vertices are the points of the grid, row by row with x fastest.

@@ -1,7 +1,7 @@
 """Convex hulls of points, by quickhull.
 
-The point farthest outside all faces is added first, so that stopping early leaves a good hull of few
-vertices. Points that do not span a volume are given a little thickness.
+The point farthest from the present faces is always added next, so that stopping early gives a good hull with
+few vertices. Sets of points that span no volume are given a small thickness.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ Points = NDArray[np.float64]
 Triangle = tuple[int, int, int]
 
 ROUNDING = 1e-9
-"""Heights above a face below which a point counts as on it, relative to the size of the whole."""
+"""Height above a face below which a point counts as lying on it, relative to the size of the hull."""
 
 EXACT = 1e-7
 """Relative error that single precision leaves in the points of mesh files."""
 
 SMALLEST, LARGEST = 1e-100, 1e100
-"""Sizes below which points are one and above which they are refused, as products have to be numbers [m]."""
+"""Sizes below which points coincide and above which they are refused, so that products stay finite [m]."""
 
 FLAT = 1e-6
-"""Relative thickness below which points are thought to lie in a plane, on a line or in one point."""
+"""Relative thickness below which points count as lying in a plane, on a line or in one point."""
 
 THICKEST_SLAB = 1e-4
-"""Largest half thickness given to what has none [m]."""
+"""Half thickness given to points that span no volume [m]; more only if they are more than 100 m apart."""
 
 _SLAB = 1e-3
-"""Half thickness given to what has none, relative to its size."""
+"""Half thickness given to points that span no volume, relative to their size."""
 
 
 def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int | None = None) -> Polyhedron:
@@ -43,9 +43,9 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
 
     Args:
         points: (n, 3) positions, n at least 1. They may coincide, lie on a line or in a plane: then the
-            hull is a slab around them, at most 0.2 mm thick.
+            hull is a slab around them, 0.2 mm thick or less; of points far apart, a millionth of their size.
         tolerance: Points outside the hull by less than this fraction of its size are left out.
-        most_vertices: Stop after so many vertices, at least 4; None for no bound.
+        most_vertices: Maximum number of vertices, at least 4; None for no limit.
 
     Returns:
         The hull; coplanar triangles are joined to polygons.
@@ -58,7 +58,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
 
 
 def extreme_points(points: Points) -> Points:
-    """The corners of the convex hull of points, without a thickness it does not have.
+    """The corners of the convex hull of points, without added thickness.
 
     Args:
         points: (n, 3) positions, n at least 1.
@@ -84,7 +84,7 @@ def _hull_loops(
         raise ValueError("a convex hull needs points")
     if not np.isfinite(points).all():
         raise ValueError("a point is not finite")
-    # Coordinates far from the origin would lose digits.
+    # Far from the origin, coordinates would lose digits.
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     centred = points - middle
     size = float(np.abs(centred).max())
@@ -129,7 +129,7 @@ def _first_corners(points: Points, thin: float) -> list[int]:
 
 def _thickened(points: Points, corners: list[int], size: float) -> Points:
     """The points moved both ways along every direction in which they have no extent."""
-    half = min(THICKEST_SLAB, _SLAB * size) if size > 0.0 else THICKEST_SLAB
+    half = max(min(THICKEST_SLAB, _SLAB * size), FLAT * size) if size > 0.0 else THICKEST_SLAB
     spanned = points[corners[1:]] - points[corners[0]]
     for direction in _directions_beside(spanned):
         points = np.concatenate([points - half * direction, points + half * direction])
@@ -158,7 +158,7 @@ class _Face:
         plane: Outward unit normal and offset.
         neighbours: Face across the edge from each corner to the next.
         outside: Points above this face, each kept by one face only.
-        farthest: The highest of them.
+        farthest: The one of these with the greatest height above the face.
         height: Its height.
     """
 
@@ -191,7 +191,7 @@ class _Quickhull:
             face.neighbours = [edges[end, start] for start, end in _edges(face.corners)]
 
     def grow(self, tolerance: float, most_vertices: int | None) -> None:
-        """Take in the farthest point again and again."""
+        """Add the farthest point again and again, until all are within `tolerance` or enough are added."""
         left = len(self.points) if most_vertices is None else most_vertices - 4
         while left > 0 and self._pending:
             height, number = heapq.heappop(self._pending)
@@ -206,7 +206,11 @@ class _Quickhull:
                 self._leave_out(number, face)
 
     def _take_in(self, number: int, face: _Face) -> bool:
-        """Put a tent from the rim of all faces that a face's farthest point sees to that point."""
+        """Add a face's farthest point: replace the faces visible from it by a fan of faces to it.
+
+        Returns:
+            Whether this was possible despite rounding errors.
+        """
         eye = face.farthest
         x, y, z = self.points[eye].tolist()
         for grazing in (self.rounding, -self.rounding):
@@ -230,7 +234,7 @@ class _Quickhull:
     def _seen(
         self, first: int, eye: tuple[float, float, float], grazing: float
     ) -> tuple[list[int], dict[int, tuple[int, int]]]:
-        """Faces that lie below a point, and the edges around them with the face beyond each."""
+        """Faces visible from a point, and the edges of their horizon with the face beyond each."""
         x, y, z = eye
         seen, rim = [first], {}
         known = {first: True}
@@ -250,12 +254,12 @@ class _Quickhull:
         return seen, rim
 
     def _leave_out(self, number: int, face: _Face) -> None:
-        """Forget a face's farthest point, which rounding keeps from being added."""
+        """Drop a face's farthest point, which cannot be added because of rounding errors."""
         face.outside = face.outside[face.outside != face.farthest]
         self._rank(number, face)
 
     def _add(self, triangles: list[Triangle], candidates: NDArray[np.int64]) -> list[int]:
-        """New faces; the candidates above them become their outside points."""
+        """Add faces and return their numbers; the candidates above a face become its outside points."""
         corners = self.points[np.array(triangles)]
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
         normals = _crossed(b - a, c - a)
@@ -289,7 +293,7 @@ class _Quickhull:
 
 
 def _crossed(a: Points, b: Points) -> Points:
-    """Cross products row by row; NumPy's takes three times as long for a few."""
+    """Cross products row by row; NumPy's function takes three times as long for a few rows."""
     result = np.empty_like(a)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         result[:, i] = a[:, j] * b[:, k] - a[:, k] * b[:, j]
@@ -302,7 +306,7 @@ def _edges(corners: Triangle) -> list[tuple[int, int]]:
 
 
 def _loop(rim: dict[int, tuple[int, int]]) -> list[tuple[int, int, int]] | None:
-    """The edges of a rim one after the other as (start, end, face beyond); None if they make no one loop."""
+    """The edges of a horizon in order as (start, end, face beyond); None if they are not a single loop."""
     if len(rim) < 3:
         return None
     loop = []

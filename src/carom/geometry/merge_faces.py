@@ -1,4 +1,4 @@
-"""Coplanar triangles of a convex hull become polygons."""
+"""Joining coplanar triangles of a convex hull to polygons."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from carom.native.products import dots
 
 COPLANAR = 1e-5
-"""Distance from a plane, relative to the size of the whole, up to which a vertex counts as in it."""
+"""Distance from a plane, relative to the size of the hull, up to which a vertex counts as in the plane."""
 
 LEAST_FACES = 4
-"""Fewer do not enclose anything."""
+"""Fewest faces that can enclose a volume."""
 
 _PARALLEL = 0.999
 """Least cosine between the normals of triangles that are joined."""
@@ -27,11 +27,11 @@ def merged_loops(
     Args:
         vertices: (n, 3) positions.
         triangles: Vertex indices, counter-clockwise from outside.
-        size: Size of the whole.
+        size: Size of the hull.
 
     Returns:
         Vertex indices around each polygon, counter-clockwise from outside. Vertices in the middle of an
-        edge are gone.
+        edge are left out.
     """
     corners = np.array(triangles)
     a, b, c = (vertices[corners[:, side]] for side in range(3))
@@ -45,7 +45,7 @@ def merged_loops(
     }
     loops: list[list[int]] = []
     free = [True] * len(triangles)
-    # The largest triangle has the best normal; slivers join it.
+    # Largest triangles first: their normals are the most accurate, and slivers join them.
     for seed in np.argsort(-areas, kind="stable").tolist():
         if not free[seed]:
             continue
@@ -70,7 +70,7 @@ def _patch(
     free: list[bool],
     thin: float,
 ) -> list[int]:
-    """Takes the free triangles around a seed that lie in its plane."""
+    """Take the free triangles that are connected to a seed and lie in its plane."""
     normal = normals[seed]
     origin = vertices[triangles[seed][0]]
     group = [seed]
@@ -91,13 +91,13 @@ def _patch(
 
 
 def _outline(group: list[tuple[int, int, int]]) -> list[int] | None:
-    """The one loop around triangles that share edges; None if they have holes or touch in a point."""
+    """The boundary loop of triangles that share edges; None if there are holes or they touch in a point."""
     edges = {(t[i], t[(i + 1) % 3]) for t in group for i in range(3)}
     rim = [(start, end) for start, end in edges if (end, start) not in edges]
     following = dict(rim)
     if not rim or len(following) != len(rim):
         return None
-    # Begin with the least, so that the same triangles always make the same loop.
+    # Begin with the smallest index, so that the same triangles always give the same loop.
     loop = [min(following)]
     while following[loop[-1]] != loop[0]:
         loop.append(following[loop[-1]])
@@ -107,7 +107,7 @@ def _outline(group: list[tuple[int, int, int]]) -> list[int] | None:
 
 
 def _without_middles(loops: list[list[int]]) -> list[list[int]]:
-    """Leaves out vertices that only two faces have: they lie on the edge between those."""
+    """Leave out vertices that belong to only two faces: they lie on the edge between these."""
     uses = Counter(vertex for loop in loops for vertex in loop)
     kept = [[vertex for vertex in loop if uses[vertex] > 2] for loop in loops]
     return [loop for loop in kept if len(loop) >= 3]

@@ -16,7 +16,7 @@ class Polyhedron:
     Attributes:
         vertices: (n, 3) positions [m].
         planes: (m, 4) planes of the faces: a unit normal that points out, and n · x on the plane.
-        first_corner: (m,) where the corners of each face begin in `corners`.
+        first_corner: (m,) index in `corners` of the first corner of each face.
         corner_count: (m,) number of corners of each face.
         corners: Indices into `vertices`, counter-clockwise around each face as seen from outside.
     """
@@ -42,7 +42,7 @@ class Polyhedron:
         return Polyhedron(self.vertices + offset, planes, self.first_corner, self.corner_count, self.corners)
 
     def with_vertices(self, vertices: NDArray[np.float64]) -> Polyhedron:
-        """The same faces around other vertices, (n, 3), which are hardly elsewhere."""
+        """The same faces with slightly moved vertices, (n, 3)."""
         return polyhedron(vertices, self.first_corner, self.corner_count, self.corners)
 
     def face_areas(self) -> NDArray[np.float64]:
@@ -64,7 +64,7 @@ def polyhedron(
     corner_count: NDArray[np.int32],
     corners: NDArray[np.int32],
 ) -> Polyhedron:
-    """A polyhedron whose planes are found from its corners; see `Polyhedron`."""
+    """A polyhedron whose planes are computed from its corners; see `Polyhedron`."""
     planes = _planes(vertices, corners, first_corner, corner_count)
     return Polyhedron(vertices, planes, first_corner, corner_count, corners)
 
@@ -109,7 +109,7 @@ def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np
 
 
 def _distinct(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The different rows, sorted, and which of them each row is; many times as fast as np.unique."""
+    """The distinct rows, sorted, and the index of each row in them; many times faster than np.unique."""
     order = np.lexsort(rows.T)
     arranged = rows[order]
     is_first = np.ones(len(rows), dtype=bool)
@@ -120,7 +120,7 @@ def _distinct(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[n
 
 
 _THIN = 1e-12
-"""Twice the area of a triangle over the square of a side, below which it counts as a line."""
+"""Twice the area of a triangle divided by the square of a side, below which it counts as a line."""
 
 
 def _planes(
@@ -146,10 +146,10 @@ def _doubled_areas(
     firsts: NDArray[np.int32],
     counts: NDArray[np.int32],
 ) -> NDArray[np.float64]:
-    """Newell's sums: normals of polygons, (m, 3), as long as twice their areas."""
+    """Normals of polygons by Newell's sums, (m, 3); their lengths are twice the areas."""
     following = np.arange(1, len(corners) + 1)
     following[firsts + counts - 1] = firsts
-    # Sums of products of large coordinates would lose the digits of small faces.
+    # Relative to the first corner: products of large coordinates would lose the digits of small faces.
     anchor = np.repeat(vertices[corners[firsts]], counts, axis=0)
     here = vertices[corners] - anchor
     there = vertices[corners[following]] - anchor

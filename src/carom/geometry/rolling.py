@@ -1,4 +1,4 @@
-"""About which axes a convex polyhedron rolls as a wheel or a ball does, and on which faces it can lie."""
+"""The axes about which a convex polyhedron rolls like a wheel or a ball, and the faces it can lie on."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 from carom.geometry.polyhedron import Polyhedron
 
 FEWEST_SIDES = 8
-"""With fewer corners around its axis a prism is not round."""
+"""Fewest corners around its axis with which a prism counts as round."""
 
 ROUND = 0.05
-"""Share of the radius, and of the angle between corners, by which these may be out of place."""
+"""Tolerance of the radius, and of the angle between corners, as a fraction of them."""
 
 FLAT = 1.0 / 16.0
-"""Share of the surface from which on a face is one to lie on: those of a cube are, a ball's are not."""
+"""Least share of the surface area of faces to lie on: those of a cube, but not those of a ball."""
 
 
 def flat_faces_first(solid: Polyhedron) -> tuple[Polyhedron, int]:
-    """The solid with the faces on which it can lie before the others, and their number."""
+    """The solid with the faces on which it can lie first, and their number."""
     areas = solid.face_areas()
     is_flat = areas >= FLAT * areas.sum()
     count = int(is_flat.sum())
@@ -29,10 +29,10 @@ def flat_faces_first(solid: Polyhedron) -> tuple[Polyhedron, int]:
 
 
 def round_about(solid: Polyhedron) -> tuple[bool, bool, bool]:
-    """Whether a convex solid, seen along each of the axes of its frame, is round.
+    """Whether a convex solid is round as seen along the x, y and z axis of its frame.
 
-    It is if the corners of its outline lie about on a circle around the middle of its bounds, without
-    large gaps: a wheel along one axis, a ball along all.
+    It is if the corners of its outline lie approximately on a circle around the centre of its bounds, without
+    large gaps: a wheel is round along one axis, a ball along all.
     """
     low, high = solid.bounds()
     x, y, z = (solid.vertices - 0.5 * (low + high)).T

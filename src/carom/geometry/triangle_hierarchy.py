@@ -1,4 +1,4 @@
-"""Boxes around triangles, and boxes around boxes: what finds the triangles in a region quickly."""
+"""Bounding volume hierarchy of triangles: boxes around boxes, to find the triangles in a region quickly."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class TriangleHierarchy:
 
 
 def triangle_hierarchy(surface: Polyhedron) -> TriangleHierarchy:
-    """Sorts the triangles of a surface and bounds them.
+    """Build the hierarchy of a surface.
 
     Args:
-        surface: Its faces are triangles.
+        surface: A surface whose faces are all triangles.
     """
     corners = surface.corners.reshape(-1, 3)
     count = len(corners)
@@ -63,7 +63,7 @@ def triangle_hierarchy(surface: Polyhedron) -> TriangleHierarchy:
 
 
 def _sorted_in_halves(centers: NDArray[np.float64], leaf_count: int) -> NDArray[np.int64]:
-    """An order in which every node's faces are sorted along the axis on which they spread most."""
+    """An order in which the faces of every node are sorted along the axis of their largest extent."""
     order = np.arange(len(centers))
     run = leaf_count
     while run > 1:

@@ -1,4 +1,4 @@
-"""What NumPy's functions do with arrays on a device; those that `carom.worlds` uses."""
+"""Implementations, for arrays on a device, of the NumPy functions that `carom.worlds` uses."""
 
 from __future__ import annotations
 

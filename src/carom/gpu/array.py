@@ -1,4 +1,4 @@
-"""Arrays on a device, used like NumPy's as far as `carom.worlds` does."""
+"""Arrays on a device, with the parts of NumPy's array interface that `carom.worlds` uses."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from carom.gpu.indexing import Part, part_of
 from carom.kernels.arrays import arithmetic as kernels
 
 BLOCK_SIZE = 64
-"""Threads of a block. The solver's kernels take 255 registers a thread, of which a multiprocessor has enough
-for 256 threads: in smaller blocks they are shared out more evenly. Modules are compiled for one size."""
+"""Threads per block. The solver's kernels use 255 registers per thread, and a multiprocessor has registers
+for 256 such threads; small blocks fill it more evenly. Modules are compiled for one block size."""
 
 _WARP_TYPES: dict[str, Any] = {
     "bool": wp.bool,
@@ -26,26 +26,26 @@ _WARP_TYPES: dict[str, Any] = {
     "float64": wp.float64,
 }
 _MOST_AXES = 4
-# Of arrays that are combined.
+# Number of axes of the arrays that `combine_kernel` takes.
 _COMBINED_AXES = 3
 _REAL = np.dtype(np.float64)
 
 NUMPY_FUNCTIONS: dict[Callable[..., Any], Callable[..., Any]] = {}
-"""What functions of NumPy do with these arrays; `carom.gpu.arithmetic` fills it."""
+"""Implementations of NumPy functions for these arrays; `carom.gpu.arithmetic` fills it."""
 
 
 class DeviceArray(OnDevice):
-    """Memory on a device, with a shape. Indexing it gives views, as with NumPy; lists of numbers give copies.
+    """An array in the memory of a device. As with NumPy, slices give views, and lists of indices give copies.
 
-    What is written there takes effect, without a copy to the host and back. Other libraries see the memory
-    itself: `torch.from_dlpack(array)`, `jax.dlpack.from_dlpack(array)`, `__cuda_array_interface__`. NumPy
-    gets a copy on the host: `numpy()` or `np.asarray(array)`.
+    Writing to the array changes the memory on the device, without a copy to the host and back. Other
+    libraries share this memory: `torch.from_dlpack(array)`, `jax.dlpack.from_dlpack(array)`,
+    `__cuda_array_interface__`. NumPy gets a copy on the host: `numpy()` or `np.asarray(array)`.
 
     Attributes:
-        shape: Its shape.
-        strides: From an entry to the next, along each axis [bytes].
-        dtype: NumPy's type of an entry.
-        pointer: Address of its first entry, on the device.
+        shape: The shape.
+        strides: Distance from one entry to the next along each axis [bytes].
+        dtype: NumPy's type of the entries.
+        pointer: Address of the first entry on the device.
         device: Warp's name of the device.
     """
 
@@ -67,7 +67,7 @@ class DeviceArray(OnDevice):
 
     @classmethod
     def zeros(cls, shape: Sequence[int], dtype: np.dtype[Any], device: str) -> DeviceArray:
-        """An array of zeros, entries next to each other."""
+        """A contiguous array of zeros."""
         memory: Any = wp.zeros(max(1, prod(shape) * dtype.itemsize), dtype=wp.uint8, device=device)
         return cls(memory, memory.ptr, shape, _compact_strides(shape, dtype.itemsize), dtype, device)
 
@@ -100,10 +100,10 @@ class DeviceArray(OnDevice):
         """Bytes of all entries."""
         return self.size * self.dtype.itemsize
 
-    # Out of it
+    # Conversions
 
     def warp(self) -> Any:
-        """The same memory as an array of Warp, whose entries are numbers."""
+        """The same memory as a Warp array, whose entries are scalars."""
         return self._as(self.shape or (1,), self.strides or (self.dtype.itemsize,))
 
     def numpy(self) -> np.ndarray:
@@ -127,12 +127,12 @@ class DeviceArray(OnDevice):
         return self.warp().__cuda_array_interface__
 
     def copy(self) -> DeviceArray:
-        """A copy on the device, entries next to each other."""
+        """A contiguous copy on the device."""
         other = DeviceArray.zeros(self.shape, self.dtype, self.device)
         other[...] = self
         return other
 
-    # Parts
+    # Indexing and views
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str):
@@ -154,14 +154,14 @@ class DeviceArray(OnDevice):
             return
         source = self._here(value)
         if source.pointer == target.pointer and source.strides == target.strides:
-            # `array[key] += value` ends with what is there already.
+            # `array[key] += value` ends by assigning the changed view to itself.
             return
         wp.copy(
             target._picking(part) if part.axis is not None else target.warp(), source.spread(shape).warp()
         )
 
     def _field(self, name: str) -> DeviceArray:
-        """A field of entries that are structs."""
+        """A view of one field of an array of structs."""
         dtype, offset = (self.dtype.fields or {})[name][:2]
         inner = dtype.shape
         strides = (*self.strides, *_compact_strides(inner, dtype.base.itemsize))
@@ -170,10 +170,10 @@ class DeviceArray(OnDevice):
         )
 
     def spread(self, shape: Sequence[int]) -> DeviceArray:
-        """The same entries in a greater shape, as `numpy.broadcast_to` has it.
+        """A view with a larger shape, as by `numpy.broadcast_to`.
 
         Raises:
-            ValueError: It does not broadcast to that shape.
+            ValueError: The array does not broadcast to that shape.
         """
         given = (1,) * (len(shape) - self.ndim) + self.shape
         if len(given) != len(shape) or any(a not in (1, b) for a, b in zip(given, shape, strict=True)):
@@ -183,7 +183,7 @@ class DeviceArray(OnDevice):
         return DeviceArray(self._owner, self.pointer, shape, strides, self.dtype, self.device)
 
     def reshape(self, *shape: int) -> DeviceArray:
-        """The same entries in another shape of as many; they have to be next to each other."""
+        """The same entries in another shape: a view if the array is contiguous, otherwise a copy."""
         if self.strides != _compact_strides(self.shape, self.dtype.itemsize):
             return self.copy().reshape(*shape)
         known = prod(length for length in shape if length >= 0)
@@ -192,7 +192,7 @@ class DeviceArray(OnDevice):
         return DeviceArray(self._owner, self.pointer, whole, strides, self.dtype, self.device)
 
     def view(self, dtype: Any) -> DeviceArray:
-        """The same memory as entries of another type of the same size."""
+        """The same memory with another type of entries, of the same size."""
         return DeviceArray(self._owner, self.pointer, self.shape, self.strides, np.dtype(dtype), self.device)
 
     def astype(self, dtype: np.dtype[Any]) -> DeviceArray:
@@ -202,7 +202,7 @@ class DeviceArray(OnDevice):
             wp.utils.array_cast(self.copy().warp(), other.warp())
         return other
 
-    # Arithmetic, of doubles
+    # Arithmetic in double precision
 
     def __add__(self, other: Any) -> DeviceArray:
         return self._combined(kernels.ADD, self, other)
@@ -229,7 +229,7 @@ class DeviceArray(OnDevice):
         self[...] = self + other
         return self
 
-    # NumPy leaves operators with an array of its own on the left to those above.
+    # With None, NumPy arrays on the left of an operator leave it to the reflected methods above.
     __array_ufunc__ = None
 
     def __array_function__(self, function: Callable[..., Any], types: Any, args: Any, kwargs: Any) -> Any:
@@ -245,7 +245,7 @@ class DeviceArray(OnDevice):
             return DeviceArray.zeros((), _REAL, self.device)._here(value)
         return value if value.dtype == _REAL else value.astype(_REAL)
 
-    # Comparisons read the array back, and return NumPy arrays.
+    # Comparisons copy the array to the host, and return NumPy arrays.
 
     def __eq__(self, other: object) -> Any:
         return self.numpy() == np.asarray(other)
@@ -265,7 +265,7 @@ class DeviceArray(OnDevice):
     def __ge__(self, other: Any) -> Any:
         return self.numpy() >= np.asarray(other)
 
-    # It changes, as arrays do.
+    # Not hashable, because it is mutable.
     __hash__ = None  # type: ignore[assignment]
 
     def __int__(self) -> int:
@@ -274,17 +274,17 @@ class DeviceArray(OnDevice):
     def __float__(self) -> float:
         return float(self.numpy())
 
-    # How it is done
+    # Implementation
 
     def _here(self, value: Any) -> DeviceArray:
-        """A value on this device, with entries of this type."""
+        """A value as an array on this device, with entries of this type."""
         if isinstance(value, DeviceArray):
             return value if value.dtype == self.dtype else value.astype(self.dtype)
         host = np.ascontiguousarray(np.asarray(value), dtype=self.dtype)
         shape = np.shape(value)
         here = DeviceArray.zeros(shape, self.dtype, self.device)
         if here.size:
-            # Entries may be structs: bytes are copied.
+            # Copied as bytes, because entries may be structs.
             wp.copy(here._owner, wp.array(host.reshape(-1).view(np.uint8), dtype=wp.uint8, device="cpu"))
         return here
 
@@ -294,7 +294,7 @@ class DeviceArray(OnDevice):
         )
 
     def _picking(self, part: Part) -> Any:
-        """The entries that a part picks, as an array of Warp."""
+        """The entries that a part selects, as an indexed Warp array."""
         picks: list[Any] = [None] * len(self.shape)
         picks[part.axis or 0] = wp.array(part.picks, dtype=wp.int32, device=self.device)
         return wp.indexedarray(self.warp(), picks)
@@ -304,7 +304,7 @@ class DeviceArray(OnDevice):
             raise ValueError(f"an array of {len(shape)} axes has too many")
         dtype = self.dtype
         if dtype.names is not None:
-            # Structs go from place to place as bytes.
+            # Structs are copied as bytes.
             return wp.array(
                 ptr=self.pointer, dtype=wp.uint8, shape=(*shape, dtype.itemsize), strides=(*strides, 1),
                 device=self.device,
@@ -321,22 +321,24 @@ class DeviceArray(OnDevice):
 
 
 def _compact_strides(shape: Sequence[int], size: int) -> tuple[int, ...]:
-    """Strides of an array whose entries are next to each other [bytes]."""
+    """Strides of a contiguous array [bytes]."""
     return tuple(size * prod(shape[axis + 1 :]) for axis in range(len(shape)))
 
 
 def combine(operation: int, first: DeviceArray, second: DeviceArray) -> DeviceArray:
-    """Combine doubles one by one.
+    """Combine two arrays of doubles entry by entry.
 
     Args:
-        operation: What with: a number of `carom.kernels.arrays.arithmetic`.
-        first: The one.
-        second: The other, whose shape broadcasts to that of the one, or the reverse.
+        operation: The operation: a constant of `carom.kernels.arrays.arithmetic`.
+        first: Left operand.
+        second: Right operand; the two shapes have to broadcast to each other.
 
     Raises:
-        ValueError: The shapes do not broadcast to each other.
+        ValueError: The shapes do not broadcast to each other, or have more than three axes.
     """
     shape = np.broadcast_shapes(first.shape, second.shape)
+    if len(shape) > _COMBINED_AXES:
+        raise ValueError(f"arrays of {len(shape)} axes cannot be combined; {_COMBINED_AXES} are the maximum")
     result = DeviceArray.zeros(shape, _REAL, first.device)
     if result.size:
         dim = (1,) * (_COMBINED_AXES - len(shape)) + shape

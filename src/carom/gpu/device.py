@@ -1,4 +1,4 @@
-"""What many worlds are kept on and stepped on in fine launches."""
+"""Interface of the devices that hold many worlds and step them in fine launches."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-# The module in `carom.kernels` that has each kernel that is launched over worlds, on the processor as well.
+# Module in `carom.kernels` of each kernel that is launched with one thread per world; CPUs use them, too.
 MODULES = {
     "forward_kinematics_kernel": "dynamics.kinematics",
     "link_poses_kernel": "dynamics.kinematics",
@@ -19,24 +19,24 @@ MODULES = {
 
 
 class FineLaunch(Protocol):
-    """A kernel with its arguments, ready to run many times over."""
+    """A kernel with its arguments, which can be run many times."""
 
     def __call__(self) -> None:
-        """Run the kernel; this may return before it is done."""
+        """Run the kernel; the call may return before the kernel has finished."""
         ...
 
     def replace(self, name: str, value: int) -> None:
-        """Change an argument that is a number, if the kernel has it, for all later runs."""
+        """Change a scalar argument, if the kernel has it, for all later runs."""
         ...
 
 
 class Device(Protocol):
-    """Where arrays are and kernels run.
+    """A device that holds arrays and runs kernels.
 
-    Arrays are NumPy's, or can be used like them as far as `carom.gpu.array.DeviceArray` says.
+    Its arrays are NumPy arrays, or have the interface of `carom.gpu.array.DeviceArray`.
 
     Attributes:
-        name: Its name for users.
+        name: Name of the device in messages.
     """
 
     name: str
@@ -45,25 +45,25 @@ class Device(Protocol):
         """An array of zeros.
 
         Raises:
-            MemoryError: There is no room for it.
+            MemoryError: The device has not enough free memory.
         """
         ...
 
     def struct(self, declared: Any, arrays: Mapping[str, Any]) -> Any:
-        """A struct for kernels, of arrays on the device.
+        """A kernel argument: a struct of arrays on the device.
 
         Args:
             declared: The struct, as declared in `carom.layouts`.
-            arrays: The array of each field. Where a world axis has one row, all worlds are shown it.
+            arrays: The array of each field. If its world axis has only one row, all worlds share this row.
         """
         ...
 
     def numbers(self, struct: Any) -> Any:
-        """A struct of numbers for kernels, from one of `carom.layouts`."""
+        """A kernel argument: a copy of a struct of scalars declared in `carom.layouts`."""
         ...
 
     def take(self, value: Any) -> Any:
-        """A user's value: as an array on the device if it is there already, otherwise unchanged."""
+        """A user's value: as a device array if its memory is on the device already, otherwise unchanged."""
         ...
 
     def launch(
@@ -77,21 +77,21 @@ class Device(Protocol):
         """A kernel with its arguments, ready to run.
 
         Args:
-            module: The module in `carom.kernels` that it is in.
-            kernel: Its name.
+            module: Module of the kernel in `carom.kernels`.
+            kernel: Name of the kernel.
             dim: Number of threads, along one or two axes.
-            structs: Structs by the names that kernels give them.
-            scalars: Numbers by these names.
+            structs: Structs by the names of kernel arguments.
+            scalars: Scalars by the names of kernel arguments.
         """
         ...
 
     def capture(self, launches: Callable[[], None]) -> Callable[[], None]:
-        """A captured sequence of launches, to be run as one.
+        """Capture a sequence of launches, to be run by one call.
 
-        What cannot be captured is launched one by one, in the same order.
+        A device that cannot capture launches runs them one by one, in the same order.
         """
         ...
 
     def free_memory(self) -> int | None:
-        """Bytes that can still be had; None where that is not known."""
+        """Bytes that can still be allocated; None if unknown."""
         ...

@@ -1,4 +1,4 @@
-"""An engine whose worlds are on a device."""
+"""The engine for worlds on a device."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from carom.model.builder import WorldArrays
 
 
 class DeviceEngine(Engine):
-    """Performs steps of many worlds on a device.
+    """Steps many worlds on a device.
 
-    State, contacts and intermediate results are there and nowhere else; model, shapes, user constraints and
-    what soft bodies are made of are on the host, with a copy on the device. What steps consist of is said by
-    other programs than on the processor; how they are asked for, and repeated where something did not fit, is
-    the same.
+    State, contacts and intermediate results are on the device only; model, shapes, user constraints and the
+    model of soft bodies are on the host, with a copy on the device. The programs of a step and of collision
+    detection differ from those for CPUs. Steps are requested, and repeated if arrays were too small, as on
+    CPUs.
 
     Args:
-        device: Where.
-        arrays: Model and state on it.
-        contact_arrays: Shapes, contacts and user constraints on it.
+        device: The device.
+        arrays: Model and state, in tables of the device.
+        contact_arrays: Shapes, contacts and user constraints, in tables of the device.
     """
 
     step_program = staticmethod(parallel_step_program)
@@ -48,16 +48,16 @@ class DeviceEngine(Engine):
     def like(
         cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
     ) -> DeviceEngine:
-        """So many worlds like one there is.
+        """An engine of many copies of a world.
 
         Args:
-            device: The device of the worlds.
-            arrays: Model and state of the one.
+            device: The device of the copies.
+            arrays: Model and state of the world.
             contact_arrays: Its shapes, contacts and user constraints.
-            count: Number of worlds.
+            count: Number of copies.
 
         Raises:
-            MemoryError: There is no room for them.
+            MemoryError: The device has not enough free memory.
         """
         check_room(device, count, lambda counter: cls.made(counter, arrays, contact_arrays, count).structs())
         return cls.made(device, arrays, contact_arrays, count)
@@ -66,7 +66,7 @@ class DeviceEngine(Engine):
     def made(
         cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
     ) -> DeviceEngine:
-        """As `like`, whether there is room or not."""
+        """As `like`, but without checking the free memory and for soft bodies."""
         own_arrays = arrays.repeated(1)
         own_contact_arrays = contact_arrays.repeated(own_arrays)
         rows = {**own_arrays.used, "user": own_contact_arrays.user_count, "status": STEPS_DONE + 1}
@@ -89,7 +89,7 @@ class DeviceEngine(Engine):
 
     def update_settings(self, parameters: Any) -> None:  # noqa: D102
         super().update_settings(parameters)
-        # They are in the launches.
+        # Launches hold copies of the settings.
         self.changed()
 
     def _make_status(self) -> np.ndarray:

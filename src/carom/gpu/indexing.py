@@ -1,4 +1,4 @@
-"""Indexing of arrays: a strided part of the memory, and a list of indices in it."""
+"""Array indexing: an index as a strided part of the memory, and a list of indices along one axis of it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 
 
 class Part(NamedTuple):
-    """A part of an array.
+    """A part of an array: a strided view, and indices of the entries that are picked along one of its axes.
 
     Attributes:
-        offset: Where it begins [bytes].
-        shape: Its shape, that of the array along the axis that is picked from.
-        strides: Its strides [bytes].
-        axis: The axis that entries are picked from, or None.
-        picks: Which of them, (n,).
+        offset: Offset of the view [bytes].
+        shape: Shape of the view, before entries are picked.
+        strides: Strides of the view [bytes].
+        axis: The axis along which entries are picked; None if there is none.
+        picks: Indices of the picked entries along this axis, (n,).
     """
 
     offset: int
@@ -26,14 +26,14 @@ class Part(NamedTuple):
 
     @property
     def picked_shape(self) -> tuple[int, ...]:
-        """Its shape once entries have been picked."""
+        """Shape after entries have been picked."""
         if self.axis is None or self.picks is None:
             return self.shape
         return (*self.shape[: self.axis], len(self.picks), *self.shape[self.axis + 1 :])
 
 
 def part_of(shape: tuple[int, ...], strides: tuple[int, ...], key: Any) -> Part:
-    """The part that an index stands for: integers, slices, an ellipsis, and one list of numbers or mask.
+    """The part that an index selects: integers, slices, an ellipsis, and one list of integers or mask.
 
     Args:
         shape: Shape of the array.
@@ -41,7 +41,7 @@ def part_of(shape: tuple[int, ...], strides: tuple[int, ...], key: Any) -> Part:
         key: The index.
 
     Raises:
-        IndexError: It has more axes than the array, is beyond its end, or picks along more than one axis.
+        IndexError: The index has more axes than the array, is out of range, or picks along several axes.
     """
     offset, axis, picks = 0, None, None
     kept_shape: list[int] = []
@@ -59,7 +59,7 @@ def part_of(shape: tuple[int, ...], strides: tuple[int, ...], key: Any) -> Part:
             offset += place * stride
         else:
             if axis is not None:
-                raise IndexError("numbers can be picked along one axis only")
+                raise IndexError("only one axis can be indexed by a list of integers or a mask")
             axis, picks = len(kept_shape), _numbers(index, length)
             kept_shape.append(length)
             kept_strides.append(stride)
@@ -84,8 +84,8 @@ def _numbers(index: Any, length: int) -> np.ndarray:
             raise IndexError(f"a mask of shape {picks.shape} does not fit an axis of {length}")
         picks = np.flatnonzero(picks)
     if picks.ndim != 1 or (picks.size and not np.issubdtype(picks.dtype, np.integer)):
-        raise IndexError(f"an axis is picked from by a list of numbers or a mask, not {index!r}")
+        raise IndexError(f"an axis must be indexed by a list of integers or a mask, not {index!r}")
     picks = np.where(picks < 0, picks + length, picks)
     if picks.size and not 0 <= picks.min() <= picks.max() < length:
-        raise IndexError(f"there are {length} entries on the axis that is picked from")
+        raise IndexError(f"an index of the list is out of range for an axis of {length}")
     return picks.astype(np.int32)

@@ -1,4 +1,4 @@
-"""Whether there is room on a device, said before it runs out."""
+"""Checking that worlds fit into the free memory of a device, before their arrays are allocated."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _GIGABYTE = 1e9
 
 
 class CountingDevice(Device):
-    """A device on which arrays take no room, and are counted. Nothing can be launched there.
+    """A device that counts the bytes of arrays instead of allocating them. Nothing can be launched on it.
 
     Attributes:
-        bytes: What all arrays would take.
+        bytes: Size of all arrays made so far.
     """
 
     name = "counting"
@@ -27,7 +27,7 @@ class CountingDevice(Device):
 
     def zeros(self, shape: Sequence[int], dtype: np.dtype[Any]) -> Any:  # noqa: D102
         self.bytes += prod(shape) * dtype.itemsize
-        # All entries are the same one.
+        # All entries share the memory of one.
         return np.lib.stride_tricks.as_strided(np.zeros(1, dtype), shape, (0,) * len(shape), writeable=True)
 
     def struct(self, declared: Any, arrays: Mapping[str, Any]) -> Any:  # noqa: D102
@@ -57,15 +57,15 @@ class CountingDevice(Device):
 
 
 def check_room(device: Device, count: int, make: Callable[[CountingDevice], Any]) -> None:
-    """See that there is room for worlds on a device.
+    """Check that the arrays of some worlds fit into the free memory of a device.
 
     Args:
         device: The device.
         count: Number of worlds.
-        make: Makes all their arrays on a device that only counts them.
+        make: Makes all their arrays on a device that only counts bytes.
 
     Raises:
-        MemoryError: There is not.
+        MemoryError: The arrays do not fit.
     """
     free = device.free_memory()
     if free is None:

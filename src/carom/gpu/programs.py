@@ -1,6 +1,6 @@
 """A step of any number of worlds as a sequence of fine launches, for CUDA devices.
 
-Nothing is read back between them, so on a CUDA device the whole sequence can be captured as a graph.
+Nothing is copied to the host between the launches, so CUDA devices can capture the sequence as a graph.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from carom.native.launch import KernelStructs
 
 
 def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
-    """The launches of a step of all worlds that have a part in it.
+    """The launches of a step of all worlds that take part in it.
 
-    Where something goes wrong or does not fit, the end of the step puts the world back to where it began.
+    If a world has an error, or its arrays are too small, the end of the step restores its state from before.
 
     Args:
         structs: Structs over the arrays of a device.
-        plan: What steps have to look for.
+        plan: Conditions that determine the parts of a step.
     """
     launches = _Launches(structs)
     if not plan.coupled:
@@ -46,13 +46,13 @@ def _program(
     detection: Iterable[FineLaunch] = (),
     motion: Iterable[FineLaunch] = (),
 ) -> Program:
-    """A program of launches on a device, which nothing but the stepper of a device can perform."""
+    """A program of launches on a device, for the steppers of `carom.gpu.stepper` only."""
     parts: list[Any] = [list(begin), list(detection), list(motion), list(end)]
     return Program(*parts, abandon=[])
 
 
 class _Launches:
-    """The launches that steps are made of."""
+    """The launches of the parts of a step."""
 
     def __init__(self, structs: Any) -> None:
         self._structs: DeviceStructs = structs
@@ -67,20 +67,20 @@ class _Launches:
         return self._structs.launch_over(module, kernel, dim, **scalars)
 
     def begin(self, plan: Plan | None = None) -> Iterator[FineLaunch]:
-        """Of a step; without a plan only contacts are to be found."""
+        """The beginning of a step, or without a plan that of collision detection."""
         yield self._launch("parallel.trees", "begin_kernel", self._trees, moves=int(plan is not None))
         if plan is not None and plan.soft:
             yield self._launch("parallel.soft_nodes", "soft_begin_kernel", self._soft_bodies)
 
     def end(self, plan: Plan | None = None) -> Iterator[FineLaunch]:
-        """Of what `begin` began with the same plan."""
+        """The end of a step, or without a plan that of collision detection."""
         yield self._launch("parallel.trees", "end_kernel", self._trees, moves=int(plan is not None))
         if plan is not None and plan.soft:
             yield self._launch("parallel.soft_nodes", "soft_end_kernel", self._soft_bodies)
         yield self._launch("parallel.runs", "finish_kernel", self._worlds)
 
     def uncoupled(self, plan: Plan) -> Program:
-        """A step of worlds whose bodies have nothing to do with each other, all substeps at once."""
+        """A step of worlds whose bodies do not interact: one launch performs all substeps."""
         batches = self._launch("parallel.batches", "batch_step_kernel", self._trees, substeps=1)
         faults = self._launch("parallel.trees", "faults_kernel", self._worlds)
         return _program(begin=[batches, faults], end=self.end(plan))
@@ -122,7 +122,7 @@ class _Launches:
         yield self._launch("parallel.joint_rows", "island_rows_kernel", self._trees)
         yield self._launch("parallel.contact_rows", "island_contacts_kernel", self._trees)
         yield self._launch("parallel.sweeps", "resting_sweeps_kernel", self._trees)
-        # Those of islands at rest that could not be solved so are written once more.
+        # Again for islands at rest that did not converge: their contacts are rewritten with zero impulses.
         yield self._launch("parallel.contact_rows", "island_contacts_kernel", self._trees)
         yield self._launch("parallel.restless_sweeps", "restless_sweeps_kernel", self._trees)
         yield self._launch("parallel.joint_rows", "island_impulses_kernel", self._trees)

@@ -1,4 +1,4 @@
-"""Performs programs of fine launches on a device."""
+"""Steppers that run programs of fine launches on a device."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from carom.layouts.status import STEPS_DONE
 
 
 class _Asked:
-    """The arguments of a stepper; see `carom.engine.interpreter`."""
+    """The numbers that a run of a stepper uses; see `carom.engine.interpreter`."""
 
     def __init__(self, world_count: int) -> None:
         self.program = Program([], [], [], [], [])
@@ -24,24 +24,24 @@ class _Asked:
         self._resumed = 0
 
     def ask(self, **asked: int) -> None:
-        """Set numbers for all later runs. A step is performed as a whole."""
+        """Set `world_count`, `step_count` or `resumed` for all later runs; other numbers are ignored."""
         self._world_count = asked.get("world_count", self._world_count)
         self._step_count = asked.get("step_count", self._step_count)
         self._resumed = asked.get("resumed", self._resumed)
 
 
 class StepStepper(_Asked, Stepper):
-    """Performs steps of all worlds at once, each number of substeps as a graph.
+    """Steps all worlds at once, with one captured graph for each number of substeps.
 
-    The status of the worlds is read after all steps were launched: one number, and only if it is not 0 that
-    of each world.
+    The status of the worlds is read after all steps have been launched: first one number for all of them,
+    and only if it is not 0 the status of each world.
 
     Args:
         structs: Structs on the device.
-        state: The arrays of `State` there.
-        status: What became of each world, on the host.
-        worlds: Numbers of the worlds; changed in place.
-        due: Substeps of the steps; changed in place. Where it is 0, contacts are found and nothing moves.
+        state: The arrays of `State` on the device.
+        status: Status of each world, on the host; set by each run.
+        worlds: Indices of the worlds; changed in place.
+        due: Number of substeps of each step; changed in place. If it is 0, only contacts are found.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class StepStepper(_Asked, Stepper):
         self._read(worlds)
 
     def _tell(self, part: int, worlds: np.ndarray, others: int) -> None:
-        """Let some worlds take a part in the steps that follow, and the others another."""
+        """Set what some worlds, and all others, do in the following steps: `BEGIN`, `RESUME` and so on."""
         parts = np.full(len(self._status), others, dtype=np.int32)
         parts[worlds] = part
         if not np.array_equal(parts, self._structs.parts):
@@ -103,7 +103,7 @@ class StepStepper(_Asked, Stepper):
         self._status[worlds] = np.asarray(self._state["status_entry"])[worlds]
 
     def _step(self, substeps: int) -> None:
-        """Launch a step; the first of so many substeps is captured, where the device can."""
+        """Launch a step; the first step with a given number of substeps is captured, if the device can."""
         program = self.program
         for launch in program.begin:
             launch.replace("substeps", substeps)  # type: ignore[attr-defined]
@@ -115,10 +115,10 @@ class StepStepper(_Asked, Stepper):
 
 
 class TaskStepper(_Asked, Stepper):
-    """Performs launches that are over worlds, on some of them.
+    """Runs launches with one thread per world, for some of the worlds.
 
     Args:
-        worlds: Numbers of the worlds; changed in place.
+        worlds: Indices of the worlds; changed in place.
     """
 
     def __init__(self, worlds: np.ndarray) -> None:
@@ -142,7 +142,7 @@ class TaskStepper(_Asked, Stepper):
 
 
 def consecutive(numbers: np.ndarray) -> list[tuple[int, int]]:
-    """Runs of consecutive numbers: the first of each, and its length."""
+    """Runs of consecutive numbers: first number and length of each."""
     runs = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
     return [(int(run[0]), len(run)) for run in runs if len(run)]
 
@@ -153,4 +153,4 @@ def _perform(launches: Sequence[Callable[[], None]]) -> None:
 
 
 def _nothing() -> None:
-    """Nothing has been loaded yet."""
+    """Do nothing: no program has been loaded yet."""

@@ -12,17 +12,17 @@ from carom.native.tables import ArrayTable, fields_of
 
 
 class DeviceTable(ArrayTable):
-    """A table whose arrays are on a device and nowhere else.
+    """A table whose arrays are on a device only.
 
-    `numpy` has the arrays by name as any table has; what is written there is written on the device.
-    Arrays are as long as they are asked to be, for each row is there in every world.
+    `numpy` has the arrays by name, as in any table; writing to them changes the memory on the device. Arrays
+    get exactly the requested length, without room to grow, because every world has each row.
 
     Args:
-        device: Where.
+        device: The device.
         struct: Struct whose fields are all arrays.
         world_count: Length of the world axis.
         entry_views: Fields that show the vectors of another field scalar by scalar.
-        lasts: Whether longer arrays begin with what there was.
+        lasts: Whether arrays keep their contents when they grow.
     """
 
     def __init__(
@@ -42,19 +42,19 @@ class DeviceTable(ArrayTable):
     def repeated(
         cls, device: Device, table: ArrayTable, struct: Any, world_count: int, rows: Mapping[str, int]
     ) -> DeviceTable:
-        """The first world of a table so many times.
+        """A table of many copies of the first world of another table.
 
         Args:
-            device: Where.
+            device: The device.
             table: A table on the host.
             struct: Its struct.
-            world_count: Number of worlds.
-            rows: Of these axes, keep so many rows.
+            world_count: Number of copies.
+            rows: Number of rows to keep, by axis.
         """
         other = cls(device, struct, world_count)
         other.reserve({axis: max(1, count) for axis, count in rows.items()}, growth=1.0)
         for name, array in other.numpy.items():
-            # Each world has the rows of the first one.
+            # Every world gets the rows of the first world of `table`.
             array[...] = np.asarray(table.numpy[name])[:1, : array.shape[1]]
         return other
 
@@ -72,13 +72,13 @@ class DeviceTable(ArrayTable):
 
 
 class MirroredTable(ArrayTable):
-    """A table on the host, with a copy of its arrays on a device, which kernels see.
+    """A table on the host, with a copy of its arrays on a device for the kernels.
 
-    After a change of an array there `written` has to be called.
+    After an array on the host has been changed, `written` has to be called.
 
     Args:
-        device: Where the copy is.
-        table: The table, which becomes this one.
+        device: The device of the copy.
+        table: The table whose arrays this one takes over.
     """
 
     def __init__(self, device: Device, table: ArrayTable) -> None:
@@ -106,9 +106,9 @@ def struct_of_zeros(device: Device, declared: Any, shapes: Mapping[str, tuple[in
     """Arrays of zeros for the fields of a struct.
 
     Args:
-        device: Where.
+        device: The device.
         declared: The struct, as declared in `carom.layouts`.
-        shapes: Shape of the array of each field, without that of its entries.
+        shapes: Shape of the array of each field, without the shape of an entry.
     """
     fields = fields_of(declared)
     return {

@@ -1,4 +1,4 @@
-"""Devices that Warp runs kernels on."""
+"""Devices on which Warp runs the kernels."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-# NumPy's functions know arrays on a device from then on.
+# This import registers NumPy functions for arrays on a device.
 import carom.gpu.arithmetic  # noqa: F401
 from carom.gpu.array import BLOCK_SIZE, DeviceArray
 from carom.gpu.device import Device, FineLaunch
@@ -18,7 +18,7 @@ from carom.kernels.warp_start import start_warp
 from carom.kernels.warp_types import warp_type
 from carom.layouts.types import ArrayType
 
-# Of DLPack: the devices whose memory the processor sees.
+# DLPack's codes of devices whose memory the CPU can access.
 _HOST_DEVICES = (1, 3)
 _GIGABYTE = 1e9
 
@@ -26,18 +26,18 @@ start_warp()
 
 
 def cuda_devices() -> list[str]:
-    """Warp's names of the GPUs there are."""
+    """Warp's names of the available GPUs."""
     return [device.alias for device in wp.get_cuda_devices()]
 
 
 class WarpDevice(Device):
-    """A device that Warp runs kernels on.
+    """A device on which Warp runs the kernels.
 
     Args:
-        name: Warp's name of it: "cuda:0".
+        name: Warp's name of the device, such as "cuda:0".
 
     Attributes:
-        name: The same.
+        name: Warp's name of the device.
     """
 
     def __init__(self, name: str) -> None:
@@ -74,7 +74,7 @@ class WarpDevice(Device):
             return value
         here, *_ = value.__dlpack_device__()
         if self._device.is_cpu or int(here) not in _HOST_DEVICES:
-            # Tensors that know how to be differentiated are not given away.
+            # Tensors that require gradients cannot be exported by DLPack.
             plain = value.detach() if hasattr(value, "detach") else value
             return self.take(wp.from_dlpack(plain))
         return value
@@ -97,7 +97,7 @@ class WarpDevice(Device):
         return _WarpLaunch(command, names, arguments)
 
     def capture(self, launches: Callable[[], None]) -> Callable[[], None]:
-        """Launches as one CUDA graph; on other devices as they are."""
+        """Launches captured as one CUDA graph; on other devices they are returned unchanged."""
         if not self._device.is_cuda:
             return launches
         with wp.ScopedCapture(device=self._device) as capture:
@@ -109,11 +109,11 @@ class WarpDevice(Device):
         return int(self._device.free_memory) if self._device.is_cuda else None
 
     def _argument(self, declared: ArrayType, array: DeviceArray) -> Any:
-        """An array as kernels are given it."""
+        """An array as a kernel argument."""
         axes = declared.ndim
         strides = list(array.strides[:axes])
         if axes == 2 and array.shape[0] == 1:
-            # All worlds share the one row.
+            # All worlds share the single row.
             strides[0] = 0
         made: Any = wp.array(
             ptr=array.pointer,
@@ -122,13 +122,13 @@ class WarpDevice(Device):
             strides=tuple(strides),
             device=self._device,
         )
-        # The memory is kept for as long as the argument is.
+        # Keeps the memory alive as long as the argument.
         made.owner = array
         return made
 
 
 class _WarpLaunch(FineLaunch):
-    """A launch of Warp's; it keeps its arguments."""
+    """A recorded Warp launch; it keeps its arguments alive."""
 
     def __init__(self, command: Any, names: Sequence[str], arguments: Sequence[Any]) -> None:
         self._run = command.launch

@@ -1,4 +1,4 @@
-"""Intermediate results of many worlds that are stepped side by side."""
+"""Workspace of many worlds that are stepped in parallel on a device."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs
 
 MOST_WORKERS = 32768
-"""Threads that look for contacts: more than a GPU runs at a time. Each needs 23 kB."""
-# Room for pairs of shapes, rows over two trees and their blocks to begin with; it doubles where it is short.
+"""Maximum number of threads of the narrow phase: more than a GPU runs at a time. Each needs 23 kB."""
+# Initial capacity for pairs of shapes, rows over two trees and their blocks; doubled when it is too small.
 _FIRST_ROOM = {"pair": 16, "row": 64, "jacobian": 256, "matrix": 64}
-# Memory for the search in one pair, which belongs to workers, not to worlds.
+# Axes of the workspace of a single pair of shapes: each worker has one, instead of each world.
 _OF_WORKERS = ("candidate", "polygon", "polytope")
 
 
 @dataclass(frozen=True)
 class Extent:
-    """Sizes of a step.
+    """Sizes that determine the threads and arrays of a step.
 
     Attributes:
-        worlds: Worlds.
-        trees: Bodies of each.
-        shapes: Collision shapes of each.
-        contacts: Contacts of each that there is room for.
-        pairs: Pairs of shapes of each that there is room for; 0 if nothing can touch.
-        soft_bodies: Soft bodies of each.
+        worlds: Number of worlds.
+        trees: Number of bodies of each world.
+        shapes: Number of collision shapes of each world.
+        contacts: Capacity for contacts of each world.
+        pairs: Capacity for pairs of shapes of each world; 0 if no shapes can touch.
+        soft_bodies: Number of soft bodies of each world.
     """
 
     worlds: int
@@ -52,18 +52,18 @@ class Extent:
 
     @property
     def workers(self) -> int:
-        """Threads that look for contacts."""
+        """Number of threads of the narrow phase."""
         return max(1, min(self.worlds * self.pairs, MOST_WORKERS))
 
 
 class DeviceStructs(KernelStructs):
-    """Structs by the names kernels give them, on a device.
+    """Structs on a device, by the names of kernel arguments.
 
     Attributes:
         device: The device.
-        extent: The numbers of links, joints and so on.
-        arrays: The arrays of `IslandWork`, `PairWork` and `RunWork`, by the names of these structs.
-        parts: What `RunWork.world_part` has been set to.
+        extent: Numbers of worlds, bodies, shapes, contacts and pairs.
+        arrays: The arrays of `IslandWork`, `PairWork` and `RunWork`, by the names of kernel arguments.
+        parts: The present values of `RunWork.world_part`, on the host.
     """
 
     def __init__(self, device: Device) -> None:
@@ -74,11 +74,11 @@ class DeviceStructs(KernelStructs):
         self.parts: np.ndarray = np.zeros(0, dtype=np.int32)
 
     def launch_over(self, module: str, kernel: str, dim: tuple[int, ...], **scalars: float) -> FineLaunch:
-        """A launch of a kernel in a module of `carom.kernels`, as many times as `dim` says."""
+        """A launch of a kernel in a module of `carom.kernels`, with `dim` threads."""
         return self.device.launch(module, kernel, dim, self, {"first_world": 0, **scalars})
 
     def launch(self, kernel: Kernel, **scalars: float) -> Any:
-        """A launch of a kernel for some of the worlds, by the first of them and their number."""
+        """A function that makes the launch of a kernel for `count` worlds from world `first` on."""
 
         def over(first: int, count: int) -> FineLaunch:
             asked = {**scalars, "first_world": first}
@@ -87,11 +87,11 @@ class DeviceStructs(KernelStructs):
         return over
 
     def changed(self, name: str) -> None:
-        """Launches have to be made again; their engine sees to that."""
+        """Do nothing: there are no cached launches; the engine makes new ones."""
 
 
 class DeviceWorkspace(Workspace):
-    """Room for the intermediate results of all worlds, on a device.
+    """Memory for the intermediate results of all worlds, on a device.
 
     Args:
         device: The device.
@@ -109,7 +109,7 @@ class DeviceWorkspace(Workspace):
         self._extent: Extent | None = None
 
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Resize arrays to the length of the arrays they belong to."""
+        """Grow arrays to the capacity that the other arrays require."""
         touching = can_collide(arrays, contact_arrays)
         soft_bodies = len(contact_arrays.soft.bodies)
         if touching:
@@ -119,7 +119,7 @@ class DeviceWorkspace(Workspace):
         if touching or soft_bodies or contact_arrays.user_count > 0 or can_sleep(arrays):
             super().fit(arrays, contact_arrays)
         else:
-            # Nothing ties bodies together, and there are no rows over two of them.
+            # Bodies cannot interact, so there are no constraint rows over two of them.
             self.scratch.reserve(arrays.used)
             self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, 0))
         extent = Extent(
@@ -142,7 +142,7 @@ class DeviceWorkspace(Workspace):
         return super().bind({**shared, "settings": self._device.numbers(shared["settings"])})
 
     def _make_work(self, extent: Extent) -> None:
-        """Make room for islands and pairs. That is not kept, and goes before there is other."""
+        """Allocate the workspace of islands and pairs; the old one is freed first, without a copy."""
         before = self._on_device.arrays.get("run")
         self._on_device.arrays.clear()
         shapes = {"work": _island_work(extent), "pair_work": _pair_work(extent)}
@@ -156,7 +156,7 @@ class DeviceWorkspace(Workspace):
 
 
 def _island_work(extent: Extent) -> dict[str, tuple[int, ...]]:
-    """Shapes of the workspace of islands that are solved side by side."""
+    """Shapes of the workspace of islands that are solved in parallel."""
     trees = (extent.worlds, max(1, extent.trees))
     # An island writes the terms of at most four contacts at a time.
     terms = (extent.worlds, max(1, min(4 * extent.trees, extent.contacts)))
@@ -164,7 +164,7 @@ def _island_work(extent: Extent) -> dict[str, tuple[int, ...]]:
 
 
 def _pair_work(extent: Extent) -> dict[str, tuple[int, ...]]:
-    """Shapes of the room for looking for contacts in pairs side by side."""
+    """Shapes of the workspace of the narrow phase, which handles pairs in parallel."""
     room = scratch_capacity(extent.shapes, extent.contacts)
     room["candidates"] = room["candidate"]
     shapes: dict[str, tuple[int, ...]] = {

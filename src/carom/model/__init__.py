@@ -1,1 +1,1 @@
-"""Descriptions become bodies, and bodies the flat arrays that kernels work on."""
+"""Conversion of descriptions to bodies, and of bodies to the flat arrays that kernels work on."""

@@ -1,4 +1,4 @@
-"""A robot becomes a body: link order, loading flags, inertias."""
+"""Conversion of a robot to a body: link order, loading flags, inertias."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def assemble(
     fixed_base: bool = False,
     compound_margin: float = MARGIN,
 ) -> BodySpec:
-    """Flattens a robot for the engine.
+    """Convert a robot to a body for the engine.
 
     Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in
-    the order of the file, save that a link never comes before the one that carries it.
+    the order of the file, except that a link never comes before its parent.
 
     Args:
-        robot: What to build.
+        robot: The robot.
         flags: Loading options.
         fixed_base: The base does not move: its mass becomes zero.
         compound_margin: `LinkSpec.compound_margin` of every link [m].
@@ -100,9 +100,9 @@ def _link_spec(
 
 
 def _attach(spec: LinkSpec, node: TreeNode, parent: int) -> None:
-    """Fills in the joint of a link."""
+    """Write the parent and the joint of a link."""
     joint = node.joint
-    assert joint is not None, "every node but the root hangs on a joint"
+    assert joint is not None, "every node except the root has a joint"
     spec.parent = parent
     spec.joint_name = joint.name
     spec.joint_type = _simulated_type(joint)

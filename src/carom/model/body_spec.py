@@ -1,7 +1,7 @@
 """A body ready for the engine: a robot flattened into the link order and frames of the solver.
 
 `carom.model.assemble` makes one from a `Robot` and the loading options; `carom.model.builder`
-appends it to the flat arrays of a `Model`. It is what the information getters read.
+appends it to the flat arrays of a `Model`. Functions that report on bodies read it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ DEFAULT_CONTACT = ContactParameters()
 
 @record(frozen=False)
 class LinkSpec:
-    """One link and the joint that carries it.
+    """A link and its parent joint.
 
     Attributes:
         name: Link name.
@@ -43,11 +43,11 @@ class LinkSpec:
         twist: Twist limit of a spherical joint [rad]; negative means none.
         damping: Viscous joint damping [N m s/rad or N s/m].
         friction: Joint friction the file states; not simulated.
-        collisions: Shapes that touch, in the link frame.
-        visuals: Shapes that are seen, in the link frame.
+        collisions: Collision shapes, with poses in the link frame.
+        visuals: Visual shapes, with poses in the link frame.
         compound_margin: Distance by which the bounds of several shapes, or of one that is not in the
             inertial frame, are widened [m].
-        contact: How the link touches.
+        contact: Contact parameters of the link.
         mimic: The joint this one follows, as the file states it; not simulated.
         user_data: Key and value pairs stated by the file for the link.
     """

@@ -1,4 +1,4 @@
-"""Axis-aligned bounds of collision shapes, margins included, as PyBullet's inertias come from them."""
+"""Axis-aligned bounds of collision shapes, margins included; PyBullet computes inertias from them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _HULL_GRID = 10216
 """Vertices of hulls from STL and DAE files lie on a grid of this many cells across their bounds."""
 
 _UNBOUNDED = 1e30
-"""Half extent that stands for the infinite one of a plane [m]."""
+"""Half extent of planes [m]; large enough to represent an infinite one."""
 
 
 def turned_box(
@@ -84,7 +84,7 @@ class Bounds(NamedTuple):
         return Bounds(*turned_box(self.center, self.half, rotation, position))
 
     def joined(self, other: Bounds) -> Bounds:
-        """Bounds of both boxes."""
+        """The bounding box of both boxes."""
         low = [
             min(a - h, b - k)
             for a, h, b, k in zip(self.center, self.half, other.center, other.half, strict=True)
@@ -99,7 +99,7 @@ class Bounds(NamedTuple):
 def placed_bounds(
     geometry: Geometry, rotation: Matrix3, position: Vector3, *, implicit_cylinder: bool
 ) -> Bounds:
-    """Bounds of a shape after rotation and translation; except for balls and planes, of its rotated box.
+    """Bounds of a shape after rotation and translation: of its rotated box, except for spheres and planes.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
@@ -111,9 +111,9 @@ def placed_bounds(
 
 
 def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:
-    """Bounds of a shape in its own frame, as its own margin widens them.
+    """Bounds of a shape in its own frame, widened by its own margin.
 
-    A hull counts its margin twice: once in the bounds of its points and once around them.
+    The margin of a hull counts twice: once in the bounds of its points and once around them.
 
     Args:
         geometry: The shape.
@@ -193,7 +193,7 @@ def _scaled_corners(vertices: np.ndarray, scale: Vector3) -> tuple[Vector3, Vect
 
 
 def _on_hull_grid(low: float, high: float) -> tuple[float, float]:
-    """The ends of a hull along one axis after they are cut to the grid on which PyBullet builds it."""
+    """The ends of a hull along one axis, truncated to the grid on which PyBullet builds it."""
     cell = (high - low) * (1.0 / _HULL_GRID)
     per_cell = 1.0 / cell if cell != 0.0 else 0.0
     middle = (low + high) * 0.5

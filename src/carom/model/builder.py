@@ -1,4 +1,4 @@
-"""From `BodySpec` to rows of the flat arrays, and back out again."""
+"""Writing bodies (`BodySpec`) to rows of the flat arrays, and removing these rows."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ DEFAULT_MOTOR_IMPULSE = 1.0
 DEFAULT_SPHERICAL_MOTOR_IMPULSE = 1000.0
 DEFAULT_SPHERICAL_MOTOR_GAIN = 0.2
 
-# Which axis the values of a model field count on; they move when rows of that axis are deleted.
+# Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
 _INDEX_FIELDS = {
     "tree_first_link": "link",
     "tree_first_position": "position",
@@ -59,7 +59,7 @@ _INDEX_FIELDS = {
 
 @record(frozen=False)
 class TreeRows:
-    """Where a body is in the flat arrays."""
+    """The rows of a body in the flat arrays."""
 
     tree: int
     first: dict[str, int] = field(default_factory=dict)
@@ -78,7 +78,7 @@ class WorldArrays:
         )
 
     def repeated(self, world_count: int) -> WorldArrays:
-        """The arrays of so many worlds, all like the first; they share its parameters."""
+        """Arrays for `world_count` worlds, all copies of the first; they share its parameters."""
         other = WorldArrays.__new__(WorldArrays)
         other.world_count = world_count
         other.used = self.used.copy()
@@ -105,7 +105,7 @@ class WorldArrays:
             base_pose: World pose of the base's inertial frame.
 
         Returns:
-            Where it is.
+            Its rows.
         """
         codes = [JOINT_CODE[link.joint_type] for link in spec.links]
         joint_dofs = sum(DOF_COUNT[code] for code in codes)
@@ -209,7 +209,7 @@ class WorldArrays:
         model["link_dof_count"][rows.first["link"]] = BASE_VELOCITIES if free else 0
 
     def _link_dofs(self, rows: TreeRows, base_dof: int) -> None:
-        """Note for each link the last of the dofs that move it."""
+        """Record for each link the last of the dofs that move it."""
         model = self.model.numpy
         first = rows.first["link"]
         nearest = model["link_nearest_dof"]
@@ -230,7 +230,7 @@ class WorldArrays:
         to_inertial = conjugate(link.inertial_frame.orientation)
         from_parent_com = subtracted(link.joint_frame.position, parent.inertial_frame.position)
         axis = rotate(to_inertial, link.joint_axis)
-        # An axis that is not of unit length scales the joint's rate, not the angle it turns by.
+        # The length of an axis scales the joint's velocity, not its angle.
         rate = link.joint_axis_length
         model["link_joint_rotation"][row] = multiplied(
             multiplied(to_parent_inertial, link.joint_frame.orientation), link.inertial_frame.orientation
@@ -252,7 +252,7 @@ class WorldArrays:
             model["link_planar_axis2"][row] = np.cross(axis1, normal)
 
     def _reset_motor(self, dof: int, code: JointCode) -> None:
-        """The motor each joint starts with: it holds its velocity at zero."""
+        """Write the initial motor of a dof: its target velocity is zero."""
         spherical = code == JointCode.SPHERICAL
         motor = self.state.numpy["dof_motor"][:, dof]
         motor[:] = 0.0
@@ -263,7 +263,7 @@ class WorldArrays:
         motor[:, MOTOR_DAMPING] = 1.0
 
     def _reset_spherical(self, row: int, position: int) -> None:
-        """A spherical joint starts, and its motor aims, at no rotation."""
+        """Set the position of a spherical joint, and the target of its motor, to no rotation."""
         dof = self.model.numpy["link_first_dof"][row]
         self.state.numpy["dof_motor"][:, dof, MOTOR_TARGET_W] = 1.0
         self.state.numpy["position"][:, position + 3] = 1.0
@@ -274,7 +274,7 @@ class WorldArrays:
         start[:] = (*base_pose.position, *base_pose.orientation)
 
     def way_back(self) -> Callable[[], None]:
-        """What takes away all bodies that are appended from now on."""
+        """A function that removes all bodies that are appended from now on."""
         return partial(self._shorten, self.used.copy())
 
     def _shorten(self, used: dict[str, int]) -> None:
@@ -287,10 +287,10 @@ class WorldArrays:
 
         Args:
             rows: Its rows.
-            others: Those of all others; where they are behind it they move up.
+            others: Rows of all other bodies; those after it move up.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes them; it can be called again if it was interrupted.
         """
         cuts = {axis: (rows.first[axis], count) for axis, count in rows.count.items() if count}
         remove_model = self.model.removal(cuts, self.used, _INDEX_FIELDS)
@@ -312,5 +312,5 @@ class WorldArrays:
         return remove
 
     def structs(self) -> dict[str, Any]:
-        """Warp structs over the present arrays, by the name kernels give them."""
+        """C structs whose fields are views of the present arrays, by the names of kernel arguments."""
         return {"model": self.model.struct(), "state": self.state.struct()}

@@ -1,4 +1,4 @@
-"""From a file to bodies and their poses."""
+"""Loading bodies and their poses from files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ PlacedBody = tuple[BodySpec, Pose]
 
 
 def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedBody]:
-    """The bodies of an SDF file, in its order; raises `DescriptionError`."""
+    """The bodies of an SDF file, in the order of the file; raises `DescriptionError`."""
     from carom.formats.sdf import read_sdf
 
     robots = read_sdf(path, scale=scale, search=search)
@@ -32,7 +32,7 @@ def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedB
 
 
 def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool = True) -> list[PlacedBody]:
-    """The bodies of an MJCF file, in its order; raises `DescriptionError`.
+    """The bodies of an MJCF file, in the order of the file; raises `DescriptionError`.
 
     Args:
         path: The file.
@@ -59,7 +59,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:
-    """Prepare the shapes for collision detection now, so that errors are raised now.
+    """Prepare all shapes for collision detection early, so that errors are raised before bodies are added.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

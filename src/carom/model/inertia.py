@@ -40,7 +40,7 @@ from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_end
 _log = Logger(__name__)
 
 TWELFTH = 0.08333333
-"""The twelfth PyBullet uses for capsules and hulls, so that figures agree to the last digit."""
+"""1/12 as PyBullet writes it for capsules and hulls, so that results agree to the last digit."""
 
 _IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
 
@@ -57,8 +57,8 @@ def inertia_from_shapes(
 ) -> Vector3:
     """Moments of inertia about the axes of the inertial frame, from the collision shapes.
 
-    A single shape that lies exactly in the inertial frame counts by itself; anything else, nothing at all
-    included, counts as the box that bounds it, widened by a margin.
+    A single shape that lies exactly in the inertial frame has its own moments. In all other cases, also
+    without shapes, the moments are those of the bounding box of all shapes, widened by a margin.
 
     Args:
         mass: [kg].
@@ -82,13 +82,13 @@ def inertia_from_shapes(
 
 
 class MassTerm(NamedTuple):
-    """A moment of inertia by mass: the mass over a divisor times each factor, in this order.
+    """A moment of inertia as a function of mass: mass / divisor, times each factor in this order.
 
-    What is divided and what is multiplied decides the last digit.
+    The order of divisions and multiplications affects the last digit.
 
     Attributes:
-        divisor: Of the mass.
-        factors: Their product with the mass over the divisor is the moment; its unit is m².
+        divisor: Divisor of the mass.
+        factors: Factors of mass / divisor; the unit of their product is m².
     """
 
     divisor: float
@@ -119,7 +119,7 @@ def mass_terms(
     implicit_cylinder: bool,
     compound_margin: float = MARGIN,
 ) -> MassTerms:
-    """How the moments of `inertia_from_shapes`, which has the same arguments, depend on the mass.
+    """The moments of `inertia_from_shapes`, which has the same arguments, as functions of the mass.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
@@ -145,7 +145,7 @@ def link_bounds(
         collisions: Shapes in the link frame.
         inertial_frame: Inertial frame in the link frame.
         implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
-        compound_margin: Widens the bounds of anything but a single shape in the inertial frame [m].
+        compound_margin: Widens the bounds, except those of a single shape exactly in the inertial frame [m].
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
@@ -179,9 +179,9 @@ def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
 def collision_margin(
     collisions: Sequence[Collision], inertial_frame: Pose, compound_margin: float = MARGIN
 ) -> float:
-    """Distance by which a link's collision shape is thought to be rounded [m].
+    """Collision margin of a link's shapes [m].
 
-    A single sphere or capsule that lies exactly in the inertial frame is all margin: its radius.
+    That of a single sphere or capsule exactly in the inertial frame is its radius.
     """
     if not is_in_place(collisions, inertial_frame):
         return compound_margin
@@ -200,8 +200,8 @@ def collision_margin(
 def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
     """Rotation and position of a shape in the inertial frame.
 
-    The order of operations decides whether a shape given the very pose of the inertial frame comes out
-    exactly at its origin, and thereby which rule its inertia follows.
+    The order of operations matters: it decides whether a shape with the same pose as the inertial frame is
+    placed exactly at its origin, and so which rule its inertia follows.
     """
     if inertial_frame == IDENTITY:
         return rotation_matrix(shape_frame.orientation), shape_frame.position
@@ -213,7 +213,7 @@ def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3
 
 
 def _shape_terms(geometry: Geometry, implicit_cylinder: bool) -> MassTerms:
-    """Moments of one shape about the axes of its own frame."""
+    """Terms of the moments of one shape about the axes of its own frame."""
     match geometry:
         case Sphere(radius):
             ball = MassTerm(1.0, (0.4, radius, radius)), _NO_TERM
@@ -257,8 +257,8 @@ def _squares(bounds: Bounds) -> Vector3:
 def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose]:
     """Principal moments from the tensor of a link, and the inertial frame rotated to its principal axes.
 
-    A tensor no body can have (a negative moment, or one larger than the sum of the others) counts as zero,
-    with a warning.
+    An impossible tensor (a negative moment, or one larger than the sum of the others) counts as zero, with a
+    warning.
 
     Returns:
         Moments [kg m²] along the axes of the returned frame, and that frame in the link frame.
@@ -281,14 +281,14 @@ def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose
 def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vector3, Matrix3]:
     """Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi rotations.
 
-    Each rotation clears the largest entry off the diagonal. The order of the eigenvalues is the one in
-    which they appear on the diagonal, and the eigenvectors make a rotation, not a reflection.
+    Each rotation makes the largest off-diagonal entry zero. The eigenvalues are in the order in which they
+    appear on the diagonal, and the matrix of eigenvectors is a rotation, not a reflection.
 
     Args:
         tensor: The matrix.
-        threshold: Once the largest entry is below this fraction of the trace of magnitudes, one more
-            rotation is made and the work is done.
-        most_steps: Most rotations made.
+        threshold: Once the largest off-diagonal entry is at most this fraction of the sum of magnitudes on
+            the diagonal, one last rotation is made.
+        most_steps: Maximum number of rotations.
 
     Returns:
         The eigenvalues, and a matrix with the eigenvectors as columns.

@@ -1,4 +1,4 @@
-"""URDF_MERGE_FIXED_LINKS: what hangs on fixed joints becomes part of the link that carries it."""
+"""URDF_MERGE_FIXED_LINKS: merging links on fixed joints into their parents."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from carom.model.tree import TreeNode
 def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
     """Merges every link on a fixed joint into its parent, in place, and renumbers the nodes.
 
-    All of it follows PyBullet, so that masses and link order agree. Shapes move over; contact parameters of
-    merged links are lost. Inertial frames of the file are lost too: masses are joined as if each centre of
-    mass lay at the origin of its link, and tensors are added as if all links were parallel. The last child
+    The rules are PyBullet's, so that masses and link order agree. The parent takes over the shapes, but not
+    the contact parameters. Inertial frames in the file are ignored: masses are added as if each centre of
+    mass lay at the origin of its link, and tensors as if the axes of all links were parallel. The last child
     takes the place of a merged one.
 
     Args:

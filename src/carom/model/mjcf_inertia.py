@@ -1,4 +1,4 @@
-"""Rotational inertia as PyBullet finds it for the links of MJCF files."""
+"""Rotational inertia as PyBullet computes it for the links of MJCF files."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_end
 
 
 def set_mjcf_inertias(body: BodySpec) -> None:
-    """Gives the links of a body the inertias that PyBullet finds for shapes of MJCF files.
+    """Set the inertias of a body's links to those that PyBullet computes for MJCF files.
 
-    Cylinders are exact there, shapes together have no margin, and capsules given by their ends are swept
-    spheres, which do.
+    There cylinders are exact, compounds have no margin, and capsules given by their ends are swept spheres,
+    which have a margin.
 
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.
@@ -59,7 +59,7 @@ def _is_stl(collision: Collision) -> bool:
 
 
 def _stl_bounds(collision: Collision) -> Bounds:
-    """Bounds of the hull of an STL file: PyBullet sets its margin too late for the first of two uses."""
+    """Bounds of the hull of an STL file: PyBullet sets its margin only after the first of two uses."""
     geometry = collision.geometry
     assert isinstance(geometry, Mesh), "only meshes come from STL files"
     return vertex_bounds(geometry).grown(FIRST_MARGIN).grown(MARGIN)

@@ -1,4 +1,4 @@
-"""A body's tree as text, for URDF_PRINT_URDF_INFO and for people."""
+"""A body's tree of links as readable text, for URDF_PRINT_URDF_INFO."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from carom.model.body_spec import BASE, BodySpec
 
 
 def outline(body: BodySpec) -> str:
-    """One line a link, indented by its depth: name, mass, joint and kind of joint."""
+    """One line for each link, indented by its depth: name, mass, type and name of the joint."""
     depth = {BASE: 0}
     children: dict[int, list[int]] = {}
     for index, link in enumerate(body.links):

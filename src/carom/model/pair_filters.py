@@ -1,4 +1,4 @@
-"""Pairs of links whose collisions users switched on or off."""
+"""Pairs of links whose collisions the user has enabled or disabled."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _FIELDS = ("filter_link_a", "filter_link_b", "filter_enabled")
 
 
 class PairFilters:
-    """Rules for pairs of links, in the `filter_` fields of `Shapes`, sorted.
+    """Rules for pairs of links, kept sorted in the `filter_` fields of `Shapes`.
 
     Args:
-        table: Where those fields are.
+        table: The table that has these fields.
     """
 
     def __init__(self, table: ArrayTable) -> None:
@@ -31,7 +31,7 @@ class PairFilters:
 
     @property
     def all(self) -> list[tuple[int, int, bool]]:
-        """Rows of two links, and whether they collide, of every rule."""
+        """All rules: the rows of both links, and whether they collide."""
         enabled = self._table.numpy["filter_enabled"]
         return [(a, b, bool(enabled[row])) for row, (a, b) in enumerate(self._pairs)]
 
@@ -41,7 +41,7 @@ class PairFilters:
         Args:
             link_a: Row of a link.
             link_b: Row of the other.
-            enabled: They collide.
+            enabled: Whether they collide.
 
         Returns:
             Whether arrays were replaced.
@@ -71,7 +71,7 @@ class PairFilters:
         """Prepare to drop the rules of removed links; later links move up.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that drops them; it can be called again if it was interrupted.
         """
         after = first + count
         kept, enabled = [], []
@@ -89,5 +89,5 @@ class PairFilters:
             rows = self._table.numpy[name]
             rows[: len(pairs)] = column
             rows[len(pairs) :] = 0
-        # Last, so that what was broken off is done again.
+        # Assigned last, so that a call after an interruption repeats everything.
         self._pairs = pairs.copy()

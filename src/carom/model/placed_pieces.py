@@ -24,12 +24,12 @@ AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 
 @record
 class PlacedPiece:
-    """A piece and where it is.
+    """A piece and its pose.
 
     Attributes:
         piece: The piece.
         pose: Its frame in the inertial frame of its link: (x, y, z, qx, qy, qz, qw).
-        link: Place of the link in its body, the base being 0.
+        link: Index of the link in its body; the base is 0.
     """
 
     piece: ShapePiece
@@ -38,7 +38,7 @@ class PlacedPiece:
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
-    """The pieces of all shapes of a link, which is the `index`-th of its body."""
+    """The pieces of all collision shapes of a link with this index in its body; the base is 0."""
     placed = []
     for collision in link.collisions:
         rotation, position = placement(link.inertial_frame, collision.frame)
@@ -66,7 +66,7 @@ def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
 
 
 def has_own_margin(link: LinkSpec) -> bool:
-    """Whether the margin of a link is that of its one shape, and not that of a compound."""
+    """Whether the margin of a link is that of its only shape, and not that of a compound."""
     if not is_in_place(link.collisions, link.inertial_frame) or is_swept(link.collisions[0]):
         return False
     match link.collisions[0].geometry:
@@ -76,5 +76,5 @@ def has_own_margin(link: LinkSpec) -> bool:
 
 
 def reach(bounds: Bounds) -> float:
-    """Radius of the ball around the bounds, plus the distance of their centre."""
+    """Radius of the bounds' enclosing sphere, plus the distance of their centre from the origin [m]."""
     return sqrt(sum(half * half for half in bounds.half)) + sqrt(sum(c * c for c in bounds.center))

@@ -1,4 +1,4 @@
-"""Shapes made larger or smaller along the axes of a body."""
+"""Scaling of collision shapes along the axes of a body."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from carom.description.transform import compose, inverse
 def scaled_collisions(
     collisions: Sequence[Collision], inertial_frame: Pose, factors: Vector3
 ) -> tuple[Collision, ...]:
-    """Collision shapes by Bullet's rule for `setLocalScaling`.
+    """Collision shapes scaled by the rules of Bullet's `setLocalScaling`.
 
-    Places are scaled along the axes of the inertial frame, shapes along their own: balls by the factor of
-    x, capsules by those of y and z. Planes stay as they are.
+    Positions are scaled along the axes of the inertial frame, shapes along their own axes: spheres by the
+    factor for x, capsules by those for y (radius) and z (length). Planes are not scaled.
 
     Args:
-        collisions: The shapes, in the link frame.
-        inertial_frame: In the link frame.
-        factors: Along x, y and z, greater than 0.
+        collisions: The shapes, with poses in the link frame.
+        inertial_frame: Inertial frame in the link frame.
+        factors: Factors along x, y and z, greater than 0.
 
     Raises:
-        ValueError: A shape cannot be scaled so: a cylinder would not stay round, or it is of another kind.
+        ValueError: A cylinder would not stay round, or a kind of shape cannot be scaled.
     """
     scaled = []
     for collision in collisions:

@@ -1,4 +1,4 @@
-"""From the collision shapes of bodies to the rows of `Shapes`, and back out again."""
+"""Writing the collision shapes of bodies to rows of `Shapes`, and removing these rows."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ MOVING_GROUP, MOVING_MASK = 1, -1
 FIXED_GROUP, FIXED_MASK = 2, -1 ^ 2
 
 BREAKING_FRACTION = 0.02
-"""Distance at which a contact is given up, relative to the reach of the smaller shape."""
+"""Breaking distance of a contact, relative to the reach of the smaller shape."""
 
-# Which axis the values of a field count on; they move when rows of that axis are deleted.
+# Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
 _INDEX_FIELDS = {
     "shape_link": "link",
     "shape_tree": "tree",
@@ -39,7 +39,7 @@ _INDEX_FIELDS = {
     "link_first_shape": "shape",
 }
 
-# Where each attribute of a surface is kept.
+# The field of `Shapes` in which each attribute of a `Surface` is kept.
 SURFACE_FIELDS = {
     "lateral_friction": "link_lateral_friction",
     "rolling_friction": "link_rolling_friction",
@@ -56,7 +56,7 @@ SURFACE_FIELDS = {
 
 
 class Surface(Protocol):
-    """How a link touches; `carom.scene.link_dynamics.LinkDynamics` is one."""
+    """Contact parameters of a link; `carom.scene.link_dynamics.LinkDynamics` implements it."""
 
     lateral_friction: float
     rolling_friction: float
@@ -73,14 +73,14 @@ class Surface(Protocol):
 
 @record(frozen=False, eq=False)
 class BodyShapes:
-    """Where the shapes of a body are.
+    """The rows of a body's shapes.
 
     Attributes:
         rows: Rows of its tree, which are updated elsewhere.
         first: First row on each axis of shapes.
         count: Rows on each axis of shapes.
         bounds: Bounds of each link, the base first, along the axes of its inertial frame.
-        own_margin: For each link, whether its margin is that of its one shape.
+        own_margin: For each link, whether its margin is that of its only shape, not that of a compound.
     """
 
     rows: TreeRows
@@ -99,7 +99,7 @@ class ShapeArrays:
         used: Rows in use, by axis.
         breaking_fraction: See `BREAKING_FRACTION`.
         changes: Number of times that the bounds of a shape have changed in its link.
-        looks_ahead: Whether some shape has ever had a swept sphere, for continuous detection.
+        looks_ahead: Whether any shape has ever had a swept sphere for continuous collision detection.
     """
 
     def __init__(self) -> None:
@@ -131,7 +131,7 @@ class ShapeArrays:
         return self.table.reserve(needed)
 
     def struct(self) -> Any:
-        """A Warp struct whose fields are views of the arrays."""
+        """A C struct whose fields are views of the arrays."""
         return self.table.struct()
 
     def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> bool:
@@ -139,8 +139,8 @@ class ShapeArrays:
 
         Args:
             spec: The body.
-            rows: Where its tree is; kept, and read again whenever the body is changed.
-            surfaces: How its links touch, the base first.
+            rows: Rows of its tree; this object is kept, and read again whenever the body changes.
+            surfaces: Contact parameters of its links, the base first.
 
         Returns:
             Whether arrays were replaced.
@@ -216,7 +216,7 @@ class ShapeArrays:
             at["shape"] += 1
 
     def _write_polyhedron(self, piece: ShapePiece, row: int, at: dict[str, int]) -> None:
-        """Write a piece's vertices, faces and nodes from the rows `at`, and move those on."""
+        """Write a piece's vertices, faces and nodes, starting at the rows `at`, and advance these."""
         numpy = self.table.numpy
         polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
         if polyhedron is None:
@@ -238,7 +238,7 @@ class ShapeArrays:
             at[axis] += counts[axis]
 
     def way_back(self) -> Callable[[], None]:
-        """What takes away the shapes of all bodies that are appended from now on, and rules for them."""
+        """A function that removes the shapes of all bodies appended from now on, and restores the rules."""
         used, bodies, looks_ahead = self.used.copy(), len(self._bodies), self.looks_ahead
         forget_rules = self.filters.way_back()
 
@@ -256,7 +256,7 @@ class ShapeArrays:
         """Prepare to remove a body's shapes, while its tree's rows are still present.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes them; it can be called again if it was interrupted.
         """
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]
@@ -288,7 +288,7 @@ class ShapeArrays:
         return remove
 
     def write_surface(self, link_row: int, surface: Surface, names: Iterable[str] | None = None) -> None:
-        """Take over how a link touches, or of all that has changed, by name, what matters for it."""
+        """Write the contact parameters of a link, or only those among `names`; ignores other names."""
         numpy = self.table.numpy
         for name in SURFACE_FIELDS if names is None else names:
             field = SURFACE_FIELDS.get(name)
@@ -307,7 +307,7 @@ class ShapeArrays:
             numpy[field][self._shapes_of(link_row)] = getattr(surface, name)
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
-        """Put a link in the group of fixed bases, which do not touch each other, or of the rest."""
+        """Put a link in the group of fixed bases, which do not collide with each other, or of the rest."""
         numpy = self.table.numpy
         numpy["link_group"][link_row] = FIXED_GROUP if fixed else MOVING_GROUP
         numpy["link_mask"][link_row] = FIXED_MASK if fixed else MOVING_MASK
@@ -318,7 +318,7 @@ class ShapeArrays:
         self.table.numpy["link_mask"][link_row] = _as_int32(mask)
 
     def set_breaking_fraction(self, fraction: float) -> None:
-        """Set the distance at which contacts are given up, relative to the reach of a link's shapes."""
+        """Set the breaking distance of contacts, relative to the reach of a link's shapes."""
         if fraction == self.breaking_fraction:
             return
         self.breaking_fraction = fraction
@@ -341,7 +341,7 @@ class ShapeArrays:
             implicit_cylinder: Cylinders are exact.
 
         Raises:
-            ValueError: There would not be as many rows; nothing has changed.
+            ValueError: The number of rows or a kind of shape would change; nothing has changed.
         """
         body, link = self._body_of(link_row)
         shapes = self._shapes_of(link_row)
@@ -349,7 +349,9 @@ class ShapeArrays:
         if len(pieces) != shapes.stop - shapes.start or not all(
             self._fits(placed.piece, row) for row, placed in enumerate(pieces, start=shapes.start)
         ):
-            raise ValueError("its hull would have another number of corners")
+            raise ValueError(
+                "its shapes would be of another kind, or have another number of parts or corners"
+            )
         self.changes += 1
         body.bounds[link] = link_bounds(
             spec.collisions,
@@ -373,7 +375,7 @@ class ShapeArrays:
             self._write_polyhedron(placed.piece, row, at)
 
     def _fits(self, piece: ShapePiece, row: int) -> bool:
-        """Whether a piece is of the kind, and has the room, of the one in a row."""
+        """Whether a piece has the same kind and the same numbers of rows as the piece in a row."""
         numpy = self.table.numpy
         counts = row_counts([piece])
         if numpy["shape_kind"][row] != piece.kind:
@@ -393,7 +395,7 @@ class ShapeArrays:
         return slice(first, first + int(self.table.numpy["link_shape_count"][link_row]))
 
     def _body_of(self, link_row: int) -> tuple[BodyShapes, int]:
-        """The body a link belongs to, and the link's place in it, the base being 0."""
+        """The body a link belongs to, and the index of the link in it; the base is 0."""
         body = self._bodies.get(link_row)
         if body is not None:
             return body, 0
@@ -402,5 +404,5 @@ class ShapeArrays:
 
 
 def _as_int32(bits: int) -> int:
-    """The bits of an integer as the kernels' signed integers have them."""
+    """The lowest 32 bits of an integer as a signed number, the type that kernels use."""
     return int(np.uint32(bits & 0xFFFFFFFF).astype(np.int32))

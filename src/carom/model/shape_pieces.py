@@ -1,4 +1,4 @@
-"""Collision shapes taken apart into what collision detection knows: `ShapePiece`."""
+"""Conversion of collision shapes to the pieces that collision detection supports: `ShapePiece`."""
 
 from __future__ import annotations
 
@@ -37,17 +37,16 @@ from carom.native.trigonometry import cos, sin
 from carom.record import record
 
 MOST_HULL_VERTICES = 512
-"""Hulls of finer meshes are simplified to so many vertices."""
+"""Most vertices of a hull; hulls of finer meshes are simplified."""
 
 HULL_TOLERANCE = 1e-4
-"""Points that lie outside a hull by less than this fraction of its size, half a step of the grid, are left
-out."""
+"""Points outside a hull by less than this fraction of its size (half a cell of the grid) are left out."""
 
 CYLINDER_SIDES = 32
-"""Sides of a cylinder that is a hull."""
+"""Number of sides of a cylinder that is represented by its hull."""
 
 GRID = 10216
-"""Steps of the grid over the width of a hull on which its corners lie."""
+"""Cells across a hull of the grid on which its vertices lie."""
 
 _CACHED = 256
 
@@ -59,17 +58,16 @@ class ShapePiece:
     """One convex shape, one triangle mesh or one height field.
 
     Attributes:
-        kind: Which.
-        size: What `ShapeKind` says.
-        margin: Bullet's collision margin [m]: the radius of a sphere or capsule; by this the edges of
-            boxes and cylinders are rounded off; so far outside its vertices lies the surface of a hull or
-            a mesh.
+        kind: The kind of shape.
+        size: Sizes [m], or the normal of a plane; `ShapeKind` lists them for each kind.
+        margin: Bullet's collision margin [m]: the radius of a sphere or capsule, the radius of the rounded
+            edges of a box or cylinder, or the distance of the surface of a hull or mesh from its vertices.
         center: Centre of the bounds in the shape frame; half their size is `size` for polyhedra.
         polyhedron: Vertices and faces, if it has any.
         columns: Points in one row of a height field.
         hierarchy: Boxes over the faces of a triangle mesh.
-        rolling: About which axis of the shape frame it is round.
-        flat_faces: Of a hull: so many of its faces, the first, are large enough to lie on.
+        rolling: The axis of the shape frame about which it can roll; see `Rolling`.
+        flat_faces: Number of faces of a hull that are large enough to lie on; they come first.
     """
 
     kind: ShapeKind
@@ -84,7 +82,7 @@ class ShapePiece:
 
 
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
-    """What collision detection makes of a shape; all pieces share the frame of the shape.
+    """The pieces of a shape for collision detection; all of them share the frame of the shape.
 
     Args:
         geometry: The shape.
@@ -166,11 +164,11 @@ def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
     try:
         hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MOST_HULL_VERTICES)
     except ValueError as problem:
-        # Points whose sizes differ by more than the digits of a number.
+        # The points are too far apart, or flat and so far apart that rounding removes the added thickness.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
     low, high = points.min(axis=0), points.max(axis=0)
     if (high - low).min() > SMALLEST:
-        # Coplanar points may not be coplanar on the grid, so faces are found before.
+        # Coplanar points may not be coplanar on the grid, so the faces are determined first.
         hull = hull.with_vertices(_on_grid(hull.vertices, low, high))
     return _polyhedral(ShapeKind.HULL, hull, MARGIN)
 
@@ -183,7 +181,7 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     if min(radius, length) < SMALLEST:
         return _hull_piece(points)
     points = _on_grid(points, points.min(axis=0), points.max(axis=0))
-    # Simplifying would take corners out of the rims.
+    # Made without `convex_hull`, which would leave out corners of the rims.
     sides = range(CYLINDER_SIDES)
     bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
     following = [*sides[1:], 0]
@@ -194,10 +192,11 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
 def _on_grid(
     points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Points (n, 3) with these bounds, drawn in to the grid that PyBullet makes hulls on.
+    """Points (n, 3) with these bounds, truncated to the grid on which PyBullet makes hulls.
 
-    Wheels roll from corner to corner; with each 1e-4 of the radius off, they would drift from PyBullet's.
-    The steps of the arithmetic are its, too, since an extreme point may lie on the grid or just below.
+    Wheels roll from corner to corner: with corners off by 1e-4 of the radius, they would drift from
+    PyBullet's. The order of operations is PyBullet's too: rounding decides whether an extreme point is on the
+    outermost grid line or on the one below.
     """
     step = (high - low) * (1.0 / GRID)
     middle = (low + high) * 0.5
@@ -224,7 +223,7 @@ def _heightfield_piece(geometry: Heightfield) -> ShapePiece:
 
 
 class _MeshGeometries:
-    """What mesh files hold, kept while the files stay the same."""
+    """A cache of the collision geometries of mesh files, valid while the files are unchanged."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[Mesh, tuple[list[MeshPart], tuple[MeshGeometry, ...]]] = OrderedDict()
@@ -233,7 +232,7 @@ class _MeshGeometries:
         """The hulls or triangles of a mesh."""
         parts = read_mesh(mesh.path)
         kept = self._kept.get(mesh)
-        # An unchanged file has the very same parts.
+        # For an unchanged file, `read_mesh` returns the same part objects.
         if kept is not None and all(a is b for a, b in zip(parts, kept[0], strict=False)):
             self._kept.move_to_end(mesh)
             return kept[1]

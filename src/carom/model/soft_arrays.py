@@ -1,4 +1,4 @@
-"""From what soft bodies are made of to the rows of `SoftModel`, and back out again."""
+"""Writing soft bodies to rows of `SoftModel`, and removing these rows."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from carom.native.tables import ArrayTable
 from carom.record import record
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
-# Which axis the values of a field count on; they move when rows of that axis are deleted.
+# Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
 _INDEX_FIELDS = {
     "soft_tree": "tree",
     "soft_first_node": "node",
@@ -33,10 +33,10 @@ _INDEX_FIELDS = {
 
 @record(frozen=False, eq=False)
 class SoftRows:
-    """Where a soft body is.
+    """The rows of a soft body.
 
     Attributes:
-        rows: Rows of the tree that stands for it, which are updated elsewhere.
+        rows: Rows of the tree that represents it, which are updated elsewhere.
         spec: Its specification.
         first: First row on each axis.
         count: Rows on each axis.
@@ -50,15 +50,15 @@ class SoftRows:
 
 @record(frozen=False, eq=False)
 class Anchor:
-    """A node that is held.
+    """A node that is attached to a link or to the world.
 
     Attributes:
         id: Its number among the constraints of the world.
         soft: The soft body.
-        node: Node of it, from 0.
-        body: Rows of the body that holds it; None for the world.
+        node: Index of the node in the soft body, from 0.
+        body: Rows of the body it is attached to; None for the world.
         link: Link of that body; -1 is the base.
-        pivot: Where on it, in the inertial frame of the link [m].
+        pivot: Point of attachment in the inertial frame of the link [m].
     """
 
     id: int
@@ -70,13 +70,13 @@ class Anchor:
 
 
 class SoftArrays:
-    """The soft bodies of a world, in step with the rows of the trees that stand for them.
+    """The soft bodies of a world, in step with the rows of the trees that represent them.
 
     Attributes:
         table: The arrays.
         used: Rows in use, by axis.
         bodies: The soft bodies in the order of their rows.
-        anchors: What holds their nodes, by number.
+        anchors: The anchors of their nodes, by number.
     """
 
     def __init__(self) -> None:
@@ -162,7 +162,7 @@ class SoftArrays:
                 numpy["node_inverse_mass"][anchor.soft.first["node"] + anchor.node] = 0.0
 
     def way_back(self) -> Callable[[], None]:
-        """What takes away all soft bodies and anchors that are added from now on."""
+        """A function that removes all soft bodies and anchors that are added from now on."""
         used, bodies, anchors = self.used.copy(), len(self.bodies), len(self.anchors)
 
         def go_back() -> None:
@@ -176,10 +176,10 @@ class SoftArrays:
         return go_back
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove what belongs to a body, soft or not, while its rows are still present.
+        """Prepare to remove the soft rows and anchors of a body, soft or not, while its tree still has rows.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes them; it can be called again if it was interrupted.
         """
         gone = next((soft for soft in self.bodies if soft.rows is rows), None)
         count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count
@@ -208,5 +208,5 @@ class SoftArrays:
         return remove
 
     def struct(self) -> Any:
-        """A struct whose fields are views of the arrays."""
+        """A C struct whose fields are views of the arrays."""
         return self.table.struct()

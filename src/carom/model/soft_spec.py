@@ -10,12 +10,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-# Rows of `SoftSpec.spring_terms`.
+# Columns of `SoftSpec.spring_terms`.
 LENGTH, STIFFNESS, DAMPING = 0, 1, 2
-# Thickness at most, relative to the shortest edge.
+# Largest thickness, relative to the shortest edge.
 _SHARE_OF_EDGE = 0.4
 SHORT = 1.0e-12
-"""Springs and edges shorter than this share of the size of the body have no length."""
+"""Springs and edges shorter than this fraction of the body's size count as having no length."""
 
 
 @record(frozen=False, eq=False)
@@ -25,7 +25,7 @@ class Skin:
     Attributes:
         nodes: (v, k) nodes that each vertex follows.
         weights: (v, k) weights, which add up to 1.
-        triangles: (t, 3) its vertices.
+        triangles: (t, 3) indices of its vertices.
     """
 
     nodes: NDArray[np.int32]
@@ -38,21 +38,21 @@ class SoftSpec:
     """Nodes, springs and tetrahedra.
 
     Attributes:
-        nodes: (n, 3) places at rest in the frame of the body [m].
+        nodes: (n, 3) rest positions in the frame of the body [m].
         masses: (n,) [kg].
         faces: (f, 3) nodes of the triangles of the surface, counter-clockwise from outside.
         springs: (s, 2) nodes of the springs.
-        spring_terms: (s, 3) length at rest [m], stiffness [N/m] and damping [N s/m] of each.
+        spring_terms: (s, 3) rest length [m], stiffness [N/m] and damping [N s/m] of each.
         tetras: (t, 4) nodes of the tetrahedra; their volumes are positive.
         mu: First Neo-Hookean parameter [Pa]; see `carom.kernels.soft.elasticity`.
         lam: Second one [Pa].
-        damping: Viscosity of the tetrahedra as a share of these [s].
+        damping: Viscosity of the tetrahedra divided by these parameters [s].
         damps_all_directions: Springs damp every relative motion of their ends, not only that along them.
         margin: Distance at which nodes rest on other surfaces [m].
         self_collision: Its nodes collide with its own faces.
-        gravity_factor: Share of the world's gravity that pulls it.
-        skin: The mesh that is seen in place of the faces, if there is one.
-        checkered: Its texture is that of floors until another is set.
+        gravity_factor: Factor on the world's gravity.
+        skin: The mesh that is drawn instead of the faces, if there is one.
+        checkered: It has the checkered texture of floors until another is set.
     """
 
     nodes: NDArray[np.float64]
@@ -79,9 +79,9 @@ class SoftSpec:
         return np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
 
     def thickness(self) -> float:
-        """Distance at which nodes of soft bodies are kept off its faces [m].
+        """Distance that nodes of soft bodies keep from its faces [m].
 
-        The margin; but less than what is between neighbouring nodes at rest, those in one place left out.
+        The margin, but at most a fraction of the shortest edge at rest; edges without length are ignored.
         """
         import numpy as np
 
@@ -94,10 +94,11 @@ class SoftSpec:
         return min(self.margin, _SHARE_OF_EDGE * float(apart.min())) if len(apart) else self.margin
 
     def frequencies(self) -> NDArray[np.float64]:
-        """(n,) bounds of the angular frequencies at which each node can vibrate [rad/s].
+        """(n,) upper bounds of the angular frequencies at which each node can vibrate [rad/s].
 
-        For springs by Gershgorin's theorem: twice the stiffness at a node by its mass. For tetrahedra, which
-        resist most to being stretched along one axis, likewise by the stiffness at each corner.
+        By Gershgorin's theorem, the square is at most twice the stiffness of all springs at a node divided by
+        its mass. Tetrahedra add their stiffness at each corner against stretching along one axis, where it
+        is largest.
         """
         import numpy as np
 

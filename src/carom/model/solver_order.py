@@ -1,9 +1,9 @@
 """The order in which the solver visits constraints.
 
-A Gauss-Seidel sweep that stops early depends on the order of its rows, so trajectories equal to
-Bullet's need Bullet's order. It keeps one list of all constraints in order of creation; removing
-one puts the last in its place. Before each step the list is sorted by island with a quicksort that
-does not keep the order of equals.
+The result of Gauss-Seidel sweeps that stop before convergence depends on the order of the rows, so
+trajectories equal to Bullet's need Bullet's order. Bullet keeps one list of all constraints in order of
+creation; when one is removed, the last takes its place. Before each step the list is sorted by island with a
+quicksort that is not stable.
 """
 
 from __future__ import annotations
@@ -72,24 +72,24 @@ def batch_islands(tags: Sequence[int], minimum_size: int) -> list[tuple[int, int
 
 
 class IslandTags:
-    """Numbers of the islands of bodies that touch nothing.
+    """Island numbers of bodies that touch nothing.
 
-    Bullet numbers its moving collision objects (one per link) in list order and names an island
-    after the number of its last link; removed objects are replaced by the last of the list.
+    Bullet numbers its moving collision objects (one per link) in list order. The number of an island is that
+    of its last link. When an object is removed, the last in the list takes its place.
     """
 
     def __init__(self) -> None:
         self._objects: list[tuple[Hashable, bool]] = []
-        # `tags`, once somebody has asked, until objects come or go.
+        # Cached result of `tags()`; None after objects or their order have changed.
         self._tags: dict[Hashable, int] | None = None
 
     @property
     def links(self) -> list[tuple[Hashable, int]]:
-        """Body and link, the base being 0, of every object in the order of the list."""
+        """Body and link (the base is 0) of every object, in the order of the list."""
         return [key for key, _ in self._objects]  # type: ignore[misc]
 
     def reorder(self, links: Sequence[tuple[Hashable, int]]) -> None:
-        """Put the objects in another order, given as `links` gives it.
+        """Put the objects in another order, given in the form of the property `links`.
 
         Raises:
             KeyError: There is no such link.
@@ -99,7 +99,7 @@ class IslandTags:
         self._tags = None
 
     def add(self, body: Hashable, moving: Sequence[bool]) -> None:
-        """Append the links of a body, base first; `moving` tells those that are not static."""
+        """Append the links of a body, base first; `moving` says which are not static."""
         self._tags = None
         self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))
 
@@ -115,11 +115,11 @@ class IslandTags:
         return go_back
 
     def remove(self, body: Hashable, link_count: int) -> None:
-        """Take out the links of a body, base first."""
+        """Remove the links of a body, base first."""
         self.removal(body, link_count)()
 
     def removal(self, body: Hashable, link_count: int) -> Callable[[], None]:
-        """Prepare to remove the links of a body; the function returned does it, and can be called again."""
+        """Prepare to remove the links of a body; the returned function removes them and can be repeated."""
         kept = self._objects.copy()
         index = {key: i for i, (key, _) in enumerate(kept)}
         for link in range(link_count):
@@ -136,7 +136,7 @@ class IslandTags:
         return remove
 
     def move_base_to_end(self, body: Hashable, moving: Sequence[bool]) -> None:
-        """Take the base of a body out and append it again; `moving` renews which links move."""
+        """Remove the base of a body and append it again; `moving` says which links move now."""
         objects = self._objects.copy()
         index = [key for key, _ in objects].index((body, 0))
         last = objects.pop()

@@ -1,7 +1,7 @@
-"""Capsules that an MJCF file gives by their ends: in PyBullet swept spheres in the frame of the ends.
+"""Capsules that an MJCF file gives by their ends: in PyBullet, swept spheres in the frame of the ends.
 
-They touch as capsules do, but their bounds lie along the axes of that frame and are 4 cm larger, and that
-frame decides whether such a shape is in place at the centre of mass.
+They collide like capsules, but their bounds are along the axes of that frame and 4 cm larger on each side,
+and that frame decides whether such a shape counts as lying exactly in the inertial frame.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from carom.description.transform import NO_ROTATION, compose, inverse, rotation_
 from carom.model.bounds import Bounds, shape_bounds
 
 FIRST_MARGIN = 0.04
-"""Margin of shapes that nobody gave another one [m]: swept spheres, and hulls while they are made."""
+"""Bullet's default margin [m], which swept spheres keep, and hulls have while they are made."""
 
 
 def is_swept(collision: Collision) -> bool:
@@ -22,7 +22,7 @@ def is_swept(collision: Collision) -> bool:
 
 
 def as_given(collision: Collision) -> Collision:
-    """A shape at its pose in the file; for a shape given by its ends, at those."""
+    """The shape with its pose in the file; that of a shape given by its ends is the frame of the ends."""
     return collision if collision.ends_frame is None else replace(collision, frame=collision.ends_frame)
 
 

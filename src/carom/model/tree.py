@@ -1,4 +1,4 @@
-"""A robot as a tree that can be walked and changed."""
+"""A robot as a tree of links that can be changed."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class TreeNode:
 
     Attributes:
         link: The link.
-        index: Its place in the file.
+        index: Its index in the file.
         joint: The joint to its parent; None for the root.
-        children: Nodes carried by it, in the order of their joints in the file.
+        children: Its children, in the order of their joints in the file.
     """
 
     link: Link
@@ -36,7 +36,7 @@ def make_tree(robot: Robot) -> TreeNode:
 
 
 def depth_first(root: TreeNode) -> list[TreeNode]:
-    """All nodes, each before its children, a whole branch before the next."""
+    """All nodes in depth-first order: each before its children, and each branch before the next."""
     order: list[TreeNode] = []
     pending = [root]
     while pending:
@@ -47,7 +47,7 @@ def depth_first(root: TreeNode) -> list[TreeNode]:
 
 
 def file_order(root: TreeNode) -> list[TreeNode]:
-    """All nodes in the order of the file, except that each comes after what carries it."""
+    """All nodes in the order of the file, except that each comes after its parent."""
     order: list[TreeNode] = []
     ready = [(root.index, root)]
     while ready:

@@ -1,1 +1,1 @@
-"""Queries of a world: rays, nearest points, overlaps, contacts."""
+"""Collision queries of a world: ray casts, nearest points, overlaps, contacts."""

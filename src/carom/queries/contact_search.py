@@ -1,4 +1,4 @@
-"""Reading contacts: the memory of queries and answers."""
+"""Contact queries: arrays of their arguments and results."""
 
 from __future__ import annotations
 
@@ -22,12 +22,13 @@ class ContactColumns(NamedTuple):
     """Contacts in columns, to be read before the next query.
 
     Attributes:
-        found: Number of them.
+        found: Number of contacts.
         columns: An iterable for each of: number of the first body, of the second body, link of the first
             body, of the second body (-1: the base), point on the first body, on the second body (in world
             axes [m]), normal on the second body towards the first, distance (negative: penetration [m]),
-            force along the normal, along a friction direction [N], that direction, force along another one,
-            that direction. After the last contact they go on.
+            normal force [N], force along the first friction direction [N], that direction, force along the
+            second friction direction [N], that direction. Only the first `found` entries are valid; the
+            iterables may be longer.
     """
 
     found: int
@@ -38,12 +39,12 @@ NO_CONTACTS = ContactColumns(0, ())
 
 
 class ContactSearch:
-    """The contacts of a world.
+    """Query the contacts of a world.
 
     Args:
-        structs: Warp structs by the name kernels give them, `places` among them.
+        structs: Structs by the names of kernel arguments, including `places`.
         contacts: The contacts.
-        quick: The record for quick calls, which gets the addresses of the arrays.
+        quick: The record for quick calls, in which the addresses of the arrays are set.
     """
 
     def __init__(self, structs: KernelStructs, contacts: ArrayTable, quick: QuickScene) -> None:
@@ -58,7 +59,7 @@ class ContactSearch:
     def __call__(
         self, count: int, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """Those of the `count` contacts that match the query.
+        """The contacts, among the first `count`, that match the query.
 
         For the arguments see `report_contacts_kernel`.
         """
@@ -77,7 +78,7 @@ class ContactSearch:
         )
 
     def _view(self) -> None:
-        """Take the memory of the present arrays."""
+        """Keep views of the memory of the present arrays."""
         arrays, memory = self._search.arrays.numpy, self._search.arrays.bytes_of
         self._found: memoryview[int] = arrays["report_count"].data
         self._indices: list[memoryview[int]] = [

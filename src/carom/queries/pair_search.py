@@ -1,4 +1,4 @@
-"""The nearest points of links: the memory of queries and answers."""
+"""Nearest-point queries between links: arrays of their arguments and results."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from carom.queries.quick_queries import tell_search
 
 _ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
 _INDEX = np.dtype(np.int32)
-# Maximum number of cached pairs of links: scripts query the same ones in each step.
+# Maximum number of cached queries; scripts query the same links in each step.
 _MOST_REMEMBERED = 64
 
 
 NearestPoints = tuple[int, int, Vector3, Vector3, Vector3, float]
-"""Rows of two links, point on the first one, on the second one (in world axes [m]), normal on the second one
-towards the first, distance (negative if they overlap)."""
+"""Rows of two links, point on the first link, on the second link (in world axes [m]), normal on the second
+link towards the first, distance [m] (negative if they overlap)."""
 
 
 class ShapePairs(NamedTuple):
     """All pairs of shapes of pairs of links.
 
     Attributes:
-        links: Rows of the links of each.
-        first: Rows of the shapes of the first links, as they are in memory.
-        second: The same of the second links.
+        links: Rows of the two links of each pair of shapes.
+        first: Rows of the shapes of the first links, as bytes of an int32 array.
+        second: Rows of the shapes of the second links, likewise.
     """
 
     links: list[tuple[int, int]]
@@ -45,12 +45,12 @@ class ShapePairs(NamedTuple):
 
 
 class PairSearch:
-    """The searches of a world.
+    """Find the nearest points of shapes of a world.
 
     Args:
-        structs: Warp structs by the name kernels give them.
+        structs: Structs by the names of kernel arguments.
         contact_arrays: The arrays of shapes.
-        quick: The record for quick calls, which gets the addresses of the arrays.
+        quick: The record for quick calls, in which the addresses of the arrays are set.
     """
 
     def __init__(self, structs: KernelStructs, contact_arrays: ContactArrays, quick: QuickScene) -> None:
@@ -68,7 +68,7 @@ class PairSearch:
         self._view()
 
     def shape_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:
-        """All pairs of a shape of one of some links, and of one of others."""
+        """All pairs of a shape of a link of `first` and a shape of a link of `second`."""
         known = self._remembered.get((first, second))
         if known is None:
             if len(self._remembered) >= _MOST_REMEMBERED:
@@ -77,7 +77,7 @@ class PairSearch:
         return known
 
     def __call__(self, pairs: ShapePairs, max_distance: float) -> list[NearestPoints]:
-        """The nearest points of pairs of shapes that are no farther apart than `max_distance` [m]."""
+        """The nearest points of those pairs of shapes whose distance is at most `max_distance` [m]."""
         count = len(pairs.links)
         if pairs is not self._asked:
             if count > self._search.room:
@@ -116,7 +116,7 @@ class PairSearch:
         return range(first, first + int(self._shapes["link_shape_count"][link]))
 
     def _view(self) -> None:
-        """Take the memory of the present arrays."""
+        """Keep views of the memory of the present arrays."""
         arrays, memory = self._search.arrays.numpy, self._search.arrays.bytes_of
         self._first, self._second = memory("search_first"), memory("search_second")
         self._count: memoryview[int] = arrays["search_count"][0].data

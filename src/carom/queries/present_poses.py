@@ -7,14 +7,14 @@ from carom.native.launch import KernelStructs
 
 
 class PresentPoses:
-    """A context in which `link_pose` is up to date with the coordinates of all bodies; it gives its memory.
+    """A context in which `link_pose` has the link poses for the present coordinates of all bodies.
 
-    Afterwards it is restored: after a step its rows are those of the start of the last substep, as getters
-    expect. Contexts may be nested.
+    On entry it returns the memory of `link_pose`. On exit it restores the former poses: after a step they are
+    those at the start of the last substep, as getters expect. Contexts may be nested.
 
     Args:
         poses: The memory of `link_pose`.
-        structs: Warp structs by the name kernels give them.
+        structs: Structs by the names of kernel arguments.
     """
 
     __slots__ = ("_before", "_find", "_poses")

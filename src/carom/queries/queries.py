@@ -31,25 +31,25 @@ if TYPE_CHECKING:
     from carom.queries.soft_bodies import SoftQueries
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
-# For shapes that have not been placed.
+# Value of `placement.changes` if no shapes have been placed.
 NEVER = -1
-# A distance that stands for none.
+# A distance that means unlimited [m].
 _FAR = 1e30
 
 
 class Queries:
-    """Launches of the collision queries of a world, over its present arrays.
+    """The collision queries of a world, as launches over its present arrays.
 
     Args:
-        structs: Structs by the name kernels give them.
+        structs: Structs by the names of kernel arguments.
         positions: The memory of the coordinates of all bodies.
         places: Body and link of each row of the link arrays.
         present_poses: `World.present_poses`.
         contact_arrays: The arrays of shapes.
-        pairs: Room for the intermediate results of collision detection.
+        pairs: Workspace of collision detection.
         state: The state of the world.
-        soft_work: Room for those of soft bodies.
-        quick: What builtins in the native library know of the world.
+        soft_work: Workspace of soft bodies.
+        quick: The record of addresses for quick calls.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class Queries:
             from carom.queries.soft_bodies import SoftQueries
 
             self._soft = SoftQueries(structs, contact_arrays, state, soft_work, places, present_poses)
-        # Quick calls do not handle soft bodies: in worlds with soft bodies they get no addresses.
+        # Quick calls do not handle soft bodies. In worlds with soft bodies, `quick` stays without addresses.
         self._quick = quick if self._soft is None else QuickScene()
         self._positions = positions
         self._present_poses = present_poses
@@ -84,7 +84,7 @@ class Queries:
         self._pairs = pairs.numpy
         self._counts = memoryview(pairs.numpy["count_pairs"][0])
         self._contact_counts = memoryview(contact_arrays.contacts.numpy["count_contacts"][0])
-        # The coordinates for which shapes were placed last; quick calls place them, too.
+        # The coordinates for which the shapes were last placed; quick calls write it, too.
         self._placed_at = bytearray(positions.nbytes)
         self._placement = self._quick.record.placement
         self._placement.changes = NEVER
@@ -111,7 +111,7 @@ class Queries:
 
     @cached_property
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Minimum and maximum corner of each shape, whether it has no bounds, and its link."""
+        """Minimum and maximum corner of each shape, whether it is unbounded (a plane), and its link row."""
         rows = slice(self._shape_count)
         endless = self._shapes["shape_kind"][rows] == PLANE
         lowest, highest = (self._pairs[name][0, rows] for name in ("shape_lower", "shape_upper"))
@@ -119,7 +119,7 @@ class Queries:
 
     @cached_property
     def _without_shapes(self) -> list[tuple[int, Bounds]]:
-        """The links without shapes that are not soft: their rows, and their bounds about their frames."""
+        """Rows of the links of rigid bodies without shapes, and their bounds in the link frame."""
         counts = self._shapes["link_shape_count"][: self._link_count].tolist()
         soft = {body.rows.first["link"] for body in self._touch.soft.bodies}
         return [
@@ -137,14 +137,14 @@ class Queries:
         hit_number: int = 0,
         separation: float = 0.0,
     ) -> tuple[RayHit, ...]:
-        """Casts rays.
+        """Cast rays.
 
         Args:
-            starts: Their starts in world axes [m], shape (n, 3).
-            ends: Their ends, shape (n, 3).
+            starts: Starting points in world axes [m], shape (n, 3).
+            ends: End points in world axes [m], shape (n, 3).
             mask: Mask of the collision groups that are hit.
             hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
-            separation: Hits on the same link within this fraction of the ray after another are ignored.
+            separation: After a hit, hits on the same link within this fraction of the ray are ignored.
         """
         self._prepare(IN_HIERARCHY)
         if self._soft is not None:
@@ -163,7 +163,7 @@ class Queries:
         """As `cast_rays`, including soft bodies."""
         from carom.queries.soft_bodies import nth_hit
 
-        # The n-th hit of all is among the first n on shapes and those on soft bodies.
+        # The n-th hit of all is one of the first n hits on shapes or one of the hits on soft bodies.
         rigid = [self._cast(starts, ends, mask, number, separation) for number in range(hit_number + 1)]
         on_soft = soft.cast(starts, ends, mask)
         return tuple(
@@ -174,7 +174,7 @@ class Queries:
     def cast_ray(
         self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> RayHit:
-        """Casts one ray; the arguments are those of `cast_rays`."""
+        """Cast one ray; the arguments are those of `cast_rays`."""
         if self._soft is not None:
             hits = self.cast_rays((start,), (end,), mask=mask, hit_number=hit_number, separation=separation)
             return hits[0]
@@ -184,7 +184,7 @@ class Queries:
     def nearest(
         self, first: Sequence[int], second: Sequence[int], max_distance: float
     ) -> list[NearestPoints]:
-        """The nearest points of all shapes of some links and of others, up to `max_distance` apart.
+        """The nearest points between the shapes of two sets of links, up to `max_distance` apart.
 
         Args:
             first: Rows of links in the world's arrays, as a range or tuple.
@@ -203,10 +203,10 @@ class Queries:
     def contacts(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """The contacts of the last step, or detection, between two bodies or links.
+        """The contacts between two bodies or links, as the last step or collision detection left them.
 
         Args:
-            body_a: Number of a body, which is then the first of each contact; negative for any.
+            body_a: Number of a body, which is then the first body of each contact; negative for any.
             link_a: Its link, -1 for the base, -2 and less for any.
             body_b: Number of the second body; negative for any.
             link_b: Its link.
@@ -223,7 +223,7 @@ class Queries:
         return _one_after_the_other(rigid, soft)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
-        """Rows of the links whose bounds overlap a box; those of links without shapes are nearly a point.
+        """Rows of the links whose bounds overlap a box; bounds of links without shapes are nearly a point.
 
         Args:
             lower: Minimum corner of the box in world axes [m].
@@ -248,10 +248,10 @@ class Queries:
         return sorted(found)
 
     def _prepare(self, readiness: int) -> None:
-        """Place the shapes for the present coordinates, unless this was done already.
+        """Update the poses and bounds of the shapes for the present coordinates, unless they are up to date.
 
-        Steps overwrite this and are overwritten by it; everything else that could move a shape ends these
-        `Queries`.
+        Steps and queries overwrite each other's poses. After any other change that could move a shape, these
+        `Queries` are no longer used.
         """
         changes, positions = self._all_shapes.changes, self._positions.tobytes()
         if (
@@ -263,14 +263,14 @@ class Queries:
                 self._make_ready[readiness]()
             self._placed_at[:] = positions
             self._placement.changes = changes
-        # Not the first time: many scripts query once, and then change the scene.
+        # Not at the first query: many scripts query once, and then change the scene.
         if self._has_asked and not self._placement.place.function:
             with self._present_poses() as poses:
                 self._tell(poses)
         self._has_asked = True
 
     def _tell(self, poses: memoryview[int]) -> None:
-        """Give quick calls the kernels that place shapes."""
+        """Set the addresses of the kernels that place shapes, for quick calls."""
         tell_placement(
             self._quick,
             (self._make_ready[PLACED], self._structs.launch(link_poses_kernel, first_world=0)),

@@ -1,4 +1,4 @@
-"""A kernel for repeated queries of a world, with any number of items."""
+"""Repeated launches of a query kernel, with any number of items."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
 
-# With up to this many items a kernel finishes before another thread would get its turn.
+# Up to this many items a kernel runs with the GIL held: releasing it would take longer than the kernel.
 _FEW = 64
 
 
 class Question:
-    """A launch over the query's own arrays, which grow as needed.
+    """A launch of a query kernel over arrays of its own, which grow as needed.
 
-    The kernel takes these arrays as one of its structs, and how many of their rows are in use as `count`.
+    The kernel takes these arrays as one of its structs, and the number of rows in use as `count`.
 
     Attributes:
         arrays: The arrays; all have one axis.
-        room: Number of their rows.
-        launch: The launch over them.
+        room: Number of rows of the arrays.
+        launch: The launch over the arrays.
 
     Args:
         kernel: The kernel.
-        structs: Structs by the name kernels give them; that of the arrays is put there.
-        name: Name of the arrays among these structs.
+        structs: Structs by the names of kernel arguments; the struct of the arrays is added.
+        name: Name of the kernel argument that takes the arrays.
         arrays: The arrays.
-        asked: The scalars that may differ between calls, with their initial values.
-        **fixed: The other scalars.
+        asked: Scalar arguments that may differ between calls, with their initial values.
+        **fixed: The other scalar arguments.
     """
 
     def __init__(
@@ -51,12 +51,12 @@ class Question:
         self._prepare()
 
     def reserve(self, count: int) -> None:
-        """Make room for `count` rows; the arrays are replaced if they have fewer."""
+        """Make room for `count` rows; if the arrays have fewer, they are replaced by longer ones."""
         if self.arrays.reserve(dict.fromkeys(self.arrays.capacity, count)):
             self._prepare()
 
     def __call__(self, *asked: float) -> None:
-        """Run the kernel with these scalars, the count before the others."""
+        """Run the kernel with these scalar arguments: the count, then those of `asked`."""
         if asked != self._asked:
             self._asked = asked
             for place, value in zip(self._places, asked, strict=True):

@@ -1,4 +1,4 @@
-"""Addresses for quick calls of the kernels that place shapes."""
+"""Addresses for quick calls: the kernels that place shapes and find nearest points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
     from carom.queries.question import Question
 
-# Names of attributes are interned.
+# Attribute names are interned strings.
 _CHANGES = intern("changes")
 
 
@@ -36,15 +36,15 @@ def tell_placement(
     """Set the addresses of the kernels that place the shapes of all links.
 
     Args:
-        quick: The record.
-        kernels: The kernel that places shapes, and the one that computes the poses of all links before.
+        quick: The record of addresses.
+        kernels: The kernel that places shapes, and the one that computes the link poses before.
         shapes: The shapes.
-        pairs: Their poses.
+        pairs: The workspace of collision detection, with the poses and bounds of the shapes.
         state: The memory of the coordinates of all bodies, and that of the poses of all links.
-        placed_at: The coordinates for which shapes were placed last.
-        places: Struct of the bodies and links that rows of links stand for.
-        readiness: Column of the counts of `pairs` with the state of the shapes.
-        has_bare_links: There are links without shapes.
+        placed_at: The coordinates for which the shapes were last placed.
+        places: Struct with the body and link of each link row.
+        readiness: Column of `count_pairs` that says which data of the shapes are up to date.
+        has_bare_links: Whether there are links without shapes.
     """
     record = quick.record.placement
     positions, poses = state
@@ -65,12 +65,12 @@ def tell_placement(
     record.has_bare_links = has_bare_links
     place, find_poses = kernels
     _tell_kernel(record.find_poses, find_poses)
-    # The last of all: without it the other addresses are not used.
+    # This one is set last: without it the other addresses are not used.
     _tell_kernel(record.place, place)
 
 
 def tell_search(quick: QuickScene, question: Question) -> None:
-    """Set the addresses of the kernel for nearest points; the arrays of the query are `Searches`."""
+    """Set the addresses of the kernel that finds nearest points; the query's arrays are `Searches`."""
     record = quick.record.nearest
     searches = question.arrays.struct()
     quick.keep(question.launch, searches)

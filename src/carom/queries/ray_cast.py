@@ -1,4 +1,4 @@
-"""Casting rays: the memory of queries and answers."""
+"""Ray casts: arrays of their arguments and results."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _VECTOR = struct.Struct(f"3{_TYPE_CODE}")
 
 RayHit = tuple[int, int, float, Vector3, Vector3]
 """Body and link (-1: the base) that a ray hits, fraction of the ray, position [m] and normal in world axes.
-(-1, -1, 1) and zeros for nothing."""
+Without a hit: -1, -1, 1.0 and zero vectors."""
 
 
 class RayCast:
-    """The rays of a world.
+    """Cast rays at the shapes of a world.
 
     Args:
-        structs: Warp structs by the name kernels give them, `places` among them.
+        structs: Structs by the names of kernel arguments, including `places`.
     """
 
     def __init__(self, structs: KernelStructs) -> None:
@@ -62,7 +62,7 @@ class RayCast:
         return tuple(zip(bodies, self._links, self._fractions, positions, normals, strict=False))
 
     def one(self, start: Vector3, end: Vector3, mask: int, hit_number: int, separation: float) -> RayHit:
-        """Cast one ray."""
+        """Cast one ray; the other arguments are those of `Queries.cast_rays`."""
         _VECTOR.pack_into(self._starts, 0, *start)
         _VECTOR.pack_into(self._ends, 0, *end)
         self._cast(1, mask, hit_number, separation)
@@ -70,7 +70,7 @@ class RayCast:
         return self._bodies[0], self._links[0], self._fractions[0], position, normal
 
     def _view(self) -> None:
-        """Take the memory of the present arrays."""
+        """Keep views of the memory of the present arrays."""
         arrays, memory = self._cast.arrays.numpy, self._cast.arrays.bytes_of
         self._starts, self._ends = memory("ray_start"), memory("ray_end")
         self._positions, self._normals = memory("ray_position"), memory("ray_normal")
@@ -80,7 +80,7 @@ class RayCast:
 
 
 def _packed(points: Points) -> bytes:
-    """Points one after the other in memory."""
+    """The coordinates of points as bytes, one point after the other."""
     if isinstance(points, np.ndarray):
         return points.astype(NUMPY_REAL, copy=False).tobytes()
     return struct.pack(f"{3 * len(points)}{_TYPE_CODE}", *chain.from_iterable(points))

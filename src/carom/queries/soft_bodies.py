@@ -1,4 +1,4 @@
-"""Queries of soft bodies: faces hit by rays, and nodes that touch shapes."""
+"""Collision queries of soft bodies: faces hit by rays, contacts of nodes, bounds."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _NOTHING: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _BASE = -1
 # The collision group of rays, for the masks of shapes.
 _RAY_GROUP = 1
-# Nodes touch up to this gap beyond their margin [m].
+# A node counts as touching up to this gap beyond its margin [m].
 _GAP = 1.0e-4
 # Number of ray-face pairs handled at a time, to save memory.
 _CHUNK = 1 << 20
@@ -34,10 +34,10 @@ _TINY = 1.0e-300
 
 
 class SoftQueries:
-    """Questions about the soft bodies of a world.
+    """The collision queries of the soft bodies of a world.
 
     Args:
-        structs: Structs by the name kernels give them.
+        structs: Structs by the names of kernel arguments.
         contact_arrays: The shapes and the soft bodies.
         state: The state of the world.
         work: The workspace of soft bodies.
@@ -62,11 +62,6 @@ class SoftQueries:
         self._places = places
         self._present_poses = present_poses
 
-    @property
-    def any(self) -> bool:
-        """Whether there are soft bodies."""
-        return bool(self._soft.bodies)
-
     @cached_property
     def _find_touches(self) -> Launch:
         return self._structs.launch(find_touches_kernel, world=0)
@@ -80,14 +75,14 @@ class SoftQueries:
     # Rays
 
     def cast(self, starts: Points, ends: Points, mask: int) -> list[list[RayHit]]:
-        """All faces of soft bodies that each ray crosses, the nearest first.
+        """All hits of each ray on faces of soft bodies, the nearest first.
 
-        Cloth is hit from both sides, solids from outside only: a ray that starts inside one does not hit it,
-        as with shapes.
+        Cloth is hit from both sides, solids from outside only. As with shapes, a ray that starts inside a
+        solid does not hit it.
 
         Args:
-            starts: Their starts in world axes [m], shape (n, 3).
-            ends: Their ends.
+            starts: Starting points in world axes [m], shape (n, 3).
+            ends: End points in world axes [m], shape (n, 3).
             mask: Mask of the collision groups that are hit.
         """
         start = np.asarray(starts, dtype=np.float64).reshape(-1, 3)
@@ -120,11 +115,11 @@ class SoftQueries:
     def contacts(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """The nodes that touch shapes or other soft bodies; the arguments are those of `Queries.contacts`.
+        """The contacts of nodes with shapes or other soft bodies; for the arguments see `Queries.contacts`.
 
-        The soft body is the first of the two, or that with the node, unless the other one was asked for. A
-        contact is at a node; its distance is that to the surface less what is kept between them, its forces
-        are those of the last substep.
+        Body a is the soft body that the node belongs to, unless the query names the other body as `body_a`.
+        The distance of a contact is the node's distance from the surface minus the margin, or minus the
+        thickness if the surface is that of a soft body. The forces are those of the last substep.
         """
         with self._present_poses():
             self._find_touches()
@@ -148,7 +143,11 @@ class SoftQueries:
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
     def _touches(self, soft: SoftRows) -> list[tuple[int, int, float, np.ndarray, np.ndarray]]:
-        """Node, shape, gap beyond the margin [m], normal towards the node, force on the node [N]."""
+        """Contacts of the nodes of a soft body with shapes.
+
+        Returns:
+            Node, shape, gap beyond the margin [m], unit normal towards the node, force on the node [N].
+        """
         work, found = self._work, []
         nodes = self._nodes(soft)
         touching = np.flatnonzero(work["node_touches"][0, nodes]) + nodes.start
@@ -159,7 +158,7 @@ class SoftQueries:
             normals = work["touch_normal"][0, rows]
             push = self._state["node_push"][0, node]
             along = dots(normals, push)
-            # If there are several shapes, the one whose normal is closest to the force gets all of it.
+            # If a node touches several shapes, the one whose normal is closest to the force gets all of it.
             strongest = int(along.argmax())
             for touch, gap in enumerate(gaps.tolist()):
                 force = push if touch == strongest and along[strongest] > 0.0 else np.zeros(3)
@@ -171,7 +170,7 @@ class SoftQueries:
     # Bounds
 
     def overlapping(self, lower: Sequence[float], upper: Sequence[float]) -> list[int]:
-        """Rows of the links of soft bodies whose bounds, margins included, overlap a box."""
+        """Link rows of the soft bodies whose bounds, including margins, overlap a box."""
         found = []
         for soft in self._soft.bodies:
             nodes, margin = self._state["node_position"][0, self._nodes(soft)], soft.spec.margin
@@ -181,13 +180,14 @@ class SoftQueries:
 
 
 def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separation: float) -> RayHit:
-    """The n-th of the hits of a ray, from 0.
+    """The n-th hit of a ray, counted from 0.
 
     Args:
-        rigid: Those on shapes, nearest first, as many as needed.
-        soft: Those on soft bodies, nearest first.
-        number: n.
-        separation: Hits on a soft body within this fraction of the ray after another are ignored.
+        rigid: The first n + 1 hits on shapes, nearest first; those without a hit have body -1.
+        soft: All hits on soft bodies, nearest first.
+        number: The number n.
+        separation: After a hit, further hits on the same soft body within this fraction of the ray are
+            ignored.
     """
     last: dict[int, float] = {}
     hits = [hit for hit in rigid if hit[0] >= 0]
@@ -201,7 +201,7 @@ def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separa
 
 def _meets_box(start: np.ndarray, way: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
     """Whether each ray crosses a box (slab test)."""
-    # A ray along a slab has no crossing with it: its start is inside, or it misses.
+    # A ray parallel to a slab never crosses its planes: it starts inside the slab, or it misses the box.
     step = np.where(np.abs(way) < _TINY, _TINY, way)
     with np.errstate(over="ignore"):
         enters, leaves = (lower - start) / step, (upper - start) / step
@@ -212,15 +212,15 @@ def _meets_box(start: np.ndarray, way: np.ndarray, lower: np.ndarray, upper: np.
 def _crossings(
     start: np.ndarray, way: np.ndarray, corners: np.ndarray, *, both_sides: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where rays go through triangles (Möller and Trumbore, 1997).
+    """Intersections of rays with triangles (Möller and Trumbore, 1997).
 
     Returns:
-        ((k,) rays; (k,) fractions; (k, 3) unit normals against them).
+        (k,) indices of rays; (k,) fractions; (k, 3) unit normals on the side the ray comes from.
     """
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     cross = np.cross(way[:, None], second[None])
     determinant = (first[None] * cross).sum(axis=2)
-    # Positive where a ray comes from the side the face looks to.
+    # The determinant is positive where a ray hits the front side of a face.
     usable = np.abs(determinant) > _TINY if both_sides else determinant > _TINY
     scale = 1.0 / np.where(usable, determinant, 1.0)
     offset = start[:, None] - corners[None, :, 0]
@@ -242,7 +242,7 @@ _Place = tuple[int, int]
 def _sides(
     own: _Place, other: _Place, body_a: int, link_a: int, body_b: int, link_b: int
 ) -> tuple[_Place, _Place, float] | None:
-    """First and second body with their links, and -1 if they are exchanged; None if others are asked for."""
+    """Bodies a and b with their links, and -1 if exchanged, else 1; None if the query excludes them."""
     a, b, sign = own, other, 1.0
     if body_a >= 0 and body_a == other[0] and body_a != own[0]:
         a, b, sign = b, a, -1.0
@@ -259,7 +259,7 @@ def _row(
     distance: float,
     force: np.ndarray,
 ) -> tuple[Any, ...]:
-    """A contact of `ContactColumns`, of a node with a surface; the force is on the node."""
+    """The entries of `ContactColumns` for a contact of a node with a surface; `force` acts on the node."""
     a, b, sign = sides
     on_a, on_b = (node, foot) if sign > 0.0 else (foot, node)
     along = float(dots(force, normal))
@@ -274,12 +274,12 @@ def _row(
 
 
 def _is_other(place: tuple[int, int], body: int, link: int) -> bool:
-    """Whether a body and link are not those asked for; negative bodies and links below -1 ask for any."""
+    """Whether a body and link do not match a query; a negative body or a link below -1 matches any."""
     return (body >= 0 and place[0] != body) or (link >= _BASE and place[1] != link)
 
 
 def _across(normal: np.ndarray) -> np.ndarray:
-    """A unit vector perpendicular to another one."""
+    """A unit vector perpendicular to a vector."""
     aside = np.eye(3)[int(np.abs(normal).argmin())]
     across = np.cross(normal, aside)
     return across / length(across)

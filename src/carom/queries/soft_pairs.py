@@ -1,4 +1,4 @@
-"""Nodes of soft bodies that touch faces of other ones, as the last step left them."""
+"""Contacts between nodes and faces of different soft bodies, as the last step left them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from carom.model.soft_arrays import SoftArrays, SoftRows
 
-# Faces go on a little beyond their edges, as they do when nodes are kept off them.
+# Least barycentric coordinate of a foot point: as in the solver, faces extend a little beyond their edges.
 _BESIDE = -0.05
 _TINY = 1.0e-300
 
@@ -29,12 +29,12 @@ class PairContact:
 
     Attributes:
         node: Row of the node.
-        own: The body it belongs to.
-        other: The body with the face.
-        foot: The point of the face that is nearest to the node [m].
-        normal: Of the face, towards the node.
-        gap: Distance beyond that at which they are kept [m].
-        impulse: On the node in the last substep [N s].
+        own: The soft body of the node.
+        other: The soft body of the face.
+        foot: Foot point: the point of the face that is nearest to the node [m].
+        normal: Unit normal of the face, towards the node.
+        gap: Distance less the thickness, which the solver keeps between them [m].
+        impulse: Impulse on the node in the last substep [N s].
     """
 
     node: int
@@ -53,9 +53,9 @@ def touching_pairs(
 
     Args:
         soft: The soft bodies.
-        places: (n, 3) where nodes are [m].
-        work: The workspace of soft bodies, in which the last step noted who is near whom.
-        nearest: Gap up to which a node touches [m].
+        places: (n, 3) positions of the nodes [m].
+        work: The workspace of soft bodies, in which the last step listed the faces near each node.
+        nearest: Gap up to which a node counts as touching [m].
     """
     if len(soft.bodies) < 2:
         return
@@ -91,7 +91,7 @@ def _owner(soft: SoftArrays, face: int) -> SoftRows | None:
 def _foot(
     corners: NDArray[np.float64], point: NDArray[np.float64], side: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-    """Foot of a point on a face and the unit normal on its side; None if it is beside the face."""
+    """Foot point on a face and the unit normal towards the point; None if the foot is beside the face."""
     second, third = corners[1] - corners[0], corners[2] - corners[0]
     across = np.cross(second, third)
     square = float(dots(across, across))

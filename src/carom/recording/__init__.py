@@ -1,1 +1,1 @@
-"""Videos of a world: pictures of its steps, written to a file."""
+"""Recording videos of a world while it is stepped."""

@@ -17,9 +17,9 @@ from carom.recording.video import VideoFile
 if TYPE_CHECKING:
     from carom.world.world import World
 
-# Tolerance for rounding of times, which are sums of time steps [of the time between two pictures].
+# Tolerance for rounding errors in sums of time steps, as a fraction of the interval between two pictures.
 _EARLY = 1e-6
-# Maximum number of pictures of one step: the video of a longer step is cut short.
+# Maximum number of pictures per step: the video of a longer step is cut short.
 _MOST_OF_A_STEP = 240
 
 
@@ -33,7 +33,7 @@ class Film:
         world: The world.
         file: The file that the pictures are written to.
         interval: Simulated time between two pictures [s].
-        take: Makes a picture, (height, width, 3) red, green and blue.
+        take: Renders a picture: (height, width, 3) red, green and blue.
 
     Attributes:
         automatic: Take pictures as time passes; otherwise only `shoot` takes pictures.
@@ -47,7 +47,7 @@ class Film:
         self._file = file
         self._interval = float(positive(interval, "interval"))
         self._take = take
-        # How many intervals from now the next picture is due; None until the first step.
+        # Time until the next picture, in intervals; None until the first step.
         self._due: float | None = None
         self._last = 0.0
 
@@ -89,14 +89,14 @@ class Recorder:
         with Recorder("fall.mp4", camera, world):
             world.step(480)
 
-    It is a context manager, and stops when the context is left.
+    It is a context manager: recording stops when the context is left.
 
     Args:
         path: The file; an existing one is replaced.
         camera: The camera, mounted on a link or fixed in the world; it may be moved while it records.
-        world: The world it looks at; by default that of the link it is mounted on.
-        fps: Pictures a second.
-        speed: Simulated time by time of the video; below 1 for slow motion.
+        world: The world to record; by default the world of the link that the camera is mounted on.
+        fps: Pictures per second of video.
+        speed: Simulated time / time of the video; below 1 for slow motion.
 
     Raises:
         ImportError: PyAV is not installed.

@@ -13,7 +13,7 @@ from carom.checks import positive
 
 # H.264 plays everywhere; some builds of PyAV lack it, but have MPEG-4.
 _CODECS = ("libx264", "mpeg4")
-# Clearly better than the encoder's default: edges of rendered surfaces are sharp.
+# Better quality than the encoder's default, because rendered surfaces have sharp edges.
 _QUALITY = {"crf": "18", "preset": "veryfast"}
 
 
@@ -24,7 +24,7 @@ class VideoFile:
         path: The file; an existing one is replaced.
         width: Number of columns of its pictures.
         height: Number of rows.
-        fps: Pictures a second.
+        fps: Pictures per second.
 
     Raises:
         ImportError: PyAV is not installed.
@@ -41,9 +41,9 @@ class VideoFile:
         except ImportError:
             raise ImportError("videos need PyAV: pip install carom[video]") from None
         self._frame_type = av.VideoFrame
-        # Codecs halve the resolution of colours, so they want even numbers.
+        # The codecs halve the resolution of colours (4:2:0), so width and height have to be even.
         self._margin = ((0, height % 2), (0, width % 2), (0, 0))
-        # FFmpeg would open it only for the first picture.
+        # FFmpeg would open the file only for the first picture; here errors are raised at once.
         self._file = open(path, "wb")  # noqa: SIM115 (it is written to until the video is closed)
         self._container: Any = av.open(self._file, "w", format="mp4")
         codec = next(name for name in _CODECS if name in av.codecs_available)
@@ -64,7 +64,7 @@ class VideoFile:
         """Finishes the file; closing it again does nothing."""
         container, self._container = self._container, None
         if container is not None:
-            # Without a picture nothing has been written yet.
+            # Writes the header of a video that has no pictures.
             container.start_encoding()
             container.mux(self._stream.encode(None))
             container.close()

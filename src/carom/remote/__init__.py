@@ -1,1 +1,1 @@
-"""Calls from one process to another: frames on a socket, the values in them, and who may talk to whom."""
+"""Calls from one process to another: frames on a socket, serialised values, and authentication by a key."""

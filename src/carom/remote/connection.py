@@ -12,27 +12,27 @@ from carom.remote.frames import GREATEST_NUMBER, OF_CALLS, OF_RESULTS, Reader, c
 from carom.remote.handshake import TIMEOUT, enter
 from carom.remote.values import pack, unpack
 
-# Longer waits than this are for ever: the system counts milliseconds in 32 bits [s].
+# Longer timeouts than this mean no timeout: the system counts milliseconds in 32 bits [s].
 _FOR_EVER = 1e6
 
 
 class Connection:
-    """One connection to a server. Safe to use from several threads, whose calls go one after the other.
+    """One connection to a server. Thread-safe: calls of several threads are made one after the other.
 
     Args:
-        host: Where the server is.
-        port: Its port.
+        host: Host of the server.
+        port: Port of the server.
         key: The key of the server.
         timeout: How long to wait for an answer [s].
 
     Raises:
-        NoServer: There is none, or it does not accept the key.
+        NoServer: There is no server, or it refuses the connection.
     """
 
     def __init__(self, host: str, port: int, key: bytes, timeout: float) -> None:
         try:
             self._socket = socket.create_connection((host, port), TIMEOUT)
-        # OverflowError: there is no such port; UnicodeError: no such name of a host.
+        # OverflowError: invalid port number; UnicodeError: invalid host name.
         except (OSError, OverflowError, UnicodeError) as problem:
             raise NoServer(f"No server can be reached at {host}:{port}: {problem}.") from problem
         try:
@@ -48,15 +48,15 @@ class Connection:
         self.set_timeout(timeout)
 
     def set_timeout(self, seconds: float) -> None:
-        """Sets how long to wait for an answer [s]."""
+        """Set how long to wait for an answer [s]."""
         self._timeout = seconds if seconds < _FOR_EVER else None
 
     def call(self, request: Any) -> Any:
-        """Sends a request and waits for the answer.
+        """Send a request and wait for the answer.
 
         Raises:
-            ServerGone: There is no answer in time or never will be; the connection is then closed.
-            Malformed: The request is too large; the connection stays.
+            ServerGone: There is no answer in time, or the connection is lost; it is then closed.
+            Malformed: The request is too large; the connection stays open.
         """
         message, arrays = pack(request)
         check_size(message, arrays, OF_CALLS)
@@ -66,7 +66,7 @@ class Connection:
                 self._socket.settimeout(self._timeout)
                 self._send(message, arrays)
                 frame = self._reader.frame()
-                # Answers to calls that were interrupted come late.
+                # Skip late answers to calls that were interrupted.
                 while frame.number != self._number:
                     frame = self._reader.frame()
                 return unpack(frame.message, frame.contents, lists=False)
@@ -82,15 +82,15 @@ class Connection:
 
     @property
     def is_usable(self) -> bool:
-        """Whether it has not been closed at this end."""
+        """Whether the connection has not been closed at this end."""
         return self._socket.fileno() >= 0
 
     def is_open(self) -> bool:
-        """Whether the server is still there, as far as can be known without asking it."""
+        """Whether the connection is open at both ends, as far as the socket shows without a request."""
         if not self.is_usable:
             return False
         if not self._lock.acquire(blocking=False):
-            # Another thread is waiting for an answer, and will find out.
+            # Another thread is waiting for an answer, and will notice if the connection is lost.
             return True
         try:
             self._socket.setblocking(False)
@@ -106,14 +106,14 @@ class Connection:
         return not gone
 
     def close(self) -> None:
-        """Closes the connection; the server keeps running."""
-        # Closing alone would leave a thread waiting that is in the middle of a call.
+        """Close the connection; the server keeps running."""
+        # Closing alone would not wake up a thread that is waiting for an answer.
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
         self._socket.close()
 
     def abandon(self) -> None:
-        """Closes what a forked process has inherited; its parent keeps the connection."""
+        """Close the socket that a forked process has inherited; its parent keeps the connection."""
         self._socket.close()
 
     def _send(self, message: bytes, arrays: list[memoryview]) -> None:
@@ -122,6 +122,6 @@ class Connection:
         except OSError:
             raise
         except BaseException:
-            # Interrupted in the middle of a frame: what comes next would be taken for its rest.
+            # Interrupted in the middle of a frame: the server would read the next frame as its rest.
             self.close()
             raise

@@ -1,4 +1,4 @@
-"""What can go wrong between two processes."""
+"""Exceptions of connections between two processes."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from carom.errors import CaromError
 
 
 class RemoteError(CaromError):
-    """Two processes cannot talk to each other, or no longer."""
+    """Two processes cannot communicate, or no longer can."""
 
 
 class NoServer(RemoteError):
-    """There is no server, or none that wants to talk."""
+    """There is no server, or it refuses the connection."""
 
 
 class ServerGone(RemoteError):
@@ -18,4 +18,4 @@ class ServerGone(RemoteError):
 
 
 class Malformed(RemoteError):
-    """Data from the socket do not follow the protocol, or are too long."""
+    """Data do not follow the protocol, or are too long."""

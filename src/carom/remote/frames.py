@@ -18,14 +18,14 @@ from carom.remote.errors import Malformed
 from carom.remote.values import ALIGNMENT, padded
 
 GREATEST_NUMBER = 2**32 - 1
-"""Of a call."""
+"""Largest number of a call."""
 
 _HEADER = Struct("<IIQ")
-# Reading this much at once takes most frames whole.
+# Size of the receive buffer, which holds most frames [bytes].
 _CHUNK = 65536
-# Smaller contents are copied into one message to the system, which is faster than two.
+# Frames up to this size are sent by one system call, which is faster than several [bytes].
 _SMALL = 16384
-# Memory that is taken at once for a longer frame, on the word of its header.
+# Most memory allocated for a longer frame because of its header alone, before its data arrive [bytes].
 _TRUSTED = 16 << 20
 _NOTHING = memoryview(b"")
 _ZEROS = bytes(ALIGNMENT)
@@ -33,11 +33,11 @@ _ZEROS = bytes(ALIGNMENT)
 
 @dataclass(frozen=True)
 class Limits:
-    """The largest sizes one side takes from the other [bytes].
+    """The largest sizes that one side accepts from the other [bytes].
 
     Attributes:
-        message: Of a message.
-        contents: Of all arrays in it.
+        message: Largest size of a message.
+        contents: Largest size of the contents of all its arrays.
     """
 
     message: int
@@ -45,18 +45,18 @@ class Limits:
 
 
 OF_CALLS = Limits(message=64 << 20, contents=256 << 20)
-"""What servers take: a height field of 1,024 x 1,024, a texture of 8,192 x 8,192."""
+"""Limits of servers, enough for a height field of 1,024 x 1,024 or a texture of 8,192 x 8,192."""
 OF_RESULTS = Limits(message=512 << 20, contents=2048 << 20)
-"""What clients take."""
+"""Limits of clients."""
 
 
 class Frame(NamedTuple):
-    """One frame, as it came.
+    """One received frame.
 
     Attributes:
-        number: Of the call.
+        number: Number of the call.
         message: The message.
-        contents: Of the arrays in it.
+        contents: Contents of its arrays.
     """
 
     number: int
@@ -65,23 +65,23 @@ class Frame(NamedTuple):
 
 
 def check_size(message: bytes, arrays: Sequence[memoryview], limits: Limits) -> None:
-    """Raises `Malformed` if the other side would not take a message and the contents of its arrays."""
+    """Raise `Malformed` if a message and the contents of its arrays are larger than the limits."""
     size = _size(arrays)
     if len(message) > limits.message or size > limits.contents:
         raise Malformed(f"{len(message) + size:,} bytes are too much for one message.")
 
 
 def send(peer: socket.socket, number: int, message: bytes, arrays: Sequence[memoryview]) -> None:
-    """Sends one frame.
+    """Send one frame.
 
     Args:
         peer: The socket.
-        number: Of the call.
+        number: Number of the call.
         message: The message.
-        arrays: Contents of the arrays in it.
+        arrays: Contents of its arrays.
 
     Raises:
-        OSError: The socket is closed, or does not take it in time.
+        OSError: The socket is closed, or its timeout is over.
     """
     head = _HEADER.pack(number, len(message), _size(arrays)) + message + _ZEROS[: -len(message) % ALIGNMENT]
     pieces: list[bytes | memoryview] = [head]
@@ -99,17 +99,17 @@ def _size(arrays: Sequence[memoryview]) -> int:
 
 
 class Reader:
-    """Reads frames from a socket. What was read of a frame is kept when waiting for the rest is interrupted.
+    """Reads frames from a socket. If waiting for a frame is interrupted, the part read so far is kept.
 
     Args:
         peer: The socket.
-        limits: Of the frames. Memory is taken as content arrives, not as a header promises it.
+        limits: Limits of the frames. For long frames memory is allocated as data arrive, not by the header.
     """
 
     def __init__(self, peer: socket.socket, limits: Limits) -> None:
         self._peer = peer
         self._limits = limits
-        # Most frames fit into this one and are copied from it; a longer one gets memory of its own.
+        # Most frames fit into this buffer and are copied from it; a longer frame gets memory of its own.
         self._usual = memoryview(bytearray(_CHUNK))
         self._filled = 0
         self._long = _NOTHING
@@ -120,7 +120,7 @@ class Reader:
         Raises:
             Malformed: The frame is larger than the limits.
             EOFError: The other side has closed the socket.
-            OSError: The socket is closed, or its time is over.
+            OSError: The socket is closed, or its timeout is over.
         """
         usual = self._usual
         while self._filled < _HEADER.size:
@@ -143,7 +143,7 @@ class Reader:
         return Frame(number, whole[_HEADER.size : _HEADER.size + message], whole[begin:])
 
     def _long_frame(self, size: int) -> memoryview:
-        """The rest of a frame that is longer than the usual ones, whose beginning has been read."""
+        """Read the rest of a frame that is longer than the buffer; return the whole frame."""
         while self._filled < _CHUNK:
             self._filled += self._read(self._usual[self._filled :])
         while self._filled < size:

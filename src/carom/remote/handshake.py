@@ -1,9 +1,9 @@
-"""Both sides show that they know the key, without sending it.
+"""Mutual authentication: client and server prove that they know the key, without sending it.
 
 The client sends a greeting and a random number. The server answers with its greeting, a random number of its
-own, and a digest (HMAC-SHA256) of both under the key; the client then sends a digest of its own, and the
-server a last byte when that is right: that the client is welcome, or that there is no room for it. So nobody
-without the key can talk to a server, nor pose as one.
+own, and a digest (HMAC-SHA256) of both numbers under the key. The client then sends a digest of its own. If
+it is right, the server sends a last byte: the client is accepted, or the server has its maximum number of
+clients. So without the key nobody can use a server or impersonate one.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from time import monotonic
 from carom.remote.errors import NoServer
 
 TIMEOUT = 5.0
-"""How long either side has for all of it [s]."""
+"""Time limit of the whole handshake, on either side [s]."""
 
 _GREETING = b"carom 1\n"
 _NONCE = 32
@@ -31,10 +31,10 @@ def new_key() -> bytes:
 
 
 def enter(peer: socket.socket, key: bytes) -> None:
-    """The client's side.
+    """The client's side of the handshake.
 
     Raises:
-        NoServer: The other side is no server of this version, or one with another key.
+        NoServer: The other side is no server of this version, has another key, or refuses the connection.
     """
     mine = secrets.token_bytes(_NONCE)
     talk = _Talk(peer)
@@ -53,19 +53,20 @@ def enter(peer: socket.socket, key: bytes) -> None:
 
 
 def admit(peer: socket.socket, key: bytes, take_place: Callable[[], bool]) -> bool:
-    """The server's side.
+    """The server's side of the handshake.
 
     Args:
-        peer: The client.
-        key: The key that it needs.
-        take_place: Whether another client can be accepted; it then counts as connected.
+        peer: Socket of the client.
+        key: The key that the client has to know.
+        take_place: Reserves a place for another client; returns False if none is left. It is called if the
+            client knows the key, and the client is told the result.
 
     Returns:
-        Whether the client knows the key. It has a place then, unless none was left, and knows about that.
+        Whether the client knows the key.
 
     Raises:
-        OSError: The socket is closed, or its time is over.
-        EOFError: The client has closed it.
+        OSError: The socket is closed, or the time limit is over.
+        EOFError: The client has closed the connection.
     """
     talk = _Talk(peer)
     if talk.receive(len(_GREETING)) != _GREETING:
@@ -85,7 +86,7 @@ def _digest(key: bytes, side: bytes, of_client: bytes, of_server: bytes) -> byte
 
 
 class _Talk:
-    """Data from the other side within a time limit, even if they come slowly."""
+    """Receives data within a time limit for all of them, even if they arrive byte by byte."""
 
     def __init__(self, peer: socket.socket) -> None:
         self._peer = peer

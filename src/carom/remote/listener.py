@@ -1,4 +1,4 @@
-"""A server: sockets that listen, and a thread for each client."""
+"""The server's end of connections: listening sockets, and a thread for each client."""
 
 from __future__ import annotations
 
@@ -13,38 +13,40 @@ from carom.remote.frames import OF_CALLS, Frame, Reader, send
 from carom.remote.handshake import admit
 
 MAX_CLIENTS = 64
-"""Connections at the same time."""
+"""Maximum number of clients at the same time."""
 
-# Connections that have not shown the key yet do not count as clients, but there are bounds for them, too: who
-# has waited longest goes. Clients take a millisecond to show it, so that strangers cannot keep them out.
+# Maximum number of connections that have not completed the handshake. They do not count as clients; if there
+# are too many, the oldest is closed. Clients complete the handshake within a millisecond, so that connections
+# of strangers cannot keep them out.
 _MAX_STRANGERS = 32
 # How long to wait for the calls in progress when a server closes [s].
 _PATIENCE = 5.0
-# How often a thread that waits for somebody to come looks whether the server is closing: nothing wakes it up
-# on every system [s].
+# How often a thread that waits for connections checks whether the server is closing [s]: on some systems
+# closing the socket does not wake it up.
 _LOOK = 0.5
 
 _log = logging.getLogger("carom")
 
 Answer = Callable[[Frame], tuple[bytes, list[memoryview]]]
-"""Makes the message of a reply, and the contents of the arrays in it; raises `Malformed` for nonsense."""
+"""Makes the reply to a frame: message and contents of its arrays; raises `Malformed` for invalid frames."""
 
 
 class Listener:
-    """Listens, admits clients that know the key, and has their calls answered, each client's one by one.
+    """Accepts clients that know the key, and answers their calls; those of one client one after the other.
 
-    A client that sends anything but calls loses its connection; one that hangs blocks only its own thread.
+    The connection of a client that sends invalid data is closed. A client that hangs blocks only its own
+    thread.
 
     Args:
-        addresses: Hosts and ports to listen at; port 0 for any that is free.
+        addresses: Hosts and ports to listen at; port 0 for any free port.
         key: The key that clients need.
-        answer: Called with each frame, by several threads at once.
+        answer: Makes the reply to a frame; called by several threads at once.
 
     Attributes:
-        addresses: Where it listens, in the order of the argument.
+        addresses: Hosts and actual ports, in the order of the argument.
 
     Raises:
-        OSError: An address cannot be listened at.
+        OSError: The server cannot listen at an address.
     """
 
     def __init__(self, addresses: Sequence[tuple[str, int]], key: bytes, answer: Answer) -> None:
@@ -76,7 +78,7 @@ class Listener:
         return len(self._talks)
 
     def close(self) -> None:
-        """Ends all connections; calls in progress are completed, but their answers are dropped."""
+        """Close all connections; calls in progress are completed, but their answers are dropped."""
         self._closing.set()
         self._close_sockets()
         with self._lock:
@@ -88,13 +90,13 @@ class Listener:
                 thread.join(_PATIENCE)
 
     def abandon(self) -> None:
-        """Closes what a forked process has inherited, without effect on its parent; it has no threads."""
+        """Close the sockets that a forked process has inherited, without effect on its parent."""
         for inherited in (*self._sockets, *self._talks.values()):
             inherited.close()
 
     def _close_sockets(self) -> None:
         for listening in self._sockets:
-            # Wakes up the thread that waits for clients, on some systems.
+            # On some systems this wakes up the thread that waits for clients.
             with suppress(OSError):
                 listening.shutdown(socket.SHUT_RDWR)
             listening.close()
@@ -137,7 +139,7 @@ class Listener:
                 del self._talks[current_thread()]
 
     def _admitted(self, peer: socket.socket) -> bool:
-        """Whether it knows the key, and there is room: then it has a place, to be released."""
+        """Whether a client is accepted: it knows the key, and a place in `_places` was free and is taken."""
         has_place = False
 
         def take_place() -> bool:
@@ -162,7 +164,7 @@ class Listener:
     def _converse(self, peer: socket.socket) -> None:
         peer.settimeout(None)
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        # A machine that vanishes says no goodbye.
+        # Keep-alive probes detect clients whose machine has failed without closing the connection.
         peer.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         reader = Reader(peer, OF_CALLS)
         while not self._closing.is_set():

@@ -1,4 +1,4 @@
-"""A folder for what only this user may know."""
+"""A folder for files that only this user may read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from carom.remote.errors import RemoteError
 
 
 def private_folder() -> Path:
-    """Where it is, or would be."""
+    """Path of the folder, whether it exists or not."""
     if os.name == "nt":
         return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "carom" / "servers"
     runtime = os.environ.get("XDG_RUNTIME_DIR")
@@ -21,11 +21,11 @@ def private_folder() -> Path:
 
 
 def make_private(folder: Path) -> None:
-    """Make the folder if it is not there.
+    """Create the folder if it does not exist.
 
     Raises:
-        RemoteError: It is there and others may use it.
-        OSError: It cannot be made.
+        RemoteError: It exists, and other users may use it.
+        OSError: It cannot be created.
     """
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     status = folder.lstat()
@@ -35,7 +35,7 @@ def make_private(folder: Path) -> None:
 
 def is_private(status: os.stat_result) -> bool:
     """Whether a file or folder belongs to this user alone."""
-    # On Windows files in the user's own folder are private by its access list.
+    # On Windows the access control list of the user's own folder makes files in it private.
     if os.name == "nt":
         return True
     return status.st_uid == os.getuid() and not status.st_mode & 0o077

@@ -1,7 +1,7 @@
-r"""Where clients on the same machine find a server, and its key, by nothing but a name.
+r"""How clients on the same machine find the address and key of a server, given its name only.
 
-A server leaves a note in a folder that belongs to the user: address and key. Only that user can read it. The
-folder is `$XDG_RUNTIME_DIR/carom`, or `carom-<user number>` in the system's folder for temporary files, on
+A server writes its address and key to a file, called a note, that only the same user can read. The folder of
+notes is `$XDG_RUNTIME_DIR/carom`, or `carom-<user number>` in the system's folder for temporary files, on
 Windows `%LOCALAPPDATA%\carom\servers`.
 """
 
@@ -16,7 +16,7 @@ from pathlib import Path
 
 from carom.remote.private_folder import is_private, make_private, private_folder
 
-# Of a note [bytes].
+# Largest size of a note [bytes].
 _GREATEST_SIZE = 4096
 
 
@@ -25,9 +25,9 @@ class Note:
     """How to reach a server.
 
     Attributes:
-        host: Where it listens.
-        port: Its port.
-        key: What both sides have to know.
+        host: Host at which the server listens.
+        port: Port at which the server listens.
+        key: The key that clients need.
     """
 
     host: str
@@ -35,11 +35,11 @@ class Note:
     key: bytes
 
     def leave(self, name: str) -> None:
-        """Leaves the note under a name, in place of an older one.
+        """Write the note under a name; an older note with this name is replaced.
 
         Raises:
-            RemoteError: The folder belongs to another user.
-            OSError: It cannot be written to.
+            RemoteError: The folder belongs to another user, or other users may use it.
+            OSError: The note cannot be written.
         """
         folder = private_folder()
         make_private(folder)
@@ -53,21 +53,21 @@ class Note:
             raise
 
     def take_away(self, name: str) -> None:
-        """Takes the note away, unless another server has put its own there."""
+        """Remove the note, unless another server has replaced it by its own."""
         if find(name) == self:
             with suppress(OSError):
                 _path(name).unlink()
 
 
 def find(name: str) -> Note | None:
-    """The note of a name; None when there is none, or none that this user has left."""
+    """The note with a name; None if there is none, or if this user has not written it."""
     try:
         with _path(name).open("rb") as file:
             if not is_private(os.fstat(file.fileno())):
                 return None
             content = json.loads(file.read(_GREATEST_SIZE))
         host, port, key = content["host"], content["port"], bytes.fromhex(content["key"])
-    # It does not exist, is not JSON, or was not written by a server.
+    # The note does not exist, is not JSON, or was not written by a server.
     except (OSError, ValueError, RecursionError, KeyError, TypeError):
         return None
     return Note(host, port, key) if isinstance(host, str) and isinstance(port, int) else None

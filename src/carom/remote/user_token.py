@@ -1,4 +1,4 @@
-"""A token that stays the same for a user of a machine, and that no other user can read."""
+"""A permanent token of a user on a machine, which no other user can read."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ def fresh_token() -> str:
 
 
 def user_token() -> str:
-    """The user's token; made when it is first asked for.
+    """The user's token, created by the first call.
 
-    Where it cannot be kept, as without a place to write to, each call gives another one.
+    If the token cannot be saved, for example without a writable folder, each call returns another one.
     """
     folder = private_folder()
     path = folder / _NAME
     with suppress(OSError, RemoteError):
         make_private(folder)
-        # The first process writes it, and others read it.
+        # The first process writes the token; all others read it.
         with suppress(FileExistsError):
             _write(path, fresh_token())
         if token := _read(path):
@@ -43,7 +43,7 @@ def _write(path: Path, token: str) -> None:
     try:
         with os.fdopen(handle, "w", encoding="ascii") as file:
             file.write(token)
-        # Unlike a replacement, a link never takes the place of a file that is there.
+        # Unlike `os.replace`, `os.link` never replaces an existing file.
         os.link(draft, path)
     finally:
         draft.unlink()

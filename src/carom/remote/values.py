@@ -1,9 +1,9 @@
-"""Values as bytes: MessagePack, with the contents of arrays outside, so that they are never copied.
+"""Serialisation of values: MessagePack, with the contents of arrays outside, so that they are never copied.
 
-Only plain values come out again, whatever the bytes say: None, booleans, numbers, strings, bytes, tuples or
-lists, dictionaries, and NumPy arrays of numbers. An argument of any other type becomes the nearest of
-these, as a function that wants numbers would take it; what has nothing of a number becomes an `Opaque` value,
-so that the function on the other side can say of it what it would have said here.
+Unpacking gives plain values only, whatever the bytes are: None, booleans, numbers, strings, bytes, tuples or
+lists, dictionaries, and NumPy arrays of numbers. An argument of any other type is converted to one of these,
+as a function that takes numbers would convert it. An argument that cannot be converted becomes an `Opaque`
+value, with which the function on the other side raises the same error as it would with the argument itself.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ALIGNMENT = 16
 _ARRAY, _INTEGER, _OPAQUE = 1, 2, 3
 _PLACE = struct.Struct("<B8q")
 _MAX_DIMENSIONS = _PLACE.size // 8 - 1
-# No number that means anything is longer [bytes]; float() refuses those that are.
+# Maximum length of an integer [bytes]: float() raises OverflowError for longer ones.
 _GREATEST_INTEGER = 256
 _GREATEST_NAME, _GREATEST_TEXT = 100, 1000
 _KINDS = "? i1 u1 <i2 <u2 <i4 <u4 <i8 <u8 <f2 <f4 <f8 <c8 <c16"
@@ -33,7 +33,7 @@ _DTYPES = tuple(map(np.dtype, _KINDS.split(" ")))
 
 
 class Opaque:
-    """Stands for a value that cannot be sent: it has the name of its type and its text, and nothing else."""
+    """Stands for a value that cannot be sent; it has only the name of the value's type and its `repr`."""
 
     def __init__(self, text: str) -> None:
         self._text = text
@@ -43,32 +43,32 @@ class Opaque:
 
 
 def padded(size: int) -> int:
-    """The least multiple of `ALIGNMENT` that is not less."""
+    """The least multiple of `ALIGNMENT` that is at least `size`."""
     return -(-size // ALIGNMENT) * ALIGNMENT
 
 
 def pack(value: Any) -> tuple[bytes, list[memoryview]]:
-    """A value as bytes.
+    """Serialise a value.
 
     Returns:
-        The bytes, and the contents of the arrays in it, in order.
+        The bytes, and the contents of the arrays in the value, in order.
     """
     arrays: list[memoryview] = []
-    # Numbers of NumPy that are Python floats as well go as those; names of files may hold any bytes.
+    # np.float64 is a subclass of float, and is packed as one. File names may contain invalid UTF-8.
     packer = msgpack.Packer(default=_Substitute(arrays), unicode_errors="surrogatepass")
     return packer.pack(value), arrays
 
 
 def unpack(message: bytes | memoryview, contents: memoryview, *, lists: bool) -> Any:
-    """The value of some bytes; arrays in it share memory with their contents.
+    """The value that `pack` has serialised; its arrays share memory with `contents`.
 
     Args:
         message: The bytes.
-        contents: Of the arrays, each padded to a multiple of `ALIGNMENT`.
-        lists: Sequences become lists, otherwise tuples.
+        contents: Contents of the arrays, each padded to a multiple of `ALIGNMENT`.
+        lists: Whether sequences become lists; otherwise they become tuples.
 
     Raises:
-        Malformed: The bytes are no such value.
+        Malformed: The bytes are not a serialised value.
     """
     try:
         return msgpack.unpackb(
@@ -80,13 +80,13 @@ def unpack(message: bytes | memoryview, contents: memoryview, *, lists: bool) ->
         )
     except Malformed:
         raise
-    # Any exception of the library or NumPy for invalid data: not all are documented.
+    # For invalid data msgpack and NumPy raise various exceptions, not all of them documented.
     except Exception as problem:
         raise Malformed(f"A message cannot be read: {problem!r}.") from problem
 
 
 class _Substitute:
-    """Puts something that can be packed in the place of what cannot."""
+    """Converts values that MessagePack has no type for."""
 
     def __init__(self, arrays: list[memoryview]) -> None:
         self._arrays = arrays
@@ -101,7 +101,7 @@ class _Substitute:
             try:
                 plain = convert(value)
             except Exception:
-                # Types of others refuse in ways of their own; that is only the answer to a question here.
+                # Foreign types may raise any exception; it only means that this conversion does not apply.
                 continue
             return self._array(plain) if isinstance(plain, np.ndarray) else plain
         return _opaque(value)
@@ -121,7 +121,7 @@ class _Substitute:
 
 
 class _Restore:
-    """Makes values of what MessagePack has no types for."""
+    """Restores values that MessagePack has no type for."""
 
     def __init__(self, contents: memoryview) -> None:
         self._contents = contents
@@ -183,5 +183,5 @@ def _items(value: Iterable[Any]) -> list[Any]:
     return list(value)
 
 
-# In this order: arrays of one item are numbers, too, but not the other way round.
+# In this order, because arrays of one item can be converted to numbers, too, but must remain arrays.
 _CONVERSIONS: tuple[Callable[[Any], Any], ...] = (index, _numpy_array, _number, _items)

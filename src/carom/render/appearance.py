@@ -45,16 +45,17 @@ _GOOGLY: tuple[Rgba, ...] = (
 
 @record(frozen=False)
 class ShapeLook:
-    """One visible shape of a link.
+    """One visible shape of a link, with its present colours and texture.
 
     Attributes:
         geometry: The shape.
         frame: Its pose in the link frame.
         mesh: Its triangles, in its own frame.
-        rgba: Present colour. It multiplies the texture; only alpha 0 matters: such a shape is not drawn.
+        rgba: Present colour, which multiplies that of the texture. A shape of alpha 0 is not drawn; other
+            values of alpha have no effect.
         specular: Present colour of its highlights.
         texture: Number of its present texture, -1 if it has none.
-        two_sided: Its back faces are drawn, too.
+        two_sided: Whether its back faces are drawn, too.
     """
 
     geometry: Geometry
@@ -68,12 +69,12 @@ class ShapeLook:
 
 @record(frozen=False)
 class Appearance:
-    """The looks of one world; get it from `appearance_of`.
+    """The colours, textures and light of one world; get it from `appearance_of`.
 
     Attributes:
         textures: Its textures by number.
-        light: The light as last set; in the drop-in the light of an image is kept for the next ones.
-        changes: Increases with every change of a shape's appearance.
+        light: The light as last set. The drop-in keeps the light of one image for the next ones.
+        changes: Number of changes of shapes so far.
     """
 
     textures: Textures = field(default_factory=Textures)
@@ -96,12 +97,12 @@ class Appearance:
         texture: int | None = None,
         two_sided: bool | None = None,
     ) -> None:
-        """Changes the appearance of a link.
+        """Change the appearance of a link.
 
         Args:
             body: The body.
             link: The link; -1 is the base.
-            shape: Index of the shape among those of the link; None means all.
+            shape: Index of the shape among those of the link; None for all shapes.
             rgba: New colour.
             specular: New colour of highlights.
             texture: Number of the new texture, -1 for none.
@@ -122,11 +123,11 @@ class Appearance:
         self.changes += 1
 
     def knows(self, body: Body) -> bool:
-        """Whether the appearance of a body has been read already."""
+        """Whether the appearance of a body has been read or changed already."""
         return body in self._looks
 
     def number_textures(self, world: World) -> None:
-        """Numbers the textures of all bodies, in the order the bodies were loaded."""
+        """Number the textures of all bodies, in the order the bodies were loaded."""
         for body in world.bodies.values():
             self._of(body)
 
@@ -143,7 +144,7 @@ class Appearance:
         return looks
 
     def _soft_looks(self, base: LinkSpec, looks: list[ShapeLook], checkered: bool) -> list[ShapeLook]:
-        """Those of a soft body: visible from both sides, as cloth is, and with a texture if it has one."""
+        """Looks of a soft body: two-sided, because it may be cloth, and with its texture if it has one."""
         files = [None if visual.material is None else visual.material.texture for visual in base.visuals]
         images = [CHECKER if checkered else _image_of(file) for file in files]
         # In PyBullet the textures of soft bodies have no number.
@@ -154,7 +155,7 @@ class Appearance:
         ]
 
     def _first_looks(self, spec: LinkSpec, link: int, flags: LoadFlags) -> list[ShapeLook]:
-        # A link without visual shapes shows its collision shapes.
+        # A link without visual shapes is drawn with its collision shapes.
         if not spec.visuals:
             undefined = _undefined_colour(link, flags)
             return [self._look(shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions]
@@ -167,7 +168,7 @@ class Appearance:
         return looks
 
     def _look(self, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags) -> ShapeLook:
-        # Kept in memory: as in PyBullet, the file may be deleted after loading.
+        # The mesh is kept in memory because, as in PyBullet, its file may be deleted after loading.
         mesh = shape_mesh(geometry)
         look = ShapeLook(geometry, frame, mesh, rgba)
         if isinstance(geometry, (Plane, Heightfield)):
@@ -182,7 +183,7 @@ class Appearance:
 
 
 def _image_of(file: Path | None) -> Texels | None:
-    """The image of a material; an error in it does not stop loading."""
+    """The texture image of a material; if it cannot be read, a warning is logged and the result is None."""
     if file is None:
         return None
     try:
@@ -205,7 +206,7 @@ def _undefined_colour(link: int, flags: LoadFlags) -> Rgba:
 
 
 def appearance_of(world: World) -> Appearance:
-    """Colours and textures of a world. A world that has been reset has no textures any more."""
+    """Colours and textures of a world. A reset of the world removes all textures."""
     entry = _appearances.get(world)
     if entry is None:
         appearance = Appearance()
@@ -213,14 +214,14 @@ def appearance_of(world: World) -> Appearance:
         arrays, appearance = entry
         if arrays() is world.arrays:
             return appearance
-        # A reset gives a world new arrays.
+        # The world was reset: a reset replaces its arrays.
         appearance.textures.clear()
     _appearances[world] = (ref(world.arrays), appearance)
     return appearance
 
 
 def copy_appearance(world: World, other: World) -> None:
-    """Copy the appearance of a world to a copy of it, whose bodies have the same numbers."""
+    """Copy the appearance of a world to a copy of the world, whose bodies have the same numbers."""
     if world not in _appearances:
         return
     appearance = appearance_of(world)

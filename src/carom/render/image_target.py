@@ -1,4 +1,4 @@
-"""Memory and kernel runs for images of one size."""
+"""Buffers and kernel launches for images of one size."""
 
 from __future__ import annotations
 
@@ -27,9 +27,10 @@ class RawImage:
 
     Attributes:
         rgba: (height, width, 4) uint8 red, green, blue and 255.
-        depth: (height, width) float32 depth as in OpenGL's buffer: 0 at the near plane, 1 at the far one.
-        distance: (height, width) float32 distance from the plane of the eye [m]; infinite for the
-            background. Meaningful for perspective only.
+        depth: (height, width) float32 depth as in OpenGL's depth buffer: 0 at the near plane, 1 at the far
+            plane.
+        distance: (height, width) float32 distance from the camera along its viewing direction [m]; infinite
+            for the background. Meaningful for perspective projections only.
         label: (height, width) int32: body id + (link + 1) << 24; -1 for the background.
     """
 
@@ -40,7 +41,7 @@ class RawImage:
 
     @classmethod
     def blank(cls, width: int, height: int) -> RawImage:
-        """An empty image."""
+        """An image of the background only."""
         size = (height, width)
         return cls(
             np.full((*size, 4), 255, np.uint8),
@@ -52,7 +53,7 @@ class RawImage:
 
 @record(frozen=False, eq=False)
 class _Shadows:
-    """The view of the light, and the tasks that depend on it."""
+    """The view from the light, and the tasks that depend on it."""
 
     view: ViewBuffers
     depth_tasks: list[Task]
@@ -60,13 +61,13 @@ class _Shadows:
 
 
 class ImageTarget:
-    """Draws images of one size of one scene."""
+    """Draw images of one size of one scene."""
 
     def __init__(self, scene: SceneArrays, width: int, height: int) -> None:
         self._scene = scene
         self._size = (width, height)
         self._view = ViewBuffers(scene, width, height)
-        # Made when first needed: most images go without shadows.
+        # Created when first needed, because most images are drawn without shadows.
         self._shadows: dict[tuple[int, int], _Shadows] = {}
         picture = Picture()
         links = len(scene.link_rows)
@@ -89,14 +90,14 @@ class ImageTarget:
         light: Light,
         projector: Matrix | None,
     ) -> RawImage:
-        """Draws an image; see `Renderer.draw`.
+        """Draw an image; see `Renderer.draw`.
 
         Args:
             link_to_world: (links, 4, 4) poses of the links of the scene.
-            view: World to eye.
-            projection: Eye to clip coordinates.
+            view: (4, 4) world to eye coordinates.
+            projection: (4, 4) eye to clip coordinates.
             light: The light.
-            projector: World to homogeneous texture coordinates, or None.
+            projector: (4, 4) world to homogeneous texture coordinates, or None.
         """
         self._view.look(product(projection, view), link_to_world)
         self._link_rotation[:] = link_to_world[:, :3, :3]
@@ -143,6 +144,6 @@ class ImageTarget:
 
     def _set_bias(self, camera: ShadowCamera) -> None:
         lighting = self._lighting[0]
-        # The change of (depth w, w) when a point comes nearer to the light.
+        # Change of (depth w, w) when a point moves towards the light by the bias.
         lighting["bias_depth"] = -camera.bias * camera.projection[2, 2]
         lighting["bias_w"] = -camera.bias * camera.projection[3, 2]

@@ -21,16 +21,16 @@ MAX_TEXELS = 8192 * 8192
 
 
 def read_image(path: Path) -> Texels:
-    """Reads a PNG, JPEG, TGA, BMP or any other image that Pillow knows.
+    """Read a PNG, JPEG, TGA, BMP or any other image that Pillow can decode.
 
-    Unchanged files are served from a cache.
+    Files that have not changed since the last call come from a cache.
 
     Returns:
-        (height, width, 3) red, green and blue, the top row first; read-only. Transparent pixels have their
-        colour without transparency.
+        (height, width, 3) red, green and blue, the top row first; read-only. The alpha channel is dropped:
+        transparent pixels keep their colour.
 
     Raises:
-        DescriptionError: The file is missing, too large, broken or no image.
+        DescriptionError: The file is missing, too large, broken or not an image.
     """
     file = path.absolute()
     cached = _cache.get(file, file)
@@ -54,7 +54,7 @@ def _decoded(data: bytes, file: Path) -> Texels:
             texels = np.array(image.convert("RGB"))
     except UnidentifiedImageError:
         raise DescriptionError("the image cannot be read", file=file) from None
-    # Pillow's decoders raise almost anything for what they cannot decode.
+    # For broken files Pillow's decoders raise many types of exceptions.
     except (OSError, SyntaxError, ValueError, EOFError, Image.DecompressionBombError) as error:
         raise DescriptionError(f"the image is broken: {error}", file=file) from error
     if texels.size == 0:

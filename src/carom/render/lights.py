@@ -1,4 +1,4 @@
-"""Light that comes from far away in one direction."""
+"""Directional light."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ class Light:
 
     Attributes:
         direction: Towards the light, world axes; of any length but 0.
-        colour: Red, green and blue of the directed light.
+        colour: Red, green and blue of the directional light.
         distance: From the origin of the world to the lamp that casts the shadows [m]; infinite for parallel
             light.
         ambient: Ambient share of a surface's colour, visible without light.
-        diffuse: Diffuse share: brighter the more a surface faces the light.
+        diffuse: Diffuse share: the more a surface faces the light, the brighter it is.
         specular: Strength of highlights.
-        shadow: Things cast shadows.
-        shade: What remains of the directed light in a shadow.
+        shadow: Whether shapes cast shadows.
+        shade: Factor on the directional light in a shadow.
 
     Raises:
         ValueError: The direction has length 0, or a number is NaN or, but for the distance, infinite.

@@ -1,4 +1,4 @@
-"""The triangles of any shape."""
+"""Triangle meshes of all kinds of shapes, for rendering."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ _log = Logger("carom")
 
 _NOTHING = mesh_of([], [], [], [])
 _TEXTURE_SIDE = 2.0
-"""Length of landscape that a texture covers [m]."""
+"""Side of the square of a height field that the texture covers once [m]."""
 
 
 def shape_mesh(shape: Geometry) -> RenderMesh:
     """The triangles of a shape in its frame.
 
-    There are none, with a warning, where a mesh cannot be used, and none of signed distance fields.
+    The result is empty for a signed distance field. It is also empty, and a warning is logged, if the file of
+    a mesh cannot be used.
     """
     if isinstance(shape, SignedDistanceField):
         return _NOTHING
@@ -56,7 +57,7 @@ def _scaled(mesh: RenderMesh, scale: Vector3) -> RenderMesh:
     if scale == (1.0, 1.0, 1.0):
         return mesh
     factors = np.array(scale)
-    # Normals scale with the cofactors, which also do without an inverse where a factor is 0.
+    # Normals scale with the cofactors, which need no division by a factor that may be 0.
     cofactors = np.array([scale[1] * scale[2], scale[2] * scale[0], scale[0] * scale[1]])
     mirrored = factors.prod() < 0.0
     return replace(
@@ -89,6 +90,6 @@ def _given_triangles(shape: TriangleMesh) -> RenderMesh:
 
 
 def _corners(solid: Polyhedron) -> np.ndarray:
-    """Corners (m, 3, 3) of the triangles that the faces are made of."""
+    """Corners (m, 3, 3) of the triangles into which the faces are cut."""
     triangles = cut_into_fans(solid.corners.astype(np.int64), solid.corner_count.astype(np.int64))
     return solid.vertices[triangles]

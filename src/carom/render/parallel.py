@@ -1,4 +1,4 @@
-"""Running kernels of one image in parallel; they release Python's lock while they run."""
+"""Running the kernels of one image in parallel threads; kernels release the GIL while they run."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from concurrent.futures import ThreadPoolExecutor
 from carom.native.cpu import core_count
 
 MAX_WORKERS = 8
-"""More threads than this gain nothing for images of usual size."""
+"""Most threads used: more threads do not speed up images of usual size."""
 
 
 def worker_count() -> int:
-    """Number of threads: one for each processor that this process may use."""
+    """Number of threads: one for each CPU core that this process may use, up to `MAX_WORKERS`."""
     return min(core_count(), MAX_WORKERS)
 
 
 def run_all(tasks: Sequence[Callable[[], None]]) -> None:
-    """Runs all tasks, in any order and at the same time, and returns when the last one is done."""
+    """Run all tasks in parallel, in any order, and return when the last one is done."""
     if len(tasks) == 1 or worker_count() == 1:
         for task in tasks:
             task()
         return
     pool = _pool()
-    # This thread does its share, too: often it is done before a sleeping thread has woken up.
+    # This thread runs tasks, too: it often finishes them before a sleeping thread has woken up.
     pending = iter(tasks)
     others = [pool.submit(_work, pending) for _ in range(min(worker_count(), len(tasks)) - 1)]
     _work(pending)
@@ -33,7 +33,7 @@ def run_all(tasks: Sequence[Callable[[], None]]) -> None:
 
 
 def _work(pending: object) -> None:
-    # Taking the next item of a list iterator is one indivisible operation.
+    # Taking the next item of a list iterator is an atomic operation.
     for task in pending:  # type: ignore[attr-defined]
         task()
 
@@ -47,6 +47,6 @@ def _pool() -> ThreadPoolExecutor:
     return _pools[0]
 
 
-# Threads do not exist in a forked process.
+# The threads of a process do not exist in its forked children.
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_pools.clear)

@@ -1,4 +1,4 @@
-"""Boxes, balls, cylinders, capsules and planes as triangles."""
+"""Triangle meshes of boxes, spheres, cylinders, capsules and planes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from carom.formats.visuals.render_mesh import RenderMesh, mesh_of
 from carom.native.trigonometry import cos, sin
 
 SEGMENTS = 48
-"""Sides of the polygon that stands for a circle: its edges are within 0.2 % of the radius."""
+"""Sides of the polygon that approximates a circle; its edges deviate by at most 0.2 % of the radius."""
 
 PLANE_HALF_SIZE = 128.0
-"""A plane is drawn as a square of twice this side [m]."""
+"""A plane is drawn as a square whose side is twice this length [m]."""
 
 Primitive = Sphere | Box | Cylinder | Capsule | Plane
 
@@ -28,7 +28,7 @@ def primitive_mesh(shape: Primitive, segments: int = SEGMENTS) -> RenderMesh:
 
     Args:
         shape: The primitive.
-        segments: Sides of the polygon that stands for a circle; a multiple of 4.
+        segments: Sides of the polygon that approximates a circle; a multiple of 4.
     """
     if isinstance(shape, Box):
         return _box(shape.half_extents)
@@ -65,7 +65,7 @@ def _box(half: Vector3) -> RenderMesh:
 
 
 def _plane(normal: Vector3) -> RenderMesh:
-    """A square through the origin; its texture repeats every metre or so."""
+    """A square through the origin; its texture repeats every two metres."""
     across, along = _plane_axes(normal)
     size = PLANE_HALF_SIZE
     positions, uvs = [], []
@@ -76,7 +76,7 @@ def _plane(normal: Vector3) -> RenderMesh:
 
 
 def _plane_axes(n: Vector3) -> tuple[Vector3, Vector3]:
-    """Two unit vectors that complete a unit normal to a right-handed frame."""
+    """Two unit vectors that form a right-handed frame with a unit normal."""
     x, y, z = n
     if abs(z) > 0.5**0.5:
         length = hypot(y, z)
@@ -93,7 +93,7 @@ def _plane_axes(n: Vector3) -> tuple[Vector3, Vector3]:
 
 
 def _circle(segments: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points (segments + 1, 2) once around a circle of radius 1, and the fraction of the turn at each."""
+    """Points (segments + 1, 2) around a circle of radius 1, and the fraction of the full turn at each."""
     turn = np.linspace(0.0, 1.0, segments + 1)
     angles = (2.0 * np.pi * turn).tolist()
     return np.array([(cos(angle), sin(angle)) for angle in angles]), turn
@@ -119,11 +119,11 @@ def _cylinder(radius: float, length: float, segments: int) -> RenderMesh:
 
 
 def _rounded(radius: float, length: float, segments: int) -> RenderMesh:
-    """A ball, its halves `length` apart along z and joined by a cylinder."""
+    """A sphere if `length` is 0, else a capsule whose half-spheres are `length` apart along z."""
     circle, turn = _circle(segments)
-    # Bands of triangles from pole to pole; even, so that a capsule can be cut at the equator.
+    # Number of bands of triangles from pole to pole: even, so that a capsule can be cut at the equator.
     rings = segments // 2
-    # From the lower pole to the upper; the equator occurs twice where a cylinder lies between.
+    # Latitudes from the lower pole to the upper one; a capsule has the equator twice.
     angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, rings + 1)
     halves = np.where(angles < 0.0, -0.5, 0.5) * length
     if length > 0.0:
@@ -138,13 +138,13 @@ def _rounded(radius: float, length: float, segments: int) -> RenderMesh:
         uvs.append(np.column_stack([turn, np.full(segments + 1, angle / np.pi + 0.5)]))
     row = segments + 1
     bands = [_band(i * row, segments) for i in range(len(angles) - 1)]
-    # At the poles half of the triangles of a band have no area.
+    # At the poles half of the triangles of a band have no area and are left out.
     bands[0], bands[-1] = bands[0][1::2], bands[-1][::2]
     return mesh_of(*(np.concatenate(parts) for parts in (positions, normals, uvs, bands)))
 
 
 def _band(lower: int, segments: int) -> NDArray[np.int64]:
-    """Triangles (2 segments, 3) between a ring, given by its first vertex, and the one that follows."""
+    """Triangles (2 segments, 3) between a ring, given by its first vertex, and the next ring."""
     upper = lower + segments + 1
     i = np.arange(segments)
     first = np.stack([lower + i, lower + i + 1, upper + i], axis=1)

@@ -14,10 +14,10 @@ _LEAST_DETERMINANT = 1e-300
 
 
 def to_pixels(width: int, height: int) -> Matrix:
-    """From clip coordinates, as in OpenGL, to homogeneous pixel coordinates.
+    """Matrix from clip coordinates, as in OpenGL, to homogeneous pixel coordinates.
 
-    As in PyBullet the centre of the view is at column width / 2, and height / 2 above the lowest row: half a
-    pixel from the centre of the image.
+    As in PyBullet the centre of the view is at column width / 2, and height / 2 above the lowest row. This is
+    half a pixel from the centre of the image in each direction.
     """
     return np.array(
         [
@@ -30,13 +30,13 @@ def to_pixels(width: int, height: int) -> Matrix:
 
 
 def facing_sign(world_to_pixel: Matrix) -> float:
-    """Sign of the volume that the corners of a triangle seen from outside span in (column w, row w, w).
+    """Sign of the volume that the corners of a front-facing triangle span in (column w, row w, w).
 
     Returns:
-        1 or -1; 0 if the matrix shows nothing.
+        1 or -1; 0 if the matrix is so singular that no triangle is visible.
     """
     column, row, depth, w = world_to_pixel[:, :3]
-    # The direction in which neither column nor row changes: that of parallel rays.
+    # The direction in which neither column nor row changes: the viewing direction of a parallel projection.
     along = np.cross(column, row)
     perspective = _dot(along, w)
     if abs(perspective) > 1e-12 * length(column) * length(row) * length(w):
@@ -45,12 +45,12 @@ def facing_sign(world_to_pixel: Matrix) -> float:
 
 
 def is_singular(matrix: Matrix) -> bool:
-    """The matrix is singular."""
+    """Whether a matrix is singular."""
     return not abs(np.linalg.det(matrix)) > _LEAST_DETERMINANT
 
 
 def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:
-    """World to eye: x to the right, y up, z backwards; `up` may be parallel to the view."""
+    """World to eye coordinates: x right, y up, z backwards; `up` may be parallel to the viewing direction."""
     forward = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
     forward = unit_vector(forward)
     right = np.cross(forward, up)
@@ -74,7 +74,7 @@ def _dot(a: Matrix, b: Matrix) -> float:
 
 
 def parallel_projection(half_size: float, near: float, far: float) -> Matrix:
-    """Orthographic projection through a square, from `near` to `far` [m]: eye to clip coordinates."""
+    """Eye to clip coordinates of an orthographic projection of a square, from `near` to `far` [m]."""
     matrix = np.diag([1.0 / half_size, 1.0 / half_size, -2.0 / (far - near), 1.0])
     matrix[2, 3] = -(far + near) / (far - near)
     return matrix
@@ -83,7 +83,7 @@ def parallel_projection(half_size: float, near: float, far: float) -> Matrix:
 def pinhole_projection(
     width: int, height: int, fx: float, fy: float, cx: float, cy: float, near: float, far: float
 ) -> Matrix:
-    """Eye to clip coordinates of a pinhole camera; pixel (0, 0) is the middle of the top left one."""
+    """Eye to clip coordinates of a pinhole camera; the top left pixel has its centre at (0, 0)."""
     return np.array(
         [
             [2.0 * fx / width, 0.0, 1.0 - 2.0 * cx / width, 0.0],

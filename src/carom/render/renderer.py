@@ -1,4 +1,4 @@
-"""Images of a world."""
+"""The renderer of a world, which draws its images."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 MAX_SIDE = 16384
 MAX_PIXELS = 64 << 20
-"""Largest image: width and height, and their product."""
+"""Largest number of pixels of an image; its width and height are at most `MAX_SIDE`."""
 
 KEPT_SIZES = 4
 """Number of image sizes whose memory is kept between images."""
 
 
 class Renderer:
-    """Draws one world; get it from `renderer_of`. Not to be used by several threads at once."""
+    """Draw images of one world; get it from `renderer_of`. Not safe for use by several threads at once."""
 
     def __init__(self) -> None:
         self._scene: SceneArrays | None = None
@@ -42,11 +42,11 @@ class Renderer:
         light: Light,
         projector: Matrix | None = None,
     ) -> RawImage:
-        """Draws an image of the world as it is now.
+        """Draw an image of the present state of the world.
 
         Args:
             world: The world.
-            view: (4, 4) world to eye; the eye looks along -z, y is up.
+            view: (4, 4) world to eye coordinates; the camera looks along -z, y is up.
             projection: (4, 4) eye to clip coordinates, as in OpenGL.
             width: Number of columns.
             height: Number of rows.
@@ -66,7 +66,7 @@ class Renderer:
             if not np.isfinite(matrix).all():
                 raise ValueError(f"the {name} matrix is not finite")
         if is_singular(view) or is_singular(projection):
-            # Singular matrices show nothing, such as those of a missing window, which are all zeros.
+            # A singular matrix projects no triangle. Without a window, for instance, matrices are all zeros.
             return RawImage.blank(width, height)
         scene = self._present_scene(world)
         target = self._target(scene, width, height)

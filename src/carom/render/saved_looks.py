@@ -1,4 +1,4 @@
-"""Colours and textures in the file of a world."""
+"""Saving and loading colours and textures in the file of a world."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class SavedLook:
-    """Colours and texture of one shape; `texture` is an index in the file, -1 for none."""
+    """Colours and texture of one shape; `texture` is an index into the saved textures, -1 for none."""
 
     rgba: Rgba
     specular: Vector3
@@ -35,9 +35,9 @@ class SavedLooks:
     """Colours and textures of a world.
 
     Attributes:
-        textures: Their images (height, width, 3).
-        bodies: For each body that was drawn or changed, its shapes by link, the base first; None for the
-            others, which look as in their descriptions.
+        textures: Images of the textures (height, width, 3).
+        bodies: Shapes by link, the base first, of each body whose appearance was read or changed; None for
+            the others, which have the colours and textures of their descriptions.
     """
 
     textures: list[NDArray[np.uint8]]
@@ -45,7 +45,7 @@ class SavedLooks:
 
 
 def save(world: World, writer: Writer) -> Any:
-    """The text."""
+    """The colours and textures of a world as data for its file."""
     appearance = appearance_of(world)
     places: dict[int, int] = {}
     bodies: list[list[list[SavedLook]] | None] = []
@@ -71,8 +71,8 @@ def load(bodies: list[Body], reader: Reader, data: Any) -> None:
     """Apply the saved colours and textures to these bodies.
 
     Raises:
-        carom.errors.DescriptionError: It was not written by `save`.
-        ValueError: It belongs to other bodies.
+        carom.errors.DescriptionError: The data were not written by `save`.
+        ValueError: The data belong to other bodies.
     """
     saved = reader.record(SavedLooks, data, "parts.looks")
     if len(saved.bodies) != len(bodies):

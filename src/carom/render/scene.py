@@ -28,16 +28,16 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 MAX_PART_TRIANGLES = 2048
-"""Larger meshes are cut: parts out of sight cost nothing, and the others are shared out to threads."""
+"""Larger meshes are cut into parts, so that parts out of view are skipped and threads share the others."""
 
 CHUNKS_PER_WORKER = 3
 LINK_SHIFT = 24
-"""Labels hold the body in the bits below and the link, from 1, above."""
+"""Labels hold the body id in the bits below this one, and the link + 1 from this one upwards."""
 
 
 @record(frozen=False, eq=False)
 class Piece:
-    """Part of a mesh with its own vertices, and a ball around it."""
+    """Part of a mesh with its own vertices, and its bounding sphere."""
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float64]
@@ -49,7 +49,7 @@ class Piece:
 
 @functools.lru_cache(maxsize=1024)
 def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
-    """A mesh cut into pieces of at most `MAX_PART_TRIANGLES`."""
+    """A mesh cut into pieces of at most `MAX_PART_TRIANGLES` triangles."""
     pieces = []
     for first in range(0, len(mesh.triangles), MAX_PART_TRIANGLES):
         used, inverse_index = np.unique(
@@ -72,7 +72,7 @@ def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
 
 @record(frozen=False)
 class _Columns:
-    """The arrays of a scene while they are collected."""
+    """Lists from which the arrays of a scene are concatenated."""
 
     positions: list[NDArray[Any]] = field(default_factory=list)
     normals: list[NDArray[Any]] = field(default_factory=list)
@@ -90,17 +90,18 @@ class _Columns:
 
 
 class SceneArrays:
-    """Everything visible of a world, in link frames.
+    """The visible shapes of a world, in the inertial frames of their links.
 
     Attributes:
-        struct: The arrays, for kernels.
-        link_rows: Rows of `World.link_pose` of the links that show something.
-        part_links: Slot in `link_rows` of the link each part belongs to.
-        part_centres: (parts, 3) middle of a ball around each part, in the inertial frame of its link [m].
-        part_radii: Radius of that ball [m].
+        struct: The arrays, as the kernels take them.
+        link_rows: Rows of `World.link_pose` of the links with visible shapes.
+        part_links: Index in `link_rows` of the link each part belongs to.
+        part_centres: (parts, 3) centre of the bounding sphere of each part, in the inertial frame of its link
+            [m].
+        part_radii: (parts,) radius of that sphere [m].
         vertex_count: Number of vertices.
         triangle_count: Number of triangles.
-        chunk_count: Number of chunks the triangles are handled in.
+        chunk_count: Number of chunks of parts, each of which one task projects.
     """
 
     def __init__(self, world: World, appearance: Appearance) -> None:
@@ -132,13 +133,13 @@ class SceneArrays:
         self._take_textures(appearance.textures)
 
     def shows(self, world: World, appearance: Appearance) -> bool:
-        """The arrays are up to date, except perhaps textures."""
+        """Whether the arrays are up to date, apart from the textures."""
         return self._changes == appearance.changes and [body() for body in self._bodies] == list(
             world.bodies.values()
         )
 
     def follow_nodes(self) -> None:
-        """Updates the surfaces of soft bodies from their nodes."""
+        """Update the surfaces of soft bodies from their nodes."""
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
@@ -166,7 +167,7 @@ class SceneArrays:
         return self._texture_slots.setdefault(number, len(self._texture_slots))
 
     def update_textures(self, textures: Textures) -> bool:
-        """Copies changed textures; true if there were any, and `struct` has other arrays."""
+        """Copy the textures if any has changed; true if so: `struct` then has new arrays."""
         if self._texture_changes == textures.changes:
             return False
         self._take_textures(textures)
@@ -175,7 +176,7 @@ class SceneArrays:
     def _take_textures(self, textures: Textures) -> None:
         self._texture_changes = textures.changes
         images = [textures.image(number) for number in self._texture_slots]
-        # Bodies loaded from the same file share one image, though each has a texture of its own.
+        # Bodies loaded from the same file have textures of their own, but share one image in memory.
         distinct = {id(image): image for image in images}
         # The lower row comes first, as in texture coordinates.
         texels = [image[::-1].reshape(-1, 3) for image in distinct.values()]
@@ -218,7 +219,7 @@ def _struct(columns: _Columns) -> tuple[Any, int]:
 
 
 def _chunk_starts(triangle_counts: list[int]) -> NDArray[np.int32]:
-    """First part of each chunk, and the number of parts; chunks have about as many triangles each."""
+    """First part of each chunk, then the number of parts; all chunks have similar numbers of triangles."""
     size = max(sum(triangle_counts) / (CHUNKS_PER_WORKER * worker_count()), 1.0)
     starts, filled = [0], 0
     for part, count in enumerate(triangle_counts):

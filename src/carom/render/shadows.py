@@ -1,4 +1,4 @@
-"""The camera of a light, for shadows."""
+"""The camera at the light, for shadow mapping."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from carom.render.projection import Matrix, look_at, parallel_projection, unit_v
 from carom.render.scene import SceneArrays
 
 PARALLEL_MAP_SIDE = 1024
-"""Columns and rows of the shadow map of parallel light."""
+"""Width and height of the shadow map of parallel light [pixels]."""
 
 LARGEST_CASTER = 50.0
-"""Shapes larger than this, such as floors, cast no shadows of parallel light [m]: radius around them."""
+"""Bounding radius above which a shape, such as a floor, casts no shadow in parallel light [m]."""
 
-# A surface this far behind the nearest one is still lit, or it would shade itself.
+# Shadow bias: a surface this far behind the nearest one is still lit, or it would shade itself.
 _LAMP_BIAS = 0.05
 """Of a lamp [m]."""
 _PARALLEL_BIAS = 3.0
@@ -27,14 +27,14 @@ _PARALLEL_BIAS = 3.0
 
 @record(eq=False)
 class ShadowCamera:
-    """The light as a camera.
+    """A camera at the light; its depth buffer is the shadow map.
 
     Attributes:
-        view: (4, 4) world to eye.
+        view: (4, 4) world to eye coordinates.
         projection: (4, 4) eye to clip coordinates.
         width: Columns of the shadow map.
         height: Rows of the shadow map.
-        bias: Distance behind the nearest surface that is still lit [m].
+        bias: Distance behind the nearest surface up to which another one is still lit [m].
     """
 
     view: Matrix
@@ -47,16 +47,16 @@ class ShadowCamera:
 def shadow_camera(
     light: Light, scene: SceneArrays, link_to_world: Matrix, projection: Matrix, width: int, height: int
 ) -> ShadowCamera:
-    """The camera of a light.
+    """The camera at a light.
 
-    A lamp at a finite distance sees, as in PyBullet, what the camera of the image would see from there.
-    Parallel light sees everything that may cast a shadow.
+    For a lamp at a finite distance it has the projection of the image, as in PyBullet. For parallel light its
+    view covers all shapes that may cast a shadow.
 
     Args:
         light: The light.
         scene: The scene.
         link_to_world: (links, 4, 4) poses of its links.
-        projection: (4, 4) of the image.
+        projection: (4, 4) projection of the image.
         width: Columns of the image.
         height: Rows of the image.
     """
@@ -76,7 +76,7 @@ def shadow_camera(
 
 
 def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, float]:
-    """A ball around everything that may cast shadows."""
+    """Centre and radius [m] of a bounding sphere of all shapes that may cast shadows."""
     casts = scene.part_radii < LARGEST_CASTER
     if not casts.any():
         return np.zeros(3), 1.0

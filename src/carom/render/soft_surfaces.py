@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def node_normals(nodes: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """(n, 3) unit normals at the nodes of a surface: those of the triangles around, by their areas."""
+    """(n, 3) unit normals at the nodes: area-weighted means over the triangles around each node."""
     corners = nodes[faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = np.zeros_like(nodes)
@@ -39,7 +39,7 @@ def surface_mesh(body: SoftBody, first: RenderMesh) -> RenderMesh:
 
     Args:
         body: The body.
-        first: Its surface when it was loaded, each triangle with vertices of its own.
+        first: Its surface when it was loaded, with three vertices of its own for each triangle.
     """
     vertices, triangles = nodes_at_base(body)
     normals = node_normals(vertices, triangles)
@@ -57,9 +57,9 @@ class SoftSurface:
     Attributes:
         body: The body.
         first_vertex: Row of its first vertex.
-        first_part: Its first part, and those after it until `end_part`.
-        end_part: The row behind its last part.
-        part_starts: Its first vertex in each of these parts, counted from its own first one.
+        first_part: Row of its first part.
+        end_part: Row after its last part.
+        part_starts: First vertex of each of these parts, relative to `first_vertex`.
     """
 
     body: SoftBody
@@ -69,12 +69,12 @@ class SoftSurface:
     part_starts: NDArray[np.int64]
 
     def write(self, arrays: dict[str, Any], centres: NDArray[np.float64], radii: NDArray[np.float64]) -> None:
-        """Update the arrays of a scene from the nodes.
+        """Update the arrays of a scene from the positions of the nodes.
 
         Args:
-            arrays: Those that kernels see, by name.
-            centres: Middle of a ball around each part, in the inertial frame of its link.
-            radii: Radius of that ball.
+            arrays: Arrays of the `Scene` struct by name.
+            centres: Centre of the bounding sphere of each part, in the inertial frame of its link [m].
+            radii: Radius of that sphere [m].
         """
         nodes, triangles = nodes_at_base(self.body)
         corners = triangles.reshape(-1)

@@ -1,4 +1,4 @@
-"""Memory of one view of a scene, and the kernel runs that fill it."""
+"""Buffers of one view of a scene, and the kernel launches that fill them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from carom.render.projection import Matrix, facing_sign, to_pixels
 from carom.render.scene import SceneArrays
 
 BANDS_PER_WORKER = 4
-"""Rows are shared out in more bands than there are threads: some show more than others."""
+"""Bands of image rows for each thread: several, because some bands take longer than others."""
 
 Task = Callable[[], None]
 
 
 class ViewBuffers:
-    """One view of a scene at one size.
+    """Buffers of one view of a scene at one image size.
 
     Attributes:
-        struct: The arrays, for kernels.
-        project: Tasks that find the triangles in view.
-        bands: First row of each band, and the height.
+        struct: The arrays, as the kernels take them.
+        project: Tasks that find the triangles in view, one for each chunk of the scene.
+        bands: First row of each band, followed by the image height.
     """
 
     def __init__(self, scene: SceneArrays, width: int, height: int) -> None:
@@ -55,19 +55,19 @@ class ViewBuffers:
         self.bands: list[int] = [height * band // count for band in range(count + 1)]
 
     def depth_tasks(self, scene: SceneArrays) -> list[Task]:
-        """Tasks that find the nearest depth in each pixel, to be run after those of `project`."""
+        """Tasks that find the smallest depth in each pixel; run them after those of `project`."""
         return [
             Launch(depth_kernel, 1, [scene.struct, self.struct, first, end]).function
             for first, end in pairwise(self.bands)
         ]
 
     def look(self, world_to_clip: Matrix, link_to_world: Matrix, *, two_sided: bool = False) -> None:
-        """Sets the pose of the eye.
+        """Set the camera and the poses of the links.
 
         Args:
             world_to_clip: (4, 4) product of projection and view matrix.
             link_to_world: (links, 4, 4) poses of the links.
-            two_sided: Back faces are drawn, too.
+            two_sided: Draw back faces, too.
         """
         world_to_pixel = product(self._to_pixels, world_to_clip)
         self._facing[0] = 0.0 if two_sided else facing_sign(world_to_pixel)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from carom.scene.link import Links
     from carom.world.world import World
 
-# Of the squared length of a unit quaternion.
+# Largest rounding error of the squared length of a unit quaternion.
 ROUNDING = 1e-15
 _NUMBER = np.dtype(NUMPY_REAL)
 _POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
@@ -41,7 +41,7 @@ class Body:
 
     Attributes:
         id: Number of the body in its world.
-        world: The world it lives in.
+        world: The world that contains it.
         spec: The specification it was loaded from, with the values of the file.
         joint_count: Number of joints, fixed ones included; also the number of links besides the base.
         joint_types: Code of each joint: 0 revolute, 1 prismatic, 2 spherical, 3 planar, 4 fixed.
@@ -208,13 +208,13 @@ class Body:
             **changes: Fields of `LinkDynamics` by name (`inertia` after `mass`, which sets the
                 inertia of the collision shapes), `joint_limit_force` [N m or N], and for the whole
                 body `linear_damping`, `angular_damping` [1/s], `max_joint_velocity`
-                [rad/s and m/s], `activation_state` (bits of `model.flags.ActivationChange`) and
+                [rad/s and m/s], `activation_state` (bits of `layouts.flags.ActivationChange`) and
                 `sleep_threshold`, the sum of squared velocities below which it is at rest.
         """
         change_dynamics(self, link, changes)
 
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
-        """Set all numbers of a link at once, except the limits of its joint; -1 is the base."""
+        """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
         self._dynamics[link + 1] = dynamics
         write_link(self, link)
 

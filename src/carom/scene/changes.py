@@ -1,6 +1,6 @@
 """Changes of the bodies and constraints of a world: each is made completely or not at all.
 
-An exception may come at any line: from a signal handler, or for lack of memory. The steps recorded in
+An exception may occur at any line: from a signal handler, or for lack of memory. The steps recorded in
 `World.undo` then undo the change or complete it.
 """
 
@@ -108,7 +108,7 @@ def remove_body(world: World, body: Body) -> None:
 
 
 def tie(world: World, make: Callable[[], UserConstraint]) -> UserConstraint:
-    """Add the user constraint that a function makes."""
+    """Add the user constraint that `make` creates."""
     with begin_with_constraints(world) as undo:
         undo.note(world.user_constraints.way_back())
         undo.note(world.constraints.way_back())

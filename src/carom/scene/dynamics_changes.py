@@ -41,7 +41,7 @@ _NOT_OF_SURFACE = {
 
 
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
-    """Change a link, its joint, or parameters of the whole body: all of it or nothing."""
+    """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     undo = body.world.undo
     undo.settle()
     undo.at_once(dynamics_change(body, link, changes))
@@ -51,11 +51,11 @@ def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callab
     """Prepare a change of the dynamics of a link.
 
     Returns:
-        A function that does it; if interrupted, it can be called again, with the same result.
+        A function that makes the change; if interrupted, it can be called again, with the same result.
 
     Raises:
-        AttributeError: There is no such field.
-        TypeError, ValueError: A value is not what belongs there.
+        AttributeError: There is no such parameter.
+        TypeError, ValueError: A value is not a number, or not three numbers for a vector.
     """
     dynamics = body.dynamics(link)
     for name, value in changes.items():
@@ -75,7 +75,7 @@ def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callab
 
 
 def _surface_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
-    """The changes of contact parameters of a link."""
+    """Prepare changes of contact parameters of a link."""
     shapes = body.world.contact_arrays.shapes
     will_look_ahead = not shapes.looks_ahead and changes.get("ccd_swept_sphere_radius", 0.0) > 0.0
     return partial(_change_surface, body, link, changes, will_look_ahead)
@@ -91,18 +91,26 @@ def _change_surface(body: Body, link: int, changes: Mapping[str, Any], will_look
 
 
 def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
-    """Check everything before anything is written."""
+    """Check that a parameter exists and has a value of the right type, before anything is changed."""
     if name in _VECTORS:
         x, y, z = value
-        _ = float(x), float(y), float(z)
+        for component in (x, y, z):
+            _check_number(component)
     elif type(value) is not float:
-        float(value)
+        _check_number(value)
     if name not in _NOT_OF_SURFACE:
         getattr(dynamics, name)
 
 
+def _check_number(value: Any) -> None:
+    # `float` also takes text.
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"must be a real number, not {value!r}")
+    float(value)
+
+
 def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Callable[[], None]]:
-    """The changes of anything except the surface of a link; each can be called again."""
+    """Prepare all changes except those of contact parameters; each function can be called again."""
     steps: list[Callable[[], None]] = []
     model, tree = body.world.arrays.model.numpy, body.rows.tree
     for name, field in OF_BODY.items():
@@ -131,10 +139,10 @@ def _put(array: np.ndarray, row: int, value: float) -> None:
 
 
 def _activation_change(body: Body, change: ActivationChange) -> Callable[[], None]:
-    """Put a body to sleep, wake it up, or change whether it may fall asleep by itself.
+    """Prepare to put a body to sleep, wake it up, or change whether it may fall asleep by itself.
 
-    As in Bullet it takes effect at the end of the next step, and a body that must not wake up keeps its
-    permission to sleep.
+    As in Bullet, this takes effect at the end of the next step, and whether a body may fall asleep cannot be
+    changed while the body may not wake up.
     """
     model, state = body.world.arrays.model.numpy, body.world.arrays.state.numpy
     tree = body.rows.tree
@@ -176,7 +184,7 @@ def write_link(body: Body, link: int) -> None:
 
 
 def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) -> Callable[[], None]:
-    """Set the mass and the inertia, by default that of the collision shapes; a base without mass is fixed."""
+    """Prepare to set mass and inertia (by default that of the collision shapes); mass 0 fixes a base."""
     world, dynamics = body.world, body.dynamics(link)
     moments = shape_inertia(body, link, mass) if inertia is None else inertia
     frees_or_fixes = link == BASE and (mass > 0.0) == body.fixed_base
@@ -199,19 +207,19 @@ def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
 
 
 def set_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """The same without renumbering the islands."""
+    """Free the base of a body, or fix it in the world, without renumbering the islands."""
     world.arrays.set_base_freedom(body.rows, free=free)
     body.fixed_base = not free
     body.derived.clear()
 
 
 def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
-    """Principal moments [kg m²] that the collision shapes of a link have at a mass [kg]."""
+    """Principal moments of inertia [kg m²] of a link's collision shapes for a given mass [kg]."""
     return moments_at(mass, shape_terms(body, link))
 
 
 def shape_terms(body: Body, link: int) -> MassTerms:
-    """How the principal moments that the collision shapes of a link have depend on its mass."""
+    """The principal moments of inertia of a link's collision shapes as a function of the mass."""
     spec = body.link_spec(link)
     return mass_terms(
         spec.collisions,
@@ -249,7 +257,7 @@ def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:
 
 
 def _set_limit_force(body: Body, joint: int, force: float) -> None:
-    """The bound of a limit is an impulse: force times the substep at the time of the call."""
+    """Set the maximum impulse of a limit: the force times the present duration of a substep."""
     impulse = force * body.world.parameters.substep_time
     limit = body.world.constraints.limit_of(body, joint)
     if limit is not None:

@@ -1,4 +1,4 @@
-"""Why a step could not be completed: looks for NaN that scripts have written into the state."""
+"""The cause of a failed step: NaN that a script has written into the state."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _PD = ("target position", "target velocity", "position gain", "velocity gain", "
 
 
 def cause_in(body: Body) -> str:
-    """Describes the first NaN among a body's drives and coordinates; empty if there is none.
+    """Describe the first NaN among a body's drives and coordinates; an empty string if there is none.
 
     Infinite limits of drives are allowed.
     """

@@ -1,4 +1,4 @@
-"""Handles can outlive their body; its rows then belong to other bodies."""
+"""Access to the world of a body, unless the body was removed: its rows may then belong to other bodies."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class Joint:
     """One joint of a body. Positions are in rad or m, forces in N m or N, depending on its type.
 
     The scalar attributes and methods are for joints with one degree of freedom (revolute,
-    continuous, prismatic) and raise `ValueError` on others; `coordinates` and `rates` serve all.
+    continuous, prismatic) and raise `ValueError` on others; `coordinates` and `rates` work for all.
 
     Attributes:
         body: The body it belongs to.
@@ -73,7 +73,7 @@ class Joint:
 
     @property
     def child(self) -> Link:
-        """The child link, which it moves."""
+        """The child link, which the joint moves."""
         return self.body.links[self.index]
 
     @property
@@ -134,12 +134,18 @@ class Joint:
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
-        world_of(self.body)  # refuses joints of a body that is gone
+        self.body.set_joint_state(self.index, *self.checked_state(position, velocity))
+
+    def checked_state(
+        self, position: ArrayLike, velocity: ArrayLike = 0.0
+    ) -> tuple[list[float], list[float]]:
+        """The coordinates of a state for `reset`, checked as it does."""
+        world_of(self.body)  # raises an error if the body has been removed
         position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
         if self._has_quaternion and not position.any():
             raise ValueError("position must be a quaternion other than 0")
         velocity = np.broadcast_to(finite(velocity, "velocity"), self.degrees_of_freedom)
-        self.body.set_joint_state(self.index, position.tolist(), velocity.tolist())
+        return position.tolist(), velocity.tolist()
 
     # Drive
 
@@ -214,7 +220,7 @@ class Joint:
         Args:
             target: Rest position of the spring.
             stiffness: [N m/rad or N/m].
-            damping: [N m s/rad or N s/m]. The force is explicit: too much for the inertia is unstable.
+            damping: [N m s/rad or N s/m]. It is explicit: too large a value for the inertia is unstable.
             velocity: Velocity at which the damper exerts no force.
             max_force: Maximum force; `effort_limit` by default.
         """
@@ -236,11 +242,11 @@ class Joint:
         damping: float = 1.0,
         max_force: float | None = None,
     ) -> None:
-        """The motor rotates a spherical joint to an orientation of the child in the parent.
+        """Position control of a spherical joint: rotate the child link to an orientation in the parent link.
 
         Args:
             target: Quaternion (x, y, z, w); normalised here.
-            gain: Share of the error per substep.
+            gain: Share of the orientation error corrected per substep.
             damping: Share of the angular velocity removed per substep.
             max_force: Maximum torque about each axis; `effort_limit` by default.
         """
@@ -262,7 +268,7 @@ class Joint:
         )
 
     def set_torque(self, torque: ArrayLike) -> None:
-        """Torque control: apply a force or torque in the next step, replacing one set before.
+        """Torque control: apply a force or torque in the next step, instead of one set before.
 
         The motor is not switched off; see `disable_motor`.
         """
@@ -270,7 +276,7 @@ class Joint:
         world_of(self.body).joint_torque[self._dofs] = torque
 
     def disable_motor(self) -> None:
-        """Switch off the motor, which every joint has at first, and the spring."""
+        """Switch off the motor, which is on after loading, and the spring."""
         world = world_of(self.body)
         joint_motor.switch_off(world.motor, world.pd, self._dofs)
 
@@ -284,16 +290,17 @@ class Joint:
 
     def enable_sensor(self, enabled: bool = True) -> None:
         """Switch the force-torque sensor on or off; it reads 0 until the next step."""
-        world_of(self.body)  # refuses joints of a body that is gone
+        world_of(self.body)  # raises an error if the body has been removed
         self.body.set_sensor(self.index, enabled)
 
     @property
     def reaction(self) -> Array:
         """Force [N] and torque [N m] measured by the sensor in the last substep, shape (6,).
 
-        What the joint carries from its parent to its link: weight and motion of the links on it, applied
-        forces, contacts, user constraints and soft bodies, but not what its own motor or limit does.
-        In the inertial frame of the child link, unless `EngineParameters.joint_feedback_mode` says otherwise.
+        The wrench that the joint transmits from its parent link to its child link, due to weight and inertia
+        of the links beyond it, applied forces, contacts, user constraints and soft bodies, but without the
+        force of its own motor or limit. It is in the inertial frame of the child link, unless
+        `EngineParameters.joint_feedback_mode` selects another frame.
         """
         return world_of(self.body).joint_reaction[self.body.first_link + 1 + self.index].copy()
 
@@ -337,7 +344,7 @@ class Joints(Named[Joint]):
         self._movable = [joint for joint in self if joint.degrees_of_freedom]
 
     def _repr_html_(self) -> str:
-        """A table of them, for notebooks."""
+        """A table of the joints, for notebooks."""
         from carom.scene.html_tables import joints_table
 
         return joints_table(self, f"Joints of {self._body.name}")
@@ -367,29 +374,36 @@ class Joints(Named[Joint]):
     @property
     def limits(self) -> tuple[Array, Array]:
         """Minimum and maximum positions of the movable joints; -inf and inf where there is no limit."""
-        lower, upper = zip(*(joint.limits for joint in self._movable), strict=True)
-        return np.array(lower), np.array(upper)
+        lower, upper = np.array([joint.limits for joint in self._movable], dtype=float).reshape(-1, 2).T
+        return lower, upper
 
     @property
     def effort_limits(self) -> Array:
-        """Maximum forces of the drives according to the file; inf where it states none."""
+        """Maximum forces of the motors according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
 
         Args:
-            positions: As many numbers as `positions` has.
-            velocities: As many numbers as `velocities` has, or one for all.
+            positions: All position coordinates, as in `positions`.
+            velocities: All velocity coordinates, as in `velocities`, or one number for all.
+
+        Raises:
+            ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
+                has changed.
         """
         positions = vector(positions, sum(self._body.position_count), "positions")
         dof_count = sum(self._body.velocity_count)
         velocities = np.broadcast_to(finite(velocities, "velocities"), dof_count)
         q = u = 0
+        states = []
         for joint in self._movable:
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
-            joint.reset(positions[q:q_end], velocities[u:u_end])
+            states.append(joint.checked_state(positions[q:q_end], velocities[u:u_end]))
             q, u = q_end, u_end
+        for joint, state in zip(self._movable, states, strict=True):
+            self._body.set_joint_state(joint.index, *state)
 
     def set_position_targets(
         self,

@@ -26,7 +26,7 @@ class JointConstraint:
     Attributes:
         body: The body it acts on.
         joint: Index of the joint.
-        kind: What it does.
+        kind: The type of the constraint.
         lower: Lower limit; swing range about x of a spherical joint [rad or m].
         upper: Upper limit; swing range about y of a spherical joint [rad or m].
         twist: Twist range of a spherical joint [rad].
@@ -45,17 +45,17 @@ class JointConstraint:
 
     @property
     def moving_body(self) -> Body:
-        """The body; if it cannot move, the other body of a user constraint."""
+        """`body`; if that cannot move, the other body of a user constraint."""
         other = None if self.user is None else self.user.child
         return other if other is not None and not any(moving_links(self.body)) else self.body
 
 
 class JointConstraints:
-    """All motors and limits of a world.
+    """The motors, limits and user constraints of a world.
 
     Attributes:
-        all: These and the user constraints, in an order that matters: the solver's order depends on it.
-        tags: The links of the bodies, in an order that matters as well.
+        all: All constraints; the solver's order depends on the order of this list.
+        tags: The numbers of the islands, which depend on the order of its list of links.
     """
 
     def __init__(self) -> None:
@@ -86,7 +86,7 @@ class JointConstraints:
                 self.all.append(JointConstraint(body, joint, MOTOR_KIND[code]))
 
     def way_back(self) -> Callable[[], None]:
-        """A function that removes all that is added from now on."""
+        """A function that removes everything that is added from now on."""
         constraints, count = self.all, len(self.all)
         forget_links = self.tags.way_back()
 
@@ -101,7 +101,7 @@ class JointConstraints:
         """Prepare to remove the constraints of a body, the last first.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes them; it can be called again if it was interrupted.
         """
         kept = self.all.copy()
         for constraint in reversed(self.all):
@@ -127,7 +127,7 @@ class JointConstraints:
             limit.lower, limit.upper = lower, upper
 
     def add_user(self, user: UserConstraint) -> None:
-        """Append a constraint that a user creates."""
+        """Append a user constraint."""
         self.all.append(JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user))
 
     def user_removal(self, user: UserConstraint) -> Callable[[], None]:
@@ -140,9 +140,9 @@ class JointConstraints:
         return kept
 
     def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
-        """Constraints that can act, and the island of each.
+        """The active constraints, and the island of each.
 
-        A constraint between two bodies merges their islands; one between two fixed bodies does nothing.
+        A constraint between two bodies merges their islands; one between two fixed bodies is not active.
         """
         tags = self.tags.tags()
         above = {tag: tag for tag in tags.values()}
@@ -185,9 +185,9 @@ class JointConstraints:
         """Write the sorted constraints, and which trees are solved together, to the model.
 
         Args:
-            arrays: Where to.
+            arrays: The arrays of the world.
             user_rows: Row of each user constraint, by number.
-            minimum_island_size: Islands are solved together until they have more constraints.
+            minimum_island_size: Islands are merged until they have more constraints than this.
         """
         constraints, keys = self._by_island()
         order = quicksort_order(keys)

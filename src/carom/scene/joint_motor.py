@@ -1,14 +1,14 @@
-"""What POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL and PD_CONTROL mean for the rows of joint motors.
+"""Motor commands: POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL and PD_CONTROL.
 
-Targets, gains, greatest forces and velocities become columns of `motor` and `pd`, shape (dofs, 8); how the
-solver obeys them is in `kernels/dynamics/motors.py`. Forces are in N m for revolute joints and in N for
-prismatic ones; a motor's bound is an impulse, the greatest force times the time step.
+Targets, gains, maximum forces and maximum velocities become columns of `motor` and `pd`, shape (dofs, 8);
+`kernels/dynamics/motors.py` converts these to constraint rows and torques. Forces are in N m for revolute
+joints and in N for prismatic ones; the bound of a motor is an impulse, the maximum force times the time step.
 
-The functions write many rows, those of one world or of many, (worlds, dofs, 8), and there on `dofs`: a
-slice of the velocity coordinates, or their numbers. What is given is for all of these, or one number for
-each, or one for each world and each of these. The classes write the row of one joint, for loops that set
-motors one by one. `kernels/dynamics/motor_commands.py` does for a list of joints what `AxisMotor` does for
-one.
+The functions write many rows, of one world, (dofs, 8), or of many, (worlds, dofs, 8). Their argument `dofs`
+selects the velocity coordinates: a slice, or an array of indices. Other arguments are one number for all of
+these, one for each dof, or one for each world and dof. The classes write the row of one joint, for loops that
+set motors one by one. The kernel in `kernels/dynamics/motor_commands.py` does the same as `AxisMotor` for a
+list of joints.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ Dofs = slice | np.ndarray
 
 _DOUBLE = 8
 _COLUMNS = 8
-# A PD drive weaker than this is taken away.
+# A PD drive with a smaller maximum force is switched off.
 _LEAST_PD_FORCE = 1.1920928955078125e-07
 
-# The first columns of a motor's row, as one write; those of a PD drive are alike, with a force as the bound.
+# The first columns of a motor's row are written at once. A PD drive has the same ones; its bound is a force.
 assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD) == (0, 1, 2, 3)
 assert (PD_POSITION, PD_VELOCITY, PD_KP, PD_KD) == (0, 1, 2, 3)
 assert (MOTOR_MAX_IMPULSE, PD_MAX_FORCE, MOTOR_VELOCITY_CLAMP) == (4, 4, 5)
@@ -68,7 +68,7 @@ def aim_at_position(
     max_force: ArrayLike,
     max_velocity: ArrayLike,
 ) -> None:
-    """Move towards a position: take away the share `gain` of the position error in every substep."""
+    """Position control: correct the share `gain` of the position error in every substep."""
     columns = {
         MOTOR_POSITION: finite(position, "target"),
         MOTOR_VELOCITY: finite(velocity, "velocity"),
@@ -88,7 +88,7 @@ def aim_at_velocity(
     gain: ArrayLike,
     max_force: ArrayLike,
 ) -> None:
-    """Keep a velocity: take away the share `gain` of the velocity error in every substep."""
+    """Velocity control: correct the share `gain` of the velocity error in every substep."""
     aim_at_position(motor, dofs, substep_time, 0.0, velocity, 0.0, gain, max_force, np.inf)
 
 
@@ -101,7 +101,7 @@ def aim_at_orientation(
     damping: ArrayLike,
     max_force: ArrayLike,
 ) -> None:
-    """Turn a spherical joint towards an orientation, a unit quaternion (x, y, z, w)."""
+    """Position control of a spherical joint: the target is a unit quaternion (x, y, z, w)."""
     x, y, z, w = finite(orientation, "orientation")
     columns = {
         MOTOR_POSITION: np.array([x, y, z]),
@@ -122,7 +122,7 @@ def pull_like_a_spring(
     damping: ArrayLike,
     max_force: ArrayLike,
 ) -> None:
-    """Push with stiffness · (position error) + damping · (velocity error), at most `max_force`."""
+    """PD control: apply stiffness · (position error) + damping · (velocity error), at most `max_force`."""
     columns = {
         PD_POSITION: finite(position, "target"),
         PD_VELOCITY: finite(velocity, "velocity"),
@@ -134,7 +134,7 @@ def pull_like_a_spring(
 
 
 def switch_off(motor: np.ndarray, pd: np.ndarray, dofs: Dofs) -> None:
-    """Let go: neither the motor nor a spring acts."""
+    """Switch off the motors and PD drives of joints."""
     motor[..., dofs, MOTOR_MAX_IMPULSE] = 0.0
     pd[..., dofs, PD_MAX_FORCE] = 0.0
 
@@ -144,7 +144,7 @@ def _impulse(max_force: ArrayLike, substep_time: float) -> np.ndarray:
 
 
 def _write(rows: np.ndarray, dofs: Dofs, columns: Mapping[int, np.ndarray]) -> None:
-    """Write columns only after all of them fit the rows, so that an error changes nothing."""
+    """Write columns after checking that all of them fit the rows, so that an error changes nothing."""
     shape = rows[..., dofs, 0].shape
     fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
     for column, values in fitting.items():
@@ -152,24 +152,24 @@ def _write(rows: np.ndarray, dofs: Dofs, columns: Mapping[int, np.ndarray]) -> N
 
 
 class Clock(Protocol):
-    """What knows the time step."""
+    """An object with the time step [s]."""
 
     time_step: float
 
 
 class JointMotor:
-    """The motor of one joint of a world, written row by row; this one is of a joint that has none.
+    """The motor of one joint of a world: the base class, for joints without a motor.
 
-    It is of use until bodies come or go.
+    It is valid until bodies are added or removed.
 
     Args:
         world: The world.
-        clock: Its time step makes impulses of forces.
+        clock: Its time step converts forces to impulses.
         dof: Row of the joint's first velocity.
 
     Attributes:
-        lower: Least target position [rad or m]; minus infinity where there are no limits.
-        upper: Greatest target position.
+        lower: Minimum target position [rad or m]; minus infinity without limits.
+        upper: Maximum target position [rad or m]; infinity without limits.
     """
 
     __slots__ = ("_clock", "_dof", "_motors", "_pd", "_row_at", "_torques", "lower", "upper")
@@ -189,35 +189,35 @@ class JointMotor:
         """Set the motor, the PD drive or the torque of the next step.
 
         Args:
-            mode: Of `carom.layouts.motor_commands`. `POSITION` and `VELOCITY` set the motor, and `PD` the
-                explicit drive beside it; `TORQUE` adds `force` to the torques of the next step.
+            mode: A mode of `carom.layouts.motor_commands`. `POSITION` and `VELOCITY` set the motor, `PD`
+                the additional PD drive; `TORQUE` adds `force` to the torques of the next step.
             position: Target [rad or m].
             velocity: Target [rad/s or m/s].
-            force: Greatest force, or the torque [N m or N].
-            kp: Share of the position error that a motor takes away; stiffness of a PD drive.
+            force: Maximum force, or the torque [N m or N].
+            kp: Share of the position error that a motor corrects per substep; stiffness of a PD drive.
             kd: Share of the velocity error likewise; damping of a PD drive.
-            clamp: Greatest velocity that a motor reaches for with `POSITION` [rad/s or m/s], until
-                `VELOCITY` is set; 0 or less leaves the one before.
+            clamp: Maximum velocity of a motor in mode `POSITION` [rad/s or m/s]; 0 or less keeps the present
+                one. Mode `VELOCITY` removes it.
 
         Raises:
             ValueError: There is no such mode.
-            struct.error: Something is not a number.
+            struct.error: An argument is not a number.
         """
         if mode not in MODES:
             raise ValueError("there is no such mode")
 
     def clamp(self, velocity: float) -> None:
-        """Set the greatest velocity that the motor reaches for [rad/s or m/s]."""
+        """Set the maximum velocity of the motor [rad/s or m/s]."""
         self._motors[self._dof * _COLUMNS + MOTOR_VELOCITY_CLAMP] = velocity
 
     def add_torques(self, torques: Sequence[float]) -> None:
-        """Add to the torques of the next step [N m or N], one for each freedom."""
+        """Add to the torques of the next step [N m or N], one number for each dof."""
         for axis, torque in enumerate(torques):
             self._torques[self._dof + axis] += torque
 
 
 class AxisMotor(JointMotor):
-    """The motor of a revolute or prismatic joint, with its limits, if `lower` is not above `upper`."""
+    """The motor of a revolute or prismatic joint; `lower` > `upper` means that there are no limits."""
 
     __slots__ = ()
 
@@ -229,7 +229,7 @@ class AxisMotor(JointMotor):
     def command(
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
     ) -> None:
-        """Set the motor, the PD drive or the torque; targets beyond the limits become the nearest limit."""
+        """Set the motor, the PD drive or the torque; target positions are clipped to the limits."""
         if mode == POSITION:
             if not self.lower <= position <= self.upper:
                 position = self._within_limits(position)
@@ -253,14 +253,14 @@ class AxisMotor(JointMotor):
 
 
 class PlanarMotor(JointMotor):
-    """Torques of a joint of several freedoms; a number is about the first of them."""
+    """Torques of a joint with several dofs; a single number applies to the first dof."""
 
     __slots__ = ()
 
     def command(
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
     ) -> None:
-        """Add to the torque about the first freedom; there is no motor."""
+        """Add to the torque of the first dof; there is no motor."""
         super().command(mode, position, velocity, force, kp, kd, clamp)
         if mode == TORQUE:
             self._torques[self._dof] += force
@@ -274,10 +274,10 @@ class SphericalMotor(PlanarMotor):
     def command(
         self, mode: int, position: float, velocity: float, force: float, kp: float, kd: float, clamp: float
     ) -> None:
-        """Set the motor by numbers about the first axis, or add to the torque about it."""
+        """Set the motor, or add to the torque; the numbers apply to the first axis."""
         super().command(mode, position, velocity, force, kp, kd, clamp)
         if mode == POSITION:
-            # A number cannot say an orientation: it counts as the quaternion's x, as in PyBullet.
+            # A single number is not an orientation; as in PyBullet, it is used as x of the quaternion.
             target = (position, 0.0, 0.0, 0.0) if position else (0.0, 0.0, 0.0, 1.0)
             every = (force,) * 3, (kp,) * 3, (kd,) * 3, (1.0,) * 3
             self.aim_at_orientation(target, (velocity, 0.0, 0.0), *every, clamp)
@@ -292,7 +292,7 @@ class SphericalMotor(PlanarMotor):
         dampings: Sequence[float],
         clamp: float,
     ) -> None:
-        """Turn the joint towards a quaternion (x, y, z, w); all else as for `command`, about each axis."""
+        """Rotate the joint towards a quaternion (x, y, z, w); other arguments: as for `command`, per axis."""
         motors, time_step = self._motors, self._clock.time_step
         for axis in range(3):
             row = self._dof + axis

@@ -128,7 +128,7 @@ class Link:
 
         Args:
             force: [N], shape (3,).
-            point: Where it acts [m], shape (3,); the centre of mass by default.
+            point: Point of application [m], shape (3,); the centre of mass by default.
             frame: Frame of both: the world or the link frame.
 
         Raises:
@@ -164,7 +164,7 @@ class Link:
 
     def _inertial_frame(self) -> Pose:
         world = world_of(self.body)
-        # After a step these rows have the poses of its start.
+        # After a step these rows contain the poses at the start of its last substep.
         self.body.update_link_poses()
         x, y, z, qx, qy, qz, qw = world.link_pose[self._row].tolist()
         return Pose((x, y, z), (qx, qy, qz, qw))

@@ -27,14 +27,14 @@ class LinkDynamics:
         restitution: Coefficient of restitution.
         contact_stiffness: [N/m]; -1 if unset.
         contact_damping: [N s/m]; -1 if unset.
-        friction_anchor: Friction has a position anchor.
+        friction_anchor: Whether friction has a position anchor.
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
         contact_processing_threshold: Maximum distance at which a contact is solved [m].
         anisotropic_friction: Factors on friction along the link's axes.
         joint_damping: [N m s/rad or N s/m].
         joint_lower_limit: [rad or m].
-        joint_upper_limit: Less than the lower limit means none.
+        joint_upper_limit: [rad or m]; there are no limits if it is less than the lower limit.
         joint_limit_impulse: Maximum impulse of a limit per substep [N m s or N s].
     """
 

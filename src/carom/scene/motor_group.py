@@ -119,7 +119,7 @@ class MotorGroup:
 
         Args:
             mode: `VELOCITY`, `TORQUE` or `POSITION` of `carom.layouts.motor_commands`.
-            time_step: Of a step [s].
+            time_step: Duration of a step [s], to convert forces to impulses.
             positions: Targets [rad or m], clipped to the limits; 0 by default.
             velocities: Targets [rad/s or m/s]; 0 by default.
             forces: Maximum forces of the motors, or torques [N m or N].

@@ -1,4 +1,4 @@
-"""A sequence with access by name as well."""
+"""A sequence whose items can also be found by name."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Generic, Protocol, TypeVar
 
 
 class HasName(Protocol):
-    """Something with a name."""
+    """Interface of items that have a name."""
 
     @property
     def name(self) -> str:
@@ -26,7 +26,7 @@ class Named(Generic[Item]):
 
         Args:
             kind: Name of an item in messages.
-            items: The items in order; of equal names the first is found.
+            items: The items in order; if several have the same name, the first is found.
             first: Index of the first item.
         """
         self._kind = kind

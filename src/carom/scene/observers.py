@@ -6,7 +6,7 @@ from typing import Protocol, runtime_checkable
 
 
 class Observer(Protocol):
-    """An object in `World.observers`: it is called at every step."""
+    """Interface of the objects in `World.observers`, which are called at every step."""
 
     def before_step(self) -> None:
         """Called before a step."""
@@ -19,7 +19,7 @@ class Observer(Protocol):
 
 @runtime_checkable
 class SubstepObserver(Protocol):
-    """An argument of `World.watch_substeps`: it is called at every substep."""
+    """Interface of the argument of `World.watch_substeps`, which is called at every substep."""
 
     def after_substep(self) -> None:
         """Called after a substep, or after a step without substeps."""

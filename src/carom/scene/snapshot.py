@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
     from carom.world.world import World
 
-# Axes that are not state of bodies: status of the last step, impulses of user constraints.
+# Axes of arrays that are not state of bodies: status of the last step, impulses of user constraints.
 _NOT_OF_BODIES = ("status", "user")
 # Axis of contacts.
 _CONTACT = "contact"
@@ -39,8 +39,8 @@ class BodyLayout:
         links: Number of links, the base included.
         positions: Number of position coordinates.
         dofs: Number of velocity coordinates.
-        shapes: Number of shapes it collides with.
-        nodes: Number of nodes, of a soft body.
+        shapes: Number of its collision shapes.
+        nodes: Number of nodes; 0 unless it is a soft body.
     """
 
     id: int
@@ -120,7 +120,7 @@ def layout(world: World) -> Layout:
 
 
 def take(world: World, layout: Layout) -> Snapshot:
-    """The state of a world of that layout."""
+    """The present state of a world, which has this layout."""
     snapshot = Snapshot(layout, world.time, world.unspent_time)
     snapshot.state = {
         name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy()
@@ -128,7 +128,7 @@ def take(world: World, layout: Layout) -> Snapshot:
     }
     islands = snapshot.state["tree_island"]
     if islands.size and islands.max() >= len(islands):
-        # These are of the last step; a body was removed since. The next step replaces them.
+        # The numbers are those of the last step, and a body was removed since. The next step replaces them.
         islands[:] = np.arange(len(islands))
     snapshot.contacts = {
         name: rows.copy() for name, rows in _contact_rows(world, world.contact_arrays.contact_count)
@@ -151,7 +151,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         snapshot: The state.
 
     Returns:
-        A function that does it; it can be called again if it was interrupted.
+        A function that restores the state; it can be called again if it was interrupted.
 
     Raises:
         StateError: The world has other bodies.
@@ -179,7 +179,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
 
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
-    """Fields of the state of a single world, and their rows in use."""
+    """Names of the fields in the state of a single world, with their rows in use."""
     for name, array in table.numpy.items():
         axis = name.partition("_")[0]
         if axis not in _NOT_OF_BODIES:
@@ -229,10 +229,10 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
 
 
 def check_same(saved: Layout, present: Layout) -> None:
-    """Check that bodies are those of a saved state.
+    """Check that the present bodies are those of a saved state.
 
     Raises:
-        StateError: They are not.
+        StateError: A body is missing, additional, or has other joints or nodes.
     """
     before = {body.id: body for body in saved.bodies}
     now = {body.id: body for body in present.bodies}

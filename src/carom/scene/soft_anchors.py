@@ -47,7 +47,7 @@ def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Ancho
 
 
 def remove_anchor(world: World, number: int) -> None:
-    """Remove an anchor, if there is one of that number."""
+    """Remove the anchor with a number, if it exists."""
     with begin(world) as undo:
         anchors = {key: anchor for key, anchor in world.contact_arrays.soft.anchors.items() if key != number}
 

@@ -61,7 +61,7 @@ class SoftBody(Body):
 
     @property
     def node_velocities(self) -> np.ndarray:
-        """Velocities of the nodes [m/s], shape (n, 3); as `nodes`."""
+        """Velocities of the nodes [m/s], shape (n, 3), a view; call `update` after writing to it."""
         return self.world.arrays.state.numpy["node_velocity"][0, self.rows_of_nodes]
 
     @property
@@ -103,7 +103,7 @@ class SoftBody(Body):
             positions: In world axes [m], shape (n, 3).
 
         Raises:
-            ValueError: Their number is wrong, or they are not all finite.
+            ValueError: The shape is wrong, or a number is not finite.
         """
         self.nodes[:] = _as_many(positions, self.nodes.shape, "positions")
         self.update()
@@ -112,13 +112,13 @@ class SoftBody(Body):
         """Set the velocities of the nodes [m/s], shape (n, 3).
 
         Raises:
-            ValueError: Their number is wrong, or they are not all finite.
+            ValueError: The shape is wrong, or a number is not finite.
         """
         self.node_velocities[:] = _as_many(velocities, self.node_velocities.shape, "velocities")
         self.update()
 
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
-        """Move and rotate all of it; the centre of mass goes to `position`; see `Body.set_base_pose`."""
+        """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_base_pose`."""
         state = self.world.arrays.state.numpy
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
@@ -129,7 +129,7 @@ class SoftBody(Body):
         self.update()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Set the velocity of all nodes as of a rigid body: of the centre of mass [m/s], angular [rad/s]."""
+        """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
         self.node_velocities[:] = np.asarray(linear) + np.cross(np.asarray(angular), self.nodes - center)
@@ -147,7 +147,7 @@ class SoftBody(Body):
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
 
     def anchor(self, node: int, body: Body | None = None, link: int = -1) -> Anchor:
-        """Anchor a node at its present place: in the world, or on a link, which feels the force.
+        """Anchor a node at its present position to the world, or to a link, on which the force then acts.
 
         Args:
             node: The node, from 0.

@@ -1,4 +1,4 @@
-"""The begin of a change of the scene, which is made completely or not at all."""
+"""Beginning a change of the scene, which is then made completely or not at all."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def begin(world: World) -> Undo:
 
 
 def begin_with_constraints(world: World) -> Undo:
-    """Begin a change of nothing but constraints."""
+    """Begin a change that concerns constraints only."""
     world.undo.settle()
     world.undo.note(world.scene_changed)
     world.constraints_changed()

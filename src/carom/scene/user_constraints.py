@@ -28,7 +28,7 @@ ROWS = {
 
 @record(frozen=False, eq=False)
 class UserConstraint:
-    """One constraint.
+    """A user constraint.
 
     Attributes:
         id: Number of the constraint in its world.
@@ -39,7 +39,7 @@ class UserConstraint:
         child_link: Its link; -1 is the base.
         axis: Axis of a prismatic constraint in the inertial frame of the parent's link.
         parent_frame: Pivot and axes in the inertial frame of the parent's link.
-        child_frame: The same of the child; in world axes without a child.
+        child_frame: The same for the child; in world axes without a child.
         max_impulse: Maximum impulse of each row per substep.
         max_force: Maximum force as last set by users [N or N m].
         gear_ratio: The joint velocity of the parent is minus this times that of the child; 0 stands for 1.
@@ -88,7 +88,7 @@ class UserConstraints:
         return [constraint for number, constraint in self._by_id.items() if number > 0]
 
     def get(self, constraint_id: int) -> UserConstraint | None:
-        """The constraint of a number, or None."""
+        """The constraint with a number, or None."""
         return self._by_id.get(constraint_id)
 
     def add(
@@ -121,7 +121,7 @@ class UserConstraints:
         return constraint
 
     def take_id(self) -> int:
-        """The next number, for something else than a constraint between links: the anchor of a soft body."""
+        """Reserve the next number for the anchor of a soft body, which is not a constraint between links."""
         self.next_id += 1
         return self.next_id - 1
 
@@ -131,11 +131,11 @@ class UserConstraints:
         self.next_id = max(self.next_id, constraint.id + 1)
 
     def discard(self, constraint_id: int) -> None:
-        """Remove a constraint, if there is one of that number."""
+        """Remove the constraint with a number, if it exists."""
         self._by_id.pop(constraint_id, None)
 
     def way_back(self) -> Callable[[], None]:
-        """A function that removes all that is added from now on."""
+        """A function that removes everything that is added from now on."""
         count, numbers = len(self._by_id), (self.next_id, self._next_hidden_id)
 
         def go_back() -> None:
@@ -149,7 +149,7 @@ class UserConstraints:
         """Prepare to remove every constraint of a body.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes them; it can be called again if it was interrupted.
         """
         kept = {
             number: constraint
@@ -165,7 +165,7 @@ class UserConstraints:
     @property
     def rows(self) -> dict[int, int]:
         """Row of each constraint in the arrays of the engine, by number."""
-        # Replace the list at once: other threads may read it while the viewer's thread adds a constraint.
+        # The numbers are copied at once, because the viewer's thread may add a constraint in the meantime.
         return {number: row for row, number in enumerate(tuple(self._by_id))}
 
     def write(self, contact_arrays: ContactArrays) -> None:

@@ -9,12 +9,12 @@ from carom.native.undo import Undo
 from carom.record import record
 
 WHOLE = -1
-"""Instead of a visual shape: the text belongs to the link, or to the body if the link is its base."""
+"""Used instead of a visual shape if the text belongs to the link, or, for the base, to the body."""
 
 
 @record(frozen=False)
 class UserDatum:
-    """One text.
+    """A text attached to a body, a link or a visual shape.
 
     Attributes:
         id: Its number.
@@ -34,7 +34,7 @@ class UserDatum:
 
 
 class UserData:
-    """The texts of a world. Numbers of removed texts are used again, the last first."""
+    """The texts of a world. Numbers of removed texts are reused, the last first."""
 
     def __init__(self) -> None:
         self._by_id: dict[int, UserDatum] = {}
@@ -46,18 +46,18 @@ class UserData:
         return self._of_body.get(body, [])
 
     def get(self, number: int) -> UserDatum | None:
-        """The text of a number, or None."""
+        """The text with a number, or None."""
         return self._by_id.get(number)
 
     def find(self, body: int, link: int, shape: int, key: str) -> UserDatum | None:
-        """The text of that place and name, or None."""
+        """The text with a name that is attached to this place, or None."""
         for datum in self.of_body(body):
             if (datum.link, datum.shape, datum.key) == (link, shape, key):
                 return datum
         return None
 
     def add(self, body: int, link: int, shape: int, key: str, value: str) -> UserDatum:
-        """Attach a text; an existing one of the same place and name is replaced and keeps its number."""
+        """Attach a text; an existing one with the same place and name is replaced and keeps its number."""
         datum = self.find(body, link, shape, key)
         if datum is not None:
             datum.value = value
@@ -75,7 +75,7 @@ class UserData:
         return datum
 
     def put(self, datum: UserDatum) -> None:
-        """Add a text with its own number; existing ones of that number or name are removed."""
+        """Add a text with its own number; existing ones with that number or name are removed."""
         same = self.find(datum.body, datum.link, datum.shape, datum.key)
         if same is not None and same.id == datum.id:
             same.value = datum.value
@@ -87,7 +87,7 @@ class UserData:
         self._of_body.setdefault(datum.body, []).append(datum)
 
     def add_stated(self, body: int, spec: BodySpec) -> None:
-        """Attach the texts in the file of a new body."""
+        """Attach the texts that the file of a new body contains."""
         for key, value in spec.user_data.items():
             self.add(body, BASE, WHOLE, key, value)
         for index, link in enumerate((spec.base, *spec.links), start=BASE):
@@ -128,7 +128,7 @@ class UserData:
         """Prepare to remove all texts of a body.
 
         Returns:
-            A function that does it; it can be called again if it was interrupted.
+            A function that removes them; it can be called again if it was interrupted.
         """
         gone = [datum.id for datum in self.of_body(body)]
         free = [*self._free, *gone]

@@ -1,4 +1,4 @@
-"""Actions for many environments, which are checked."""
+"""Checking the actions of many environments."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class ActionChecker:
     """Converts a policy's actions to checked arrays.
 
     Args:
-        space: The actions of one environment: a `Box`, or `Discrete`.
+        space: Action space of one environment: a `Box` or `Discrete`.
         count: Number of environments.
 
     Raises:

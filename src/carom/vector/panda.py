@@ -23,7 +23,7 @@ _GRAVITY = (0.0, 0.0, -9.81)
 _ARM, _FINGERS, _TIP = 7, 2, "panda_grasptarget"
 _HOME = np.array([0.0, 0.3, 0.0, -2.1, 0.0, 2.4, 0.785])
 _SPREAD = 0.1
-"""Maximum distance of the joints from there at the start [rad]."""
+"""Maximum deviation of the joints from `_HOME` at the start of an episode [rad]."""
 _FARTHEST_TURN = 0.05
 """Change of a joint's target by an action of 1 [rad]."""
 _OPEN = 0.04
@@ -37,11 +37,12 @@ class PandaTask(WorldsEnv):
     """Base class of the tasks.
 
     Action: changes of the targets of the seven joints, from -1 to 1, in units of 0.05 rad; if the task needs
-    fingers, their opening, from -1 (closed) to 1.
+    fingers, also their opening, from -1 (closed) to 1 (open).
 
-    Observation: positions and velocities of the joints, opening of the fingers, position of the fingertips
-    and of the goal, the difference of both, then what the task adds. Reward: minus the distance to the goal
-    (with a cube also minus half the distance of the fingertips to it), plus 1 at the goal
+    Observation: positions and velocities of the joints, opening of the fingers, position of the fingertips,
+    position of the goal, the difference of both; in tasks with a cube also the cube's position, its
+    difference from the fingertips and the goal's difference from it. Reward: minus the distance to the goal
+    (with a cube also minus half the distance from the fingertips to the cube), plus 1 at the goal
     (`infos["success"]`).
 
     An episode lasts `max_episode_steps`.
@@ -102,7 +103,7 @@ class PandaTask(WorldsEnv):
         return _OPEN if self._uses_fingers else 0.0
 
     def act(self, actions: np.ndarray) -> None:
-        """Move the targets of the joints."""
+        """Change the position targets of the joints."""
         held = np.clip(actions, -1.0, 1.0)
         arm = self._wanted[:, :_ARM]
         np.clip(arm + _FARTHEST_TURN * held[:, :_ARM], self._lower, self._upper, out=arm)
@@ -111,7 +112,7 @@ class PandaTask(WorldsEnv):
         self._panda.set_position_targets(self._wanted, gains=_STEADY_GAIN, max_velocities=_MAX_VELOCITY)
 
     def observe(self) -> np.ndarray:
-        """See the class."""
+        """The observations, as described in `PandaTask`."""
         positions = self._panda.joint_positions
         self._tips = self._panda.link_poses[:, self._tip_row, :3]
         parts = [
@@ -128,7 +129,7 @@ class PandaTask(WorldsEnv):
         return np.concatenate(parts, axis=1, dtype=np.float32, casting="same_kind")
 
     def reward(self, actions: np.ndarray) -> Array:
-        """See the class."""
+        """The rewards, as described in `PandaTask`."""
         away = np.linalg.norm(self.goals - self.moved(), axis=1)
         self._success: Mask = away < _NEAR
         reward = self._success - away
@@ -137,12 +138,12 @@ class PandaTask(WorldsEnv):
         return reward
 
     def infos(self) -> dict[str, Any]:
-        """The environments in which the task is done."""
+        """A mask of the environments in which the goal is reached, as `success`."""
         return {"success": self._success.copy()}
 
     @abstractmethod
     def moved(self) -> Array:
-        """Position of the thing that has to reach the goal [m], (num_envs, 3)."""
+        """Position of the fingertips or cube that has to reach the goal [m], (num_envs, 3)."""
 
 
 class PandaReach(PandaTask):
@@ -152,7 +153,7 @@ class PandaReach(PandaTask):
     _lowest_goal, _highest_goal = (0.35, -0.25, 0.1), (0.65, 0.25, 0.5)
 
     def moved(self) -> Array:
-        """The fingertips."""
+        """Positions of the fingertips."""
         return self._tips
 
 
@@ -163,7 +164,7 @@ class PandaPush(PandaTask):
     _lowest_goal, _highest_goal = (0.4, -0.25, _HALF_CUBE), (0.7, 0.25, _HALF_CUBE)
 
     def moved(self) -> Array:
-        """The cube."""
+        """Positions of the cube."""
         return self._places
 
 
@@ -173,11 +174,11 @@ class PandaPick(PandaTask):
     _lowest_goal, _highest_goal = (0.4, -0.2, 0.1), (0.6, 0.2, 0.3)
 
     def moved(self) -> Array:
-        """The cube."""
+        """Positions of the cube."""
         return self._places
 
 
 single_PandaReach, single_PandaPush, single_PandaPick = (
     partial(SingleEnv, task) for task in (PandaReach, PandaPush, PandaPick)
 )
-"""Single environments of each, for `gymnasium.make`."""
+"""Single environments of the three tasks, for `gymnasium.make`."""

@@ -16,7 +16,7 @@ class RandomSources:
 
     Attributes:
         generators: The generators.
-        seeds: Their seeds.
+        seeds: Seed of each generator.
 
     Args:
         count: Number of environments.
@@ -35,7 +35,7 @@ class RandomSources:
             worlds: The environments that get a seed.
 
         Raises:
-            ValueError: The number of seeds differs from that of environments.
+            ValueError: The number of seeds differs from the number of environments.
         """
         if seed is None:
             return
@@ -55,5 +55,5 @@ class RandomSources:
     def uniform(
         self, worlds: np.ndarray, low: float | Array, high: float | Array, size: int | None = None
     ) -> Array:
-        """Numbers between `low` and `high` from the generators of some environments, (n, size)."""
+        """Uniform numbers from `low` to `high`, from the generators of some environments, (n, size)."""
         return self.draw(worlds, lambda generator: generator.uniform(low, high, size))

@@ -11,13 +11,13 @@ _GIMBAL_LOCK = 0.99999
 
 
 def euler_from_quaternions(quaternions: Array) -> Array:
-    """Roll, pitch and yaw [rad] as `pybullet.getEulerFromQuaternion` has them.
+    """Roll, pitch and yaw [rad], as by `pybullet.getEulerFromQuaternion`.
 
     Args:
         quaternions: (n, 4), x, y, z, w, of unit length.
 
     Returns:
-        (n, 3).
+        (n, 3) roll, pitch and yaw.
     """
     x, y, z, w = quaternions.T
     sine = -2.0 * (x * z - w * y)

@@ -14,14 +14,14 @@ from carom.vector.worlds_env import WorldsEnv
 class SingleEnv(gymnasium.Env[np.ndarray, Any]):
     """A `WorldsEnv` of one environment as a single `gymnasium.Env`.
 
-    It equals environment k of a vector environment whose seed is lower by k.
+    With the seed s + k it behaves like environment k of a vector environment with the seed s.
 
     Attributes:
         many: The vector environment.
 
     Args:
-        make: A function that makes a `WorldsEnv`, such as its class.
-        options: Its arguments besides `num_envs` and `autoreset_mode`.
+        make: A subclass of `WorldsEnv`, or a function that makes a `WorldsEnv`.
+        options: Its arguments, except `num_envs`, `autoreset_mode` and `threads`.
     """
 
     def __init__(self, make: Any, **options: Any) -> None:
@@ -47,7 +47,7 @@ class SingleEnv(gymnasium.Env[np.ndarray, Any]):
         return observations[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), _own(infos)
 
     def render(self) -> np.ndarray | None:  # type: ignore[override]
-        """A picture (height, width, 3) if `render_mode` is "rgb_array"."""
+        """An image (height, width, 3) if `render_mode` is "rgb_array"."""
         pictures = self.many.render()
         return None if pictures is None else pictures[0]
 

@@ -29,7 +29,7 @@ class StableBaselinesEnv(VecEnv):
         env: An environment whose `autoreset_mode` is `SAME_STEP`, from its class or `gymnasium.make_vec`.
 
     Raises:
-        ValueError: Its `autoreset_mode` is another.
+        ValueError: The environment is not a `WorldsEnv`, or its `autoreset_mode` is another.
     """
 
     def __init__(self, env: Any) -> None:
@@ -45,7 +45,7 @@ class StableBaselinesEnv(VecEnv):
         super().__init__(inner.num_envs, inner.single_observation_space, inner.single_action_space)
 
     def reset(self) -> np.ndarray:  # type: ignore[override]
-        """Start all episodes, with the seeds set by `seed`, which are used once."""
+        """Start all episodes. Seeds set by `seed` are used once."""
         seeds: list[int | None] = list(self._seeds)
         observations, _ = self.env.reset(seed=seeds)
         self._reset_seeds()
@@ -57,7 +57,7 @@ class StableBaselinesEnv(VecEnv):
         self._actions = actions
 
     def step_wait(self) -> Any:
-        """Take a step; return observations, rewards, which episodes are over, and a dictionary for each."""
+        """Take a step; return observations, rewards, a mask of ended episodes, and a list of infos."""
         observations, rewards, terminations, truncations, told = self.env.step(self._actions)
         over = terminations | truncations
         infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
@@ -71,23 +71,23 @@ class StableBaselinesEnv(VecEnv):
         self.env.close()
 
     def get_images(self) -> Sequence[np.ndarray | None]:
-        """The pictures of `render`, one for each environment."""
+        """The images of `render`, one for each environment."""
         pictures = self.env.render()
         return [None] * self.num_envs if pictures is None else list(pictures)
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        """An attribute of the environment, which all share."""
+        """An attribute of the vector environment, once for each index."""
         return [getattr(self.env, attr_name)] * len(list(self._chosen(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
-        """Set an attribute of the environment, for all."""
+        """Set an attribute of the vector environment; `indices` must select all environments."""
         self._require_all(indices, attr_name)
         setattr(self.env, attr_name, value)
 
     def env_method(
         self, method_name: str, *method_args: Any, indices: Any = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call a method of the environment once, for all."""
+        """Call a method of the vector environment once; `indices` must select all environments."""
         self._require_all(indices, method_name)
         return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * self.num_envs
 

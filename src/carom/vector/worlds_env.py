@@ -1,4 +1,4 @@
-"""`WorldsEnv`: a vector environment from a world, computed with arrays only."""
+"""`WorldsEnv`: a vector environment from copies of a world, computed with arrays only."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         camera: The camera of `render`; None for none.
 
     Args:
-        world: The world to copy; its state is where episodes begin, unless `begin` changes it.
+        world: The world to copy; episodes begin in its state, unless `begin` changes it.
         num_envs: Number of environments.
-        observation_space: Of one environment.
-        action_space: Of one environment: a `Box` of one axis, or `Discrete`.
+        observation_space: Observation space of one environment.
+        action_space: Action space of one environment: a `Box` of one axis, or `Discrete`.
         steps: Number of simulation steps per environment step.
         max_episode_steps: Number of steps after which an episode is truncated; None for never.
         autoreset_mode: When environments are reset after an episode: Gymnasium's `AutoresetMode`, or its
@@ -105,14 +105,14 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.random = RandomSources(num_envs)
         self._saved_start = self.worlds.save([0])
         self._checked = ActionChecker(action_space, num_envs)
-        # No episode has begun: a step asks for `reset` first.
+        # No episode has begun: `step` raises an error until `reset` has been called.
         self._over: Mask = np.ones(num_envs, dtype=bool)
         self._begun = False
 
     # To be defined by subclasses
 
     def begin(self, worlds: np.ndarray) -> None:
-        """Set the start of episodes, for example at random; the worlds have just been restored.
+        """Set the initial state of episodes, for example at random; the worlds have just been restored.
 
         Args:
             worlds: Indices of the environments whose episodes begin, (n,).
@@ -160,7 +160,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         Args:
             seed: Environment k gets `seed + k`, or the k-th of a list; None continues with the present
                 generators.
-            options: `{"reset_mask": mask}` resets only those of the mask (num_envs,).
+            options: `{"reset_mask": mask}` resets only the environments of the mask (num_envs,).
 
         Returns:
             The observations, (num_envs, ...), and an empty dictionary.
@@ -208,22 +208,22 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         return observations, rewards, terminations, truncations, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:  # type: ignore[override]
-        """A picture (height, width, 3) of each environment if `render_mode` is "rgb_array"."""
+        """An image (height, width, 3) of each environment if `render_mode` is "rgb_array"."""
         if self.render_mode is None or self.camera is None:
             return None
         return tuple(self.worlds.images(self.camera).colour)
 
     @property
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The generators of random numbers, one for each environment."""
+        """The random number generators, one for each environment."""
         return tuple(self.random.generators)
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
-        """Their seeds."""
+        """The seeds of the random number generators, one for each environment."""
         return tuple(self.random.seeds)
 
-    # How it is done
+    # Implementation
 
     def _to_reset(self, options: dict[str, Any] | None) -> np.ndarray:
         mask = None if options is None else options.get(RESET_MASK)
@@ -257,7 +257,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.begin(worlds)
 
     def _truncations(self, infos: dict[str, Any]) -> Mask:
-        """Which episodes have reached their maximum length, or whose world is halted."""
+        """A mask of the episodes that have reached their maximum length or whose world is halted."""
         halted = self.worlds.halted
         if self.max_episode_steps is None:
             truncations = halted.copy()
@@ -270,7 +270,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
 
 def _tell_last(infos: dict[str, Any], observations: np.ndarray, over: Mask) -> None:
-    """Put the last observations of episodes into `infos`, as Gymnasium does."""
+    """Put the last observations of ended episodes into `infos`, as Gymnasium does."""
     last = np.full(len(over), None, dtype=object)
     for world in np.flatnonzero(over):
         last[world] = observations[world]

@@ -3,10 +3,10 @@
 By default the server listens on this machine only, but that is not enough: other users may work on the
 machine, and any page in the user's browser could open a socket to the server, or reach it by a host name of
 its own that resolves to this machine (DNS rebinding). So each request needs a token, which is part of the
-address printed for the user; the browser then keeps it in a cookie. With the cookie, or with an allowed host
-name, a request has to name the server by an address no other site can have, and a socket has to come from the
-server's own page (origin). Behind a proxy, such as that of a notebook, host names differ: there the token
-alone is enough.
+address printed for the user; the browser then keeps it in a cookie. A request with the cookie, or with an
+allowed host name, also has to name the server by a host that no other site can have, and a socket has to come
+from the server's own page (origin). Behind a proxy, such as that of a notebook, host names differ: there the
+token alone is enough.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from urllib.parse import parse_qs, urlsplit
 from carom.remote.user_token import fresh_token
 
 LOOPBACK_NAMES = frozenset({"localhost", "127.0.0.1", "::1"})
-# Nothing is sent there: it only makes the system choose this machine's address in the network.
+# No data is sent to this address: connecting to it makes the system choose this machine's network address.
 _ANYWHERE = ("192.0.2.1", 9)
 _EVERYWHERE = frozenset({"0.0.0.0", "::"})
 
@@ -53,7 +53,7 @@ class Access:
         Args:
             path: The path of the request, with the query.
             host_header: `Host` of the request.
-            origin: `Origin` of the request; other programs than browsers do not send it.
+            origin: `Origin` of the request; only browsers send it.
             cookies: `Cookie` of the request.
         """
         if self.knows_token(path):
@@ -102,7 +102,7 @@ class Access:
 
 
 def reachable_host(host: str) -> str:
-    """An address by which the server can be reached from the machines that it listens for."""
+    """An address at which a server bound to this host can be reached."""
     if host not in _EVERYWHERE:
         return host
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as way:
@@ -127,7 +127,7 @@ def host_allowed(bound_to: str, host_header: str | None) -> bool:
     """Whether the host of a request is this server.
 
     Args:
-        bound_to: Host the server was told to listen on.
+        bound_to: Host that the server listens on.
         host_header: `Host` of the request. Its port may differ, as through an SSH tunnel.
     """
     name = _name(f"//{host_header}") if host_header else None
@@ -143,7 +143,7 @@ def host_allowed(bound_to: str, host_header: str | None) -> bool:
 
 
 def origin_allowed(host_header: str | None, origin: str | None) -> bool:
-    """Whether a socket comes from the server's own page. Other programs than browsers send no origin."""
+    """Whether a socket comes from the server's own page. Only browsers send an origin."""
     if origin is None:
         return True
     parts = urlsplit(origin)

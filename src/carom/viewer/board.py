@@ -1,7 +1,7 @@
-"""The scene of all pages: the newest message of everything that has a name.
+"""The scene of all pages: the newest message of each key.
 
-Pages do not get a stream of changes, but everything that is new since their last message. So a page that
-joins late, or was cut off, gets the whole scene, and one that is slow gets the newest state and no backlog.
+Pages do not get a stream of changes, but all messages newer than those they have. So a page that joins late
+or lost its connection gets the whole scene, and a slow page gets the newest state without a backlog.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class Board:
         return self._revision
 
     def put(self, key: Hashable, header: Mapping[str, Any], payload: bytes = b"") -> None:
-        """Puts a message, replacing one of the same key."""
+        """Puts a message on the board, replacing one of the same key."""
         self._enter(key, encoded(header, payload), gone=False)
 
     def amend(self, key: Hashable, header: Mapping[str, Any]) -> None:
-        """Changes a message for pages that join later; other pages keep theirs."""
+        """Changes a message for pages that join later; other pages keep the old one."""
         with self._lock:
             entry = self._entries.get(key)
             if entry is not None:

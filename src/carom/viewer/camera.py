@@ -13,12 +13,12 @@ class Orbit:
     """A camera that circles a target.
 
     Attributes:
-        distance: To the target [m].
-        yaw: About the upward axis [degrees].
-        pitch: Upwards; negative looks down from above [degrees].
-        target: What it looks at [m].
-        width: Of the image in pixels.
-        height: Of the image.
+        distance: Distance from the camera to the target [m].
+        yaw: Angle about the upward axis [degrees].
+        pitch: Upward angle; a camera with a negative pitch looks down from above [degrees].
+        target: The point that the camera looks at [m].
+        width: Width of the image [pixels].
+        height: Height of the image [pixels].
     """
 
     distance: float = 5.0
@@ -30,11 +30,11 @@ class Orbit:
 
 
 class SharedCamera:
-    """The camera. A script moves that of every page; a page moves its own, and tells.
+    """The camera. A script moves the cameras of all pages; a page moves its own and reports its pose.
 
     Attributes:
-        orbit: Its last pose, set by a script or a page.
-        chosen: A script or a user has set the view; until then pages fit all bodies.
+        orbit: The last pose, set by a script or a page.
+        chosen: Whether a script or a user has set the view; until then pages fit all bodies into it.
     """
 
     def __init__(self, board: Board, width: int, height: int) -> None:
@@ -44,7 +44,7 @@ class SharedCamera:
         board.put("camera", self._message())
 
     def move(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
-        """A script moves the camera of every page."""
+        """Moves the cameras of all pages, for a script."""
         self.chosen = True
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
         self._board.put("camera", self._message())
@@ -52,7 +52,7 @@ class SharedCamera:
     def moved(
         self, distance: float, yaw: float, pitch: float, target: Vector3, *, chosen: bool = True
     ) -> None:
-        """The camera of a page was moved, by its user or, if it is not `chosen`, by the page."""
+        """Records the camera pose of a page: set by its user or, if not `chosen`, by the page itself."""
         if self.chosen and not chosen:
             return
         self.chosen = chosen
@@ -60,7 +60,7 @@ class SharedCamera:
         self._board.amend("camera", self._message())
 
     def resized(self, width: int, height: int) -> None:
-        """The image of a page has a new size."""
+        """Records the new size of a page's image [pixels]."""
         self.orbit = replace(self.orbit, width=width, height=height)
 
     def _message(self) -> dict[str, object]:

@@ -79,11 +79,11 @@ class Details:
     Args:
         world: The world.
         lock: Held while the world is stepped or changed.
-        board: Where masses, constraints and rays are shown.
+        board: The board for masses, constraints and rays.
 
     Attributes:
-        wish: The present wish of all pages.
-        rays: Those of scripts.
+        wish: The present wish of all pages together.
+        rays: The rays that scripts cast.
     """
 
     def __init__(self, world: World, lock: Any, board: Board) -> None:
@@ -117,7 +117,7 @@ class Details:
         self._due = 0.0
 
     def blocks(self) -> list[tuple[str, readings.Columns]]:
-        """Numbers that follow the poses in a frame, by name."""
+        """Arrays that follow the poses in a frame, by name."""
         wish = self.wish
         if wish.rays:
             self.rays.show()

@@ -11,7 +11,7 @@ _USUAL_SSH_PORT = "22"
 
 
 def over_ssh() -> bool:
-    """Whether the user sits at another machine."""
+    """Whether the user is logged in over SSH, from another machine."""
     return bool(os.environ.get("SSH_CONNECTION") or os.environ.get("SSH_CLIENT"))
 
 
@@ -32,7 +32,7 @@ def tunnel_command(address: str) -> str | None:
     """The command for the user's own machine to reach a page of this one; None without SSH.
 
     Args:
-        address: Of the page.
+        address: Address of the page.
     """
     if not over_ssh():
         return None

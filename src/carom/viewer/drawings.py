@@ -15,7 +15,7 @@ class Drawings:
     """Drawn items by number, on the board. Safe to use from all threads.
 
     Attributes:
-        items: What is shown now, by number.
+        items: The items shown now, by number.
     """
 
     def __init__(self, board: Board) -> None:

@@ -68,12 +68,12 @@ class Handle:
 
     @property
     def position(self) -> Vector3:
-        """Where it is [m]."""
+        """Its position, in the world [m]."""
         return self.pose[0]
 
     @property
     def orientation(self) -> Quaternion:
-        """Its orientation: a unit quaternion (x, y, z, w)."""
+        """Its orientation, in the world: a unit quaternion (x, y, z, w)."""
         return self.pose[1]
 
 

@@ -1,8 +1,8 @@
 """Messages to a page: a JSON header, and numbers in binary where there are many.
 
 A message is four bytes, the length of the header as a little-endian integer; the header in UTF-8, padded by
-spaces so that the numbers start at a multiple of four; and the numbers. The header's `type` says what the
-message is about. Messages from a page are JSON texts.
+spaces so that the numbers start at a multiple of four; and the numbers. The header's `type` is the kind of
+message. Messages from a page are JSON texts.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ def received(text: str | bytes) -> dict[str, Any]:
     """A message from a page.
 
     Raises:
-        ValueError: It is not a JSON object, or has no type.
+        ValueError: The message is not a JSON object, or has no type.
     """
     message = json.loads(text)
     if not isinstance(message, dict) or not isinstance(message.get("type"), str):
-        raise ValueError("a message is an object with a type")
+        raise ValueError("a message has to be a JSON object with a type")
     return message

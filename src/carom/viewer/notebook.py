@@ -25,10 +25,10 @@ def frame(port: int, token: str, picture: bytes | None = None, height: int = HEI
     """HTML that shows the page of a server on the machine of the kernel.
 
     Args:
-        port: Of the server.
-        token: Of the server.
+        port: Port of the server.
+        token: Token of the server.
         picture: PNG file to show if the page cannot be reached.
-        height: Of the frame [pixels].
+        height: Height of the frame [pixels].
     """
     identifier = f"carom-{uuid4().hex}"
     facts = json.dumps(
@@ -56,7 +56,7 @@ def _shown(picture: bytes | None) -> str:
 
 
 def replay_frame(page: str, height: int = HEIGHT) -> str:
-    """HTML that shows a replay, whose page is inside it."""
+    """HTML that contains the page of a replay and shows it."""
     return f'<iframe srcdoc="{html.escape(page)}" style="width:100%;height:{height}px;border:0"></iframe>'
 
 

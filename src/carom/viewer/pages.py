@@ -9,12 +9,12 @@ from carom.viewer.board import Board
 
 
 class Page:
-    """One page that is open.
+    """An open page.
 
     Attributes:
         number: Its number.
-        revision: Its revision of the board.
-        news: Set when there may be news.
+        revision: The revision of the board that the page has.
+        news: Set when there may be new messages.
     """
 
     def __init__(self, number: int) -> None:
@@ -24,7 +24,7 @@ class Page:
         self._frame: bytes | None = None
 
     def take_news(self, board: Board, frame: bytes | None) -> list[bytes]:
-        """Its news; they then count as sent."""
+        """The messages that are new to the page; they then count as sent."""
         messages, self.revision = board.since(self.revision)
         if frame is not None and frame is not self._frame:
             messages.append(frame)
@@ -49,7 +49,7 @@ class Pages:
         self._numbers = 0
 
     def __iter__(self) -> Iterator[Page]:
-        """Those that are open now; safe to use from all threads."""
+        """The pages that are open now; safe to use from all threads."""
         return iter(tuple(self._open))
 
     def __len__(self) -> int:
@@ -57,7 +57,7 @@ class Pages:
 
     @property
     def oldest_revision(self) -> int:
-        """The revision that all pages have."""
+        """The oldest revision of the open pages; 0 without pages."""
         return min((page.revision for page in self), default=0)
 
     def join(self) -> Page:
@@ -69,7 +69,7 @@ class Pages:
         return page
 
     def leave(self, page: Page) -> None:
-        """A page was closed."""
+        """Removes a page that was closed."""
         self._open.discard(page)
         if not self._open:
             self.somebody.clear()

@@ -1,4 +1,4 @@
-"""Pictures that a script waits for, so that each step is drawn."""
+"""Pictures that a script waits for, so that pages draw each step."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Pictures:
         """Asks for a picture and waits until all visible pages have drawn it.
 
         Args:
-            pages: Gives the numbers of the pages that are open.
+            pages: Returns the numbers of the open pages.
             patience: Maximum time to wait [s]: browsers may be too busy.
         """
         with self._changed:
@@ -38,19 +38,19 @@ class Pictures:
             self._changed.wait_for(shown, patience)
 
     def drawn(self, page: int, picture: int) -> None:
-        """A page has drawn a picture."""
+        """Records that a page has drawn a picture."""
         with self._changed:
             self._drawn[page] = picture
             self._changed.notify_all()
 
     def show(self, page: int, *, visible: bool) -> None:
-        """A page became visible or hidden; browsers do not draw hidden pages."""
+        """Records whether a page is visible; browsers do not draw hidden pages."""
         with self._changed:
             (self._hidden.discard if visible else self._hidden.add)(page)
             self._changed.notify_all()
 
     def forget(self, page: int) -> None:
-        """A page was closed."""
+        """Forgets a page that was closed."""
         with self._changed:
             self._drawn.pop(page, None)
             self._hidden.discard(page)

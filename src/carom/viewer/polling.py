@@ -1,9 +1,9 @@
-"""Polling, for proxies that pass no WebSockets, such as Colab's.
+"""Polling, for proxies that do not support WebSockets, such as Colab's.
 
-A request has a name that the page has chosen (`page`) and its messages (`told`, any number of JSON texts).
-The answer is the server's number for the page, and then messages, each after its length; all are
-little-endian integers of four bytes. A page that gets another number than before was dropped by the server,
-and gets everything again.
+The query of a request has a name that the page has chosen (`page`) and the page's messages (`told`, any
+number of JSON texts). The answer is the server's number for the page, and then messages, each after its
+length; number and lengths are little-endian integers of four bytes. If a page gets another number than
+before, the server had dropped it, and now sends the whole scene again.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from urllib.parse import parse_qs, urlsplit
 
 from carom.viewer.pages import Page, Pages
 
-# How long a request may wait for news [s]: meanwhile messages of the page wait as well.
+# Maximum time that a request waits for new messages [s]; the page's own messages wait as long.
 _PATIENCE = 0.2
-# A page that has not asked for this time counts as closed [s]; browsers slow down pages in the background.
+# A page without requests for this time counts as closed [s]; browsers slow down pages in the background.
 _SILENCE = 10.0
 # Maximum length of an answer, which proxies limit [bytes]; a longer message is sent alone.
 _MOST_BYTES = 4_000_000
@@ -39,7 +39,7 @@ class Polling:
 
     Args:
         pages: The pages that are open.
-        news: The news of a page.
+        news: Returns the messages that are new to a page.
         receive: Called with the number of a page and a text that it sends.
     """
 

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from carom.render.image_target import RawImage
 
 _WIDTH = 200
-# Minimum interval; scripts may take hundreds of images a second [s].
+# Minimum interval between previews [s]; scripts may take hundreds of images a second.
 _PERIOD = 0.1
-# Neighbouring numbers get very different colours: each rotates the hue by the golden ratio.
+# Each label rotates the hue by the golden ratio [turns], so that neighbouring labels get different colours.
 _HUE_STEP = 0.61803398875
 # Depth of the frustum that is drawn for a camera [m].
 _PYRAMID_DEPTH = 0.25
@@ -37,7 +37,7 @@ class Previews:
 
         Args:
             image: The image.
-            camera: (4, 4) what takes points of the world to it, as OpenGL has it.
+            camera: (4, 4) matrix from the world to clip coordinates, as in OpenGL.
         """
         now = monotonic()
         if now < self._due:
@@ -84,7 +84,10 @@ def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
 
 
 def _shades(depth: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Near is dark. Ranks are shown, not distances: most of the depth of a scene is its horizon."""
+    """Grey levels of a depth image; near is dark.
+
+    They show ranks, not depths: most of a scene's range of depths is at its horizon.
+    """
     shades = np.full(depth.shape, 255, dtype=np.uint8)
     seen = depth < 1.0
     _, ranks = np.unique(depth[seen], return_inverse=True)
@@ -94,7 +97,7 @@ def _shades(depth: NDArray[np.float32]) -> NDArray[np.uint8]:
 
 
 def _colours(labels: NDArray[np.int32]) -> NDArray[np.uint8]:
-    """A colour for each number; white for none."""
+    """A colour for each label; white for negative labels."""
     hue = (labels.astype(np.float64)[..., None] * _HUE_STEP + np.array([0.0, 1.0 / 3.0, 2.0 / 3.0])) % 1.0
     colours = 90.0 + 150.0 * np.clip(np.abs(6.0 * hue - 3.0) - 1.0, 0.0, 1.0)
     return np.where(labels[..., None] < 0, 255.0, colours).astype(np.uint8)

@@ -17,10 +17,10 @@ _MOST_RAYS = 5000
 
 
 class Rays:
-    """Rays on the board, as long as a page wants to see them. Safe to use from all threads.
+    """Puts cast rays on the board while a page shows rays. Safe to use from all threads.
 
     Attributes:
-        wanted: A page shows rays. Otherwise they need not be recorded.
+        wanted: Whether a page shows rays. Otherwise they need not be recorded.
     """
 
     def __init__(self, board: Board) -> None:
@@ -29,12 +29,12 @@ class Rays:
         self._cast: deque[tuple[float, ...]] = deque(maxlen=_MOST_RAYS)
 
     def tell(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
-        """A script has cast rays.
+        """Records rays that a script has cast.
 
         Args:
-            starts: Start points in world axes [m].
-            ends: Their ends.
-            hits: Body, link, fraction of the ray, position and normal of what each has hit.
+            starts: Start points, in the world [m].
+            ends: End points, in the world [m].
+            hits: Body, link, fraction of the ray, position and normal of the hit of each ray.
         """
         for start, end, (_, _, fraction, _, normal) in zip(starts, ends, hits, strict=True):
             self._cast.append((*start, *end, *normal, fraction))

@@ -70,7 +70,7 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
 
     Args:
         world: The world.
-        wanted: Ids of bodies, and links; -1 is the base. Those that do not exist are left out.
+        wanted: Pairs of body id and link index; -1 is the base. Pairs that do not exist are left out.
 
     Returns:
         (links, 14): body, link, velocity of the centre of mass (3) [m/s], angular velocity (3) [rad/s],
@@ -100,7 +100,7 @@ class JointReadings:
     def __init__(self, world: World) -> None:
         self._world = world
         self._wanted: frozenset[int] | Literal["all"] = frozenset()
-        # Steps clear what they have applied.
+        # Torques that scripts have applied for the last step, which has cleared them.
         self._applied = np.zeros(0)
 
     def watch(self, bodies: frozenset[int] | Literal["all"]) -> None:
@@ -120,7 +120,7 @@ class JointReadings:
         """Does nothing: joints are read when a frame is made."""
 
     def rows(self) -> Columns:
-        """Present states of the joints, without fixed and multi-axis ones.
+        """Present states of the joints that have one dof.
 
         Returns:
             (joints, 8): body, joint, position [rad or m], velocity, torque or force of the motor and the

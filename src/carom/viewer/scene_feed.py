@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 Blocks = Sequence[tuple[str, NDArray[np.float32]]]
 
-# How long to wait for a step to end, before the check for new bodies is left to the next frame [s].
+# Maximum time to wait for a step to end; the check for new bodies is then left to the next frame [s].
 _PATIENCE = 0.02
 # Averaging time of the real-time factor [s].
 _RATE_WINDOW = 1.0
-# Minimum interval between new shapes of a soft body [s]: each is a whole mesh.
+# Minimum interval between updates of a soft body's shape [s]: each update is a whole mesh.
 _SHAPE_INTERVAL = 1 / 15
 
 
@@ -34,11 +34,11 @@ class SceneFeed:
     """Puts the bodies of a world on the board. For use by one thread.
 
     A frame copies the poses without the lock: at worst some links are one time step ahead of the others, and
-    steps never wait. Only when bodies are added, removed or change their appearance is the world locked,
+    steps never wait. The world is locked only after bodies were added, removed or changed their appearance,
     while they are described.
 
     Attributes:
-        collisions: Describe collision shapes as well.
+        collisions: Whether to describe collision shapes as well.
     """
 
     def __init__(self, world: World, lock: Any, board: Board) -> None:
@@ -64,7 +64,7 @@ class SceneFeed:
 
         Args:
             extras: Further items of the message.
-            blocks: Numbers that follow the poses, by name.
+            blocks: Arrays that follow the poses, by name.
         """
         self._follow_bodies()
         self._follow_nodes()
@@ -119,7 +119,7 @@ class SceneFeed:
             self._lock.release()
 
     def _follow_nodes(self) -> None:
-        """Show soft bodies in their present shapes."""
+        """Puts the present shapes of soft bodies on the board."""
         now = monotonic()
         if not self._world.contact_arrays.soft.bodies or now - self._shapes_sent < _SHAPE_INTERVAL:
             return
@@ -170,7 +170,7 @@ class SceneFeed:
         self._layout += 1
         order = [[body.id, body.joint_count - BASE] for body in bodies]
         self._board.put("layout", {"type": "layout", "layout": self._layout, "bodies": order})
-        # A reference is kept to each body to compare with, because ids of objects are used again.
+        # The bodies are kept for the comparison by id, because Python reuses the ids of deleted objects.
         self._bodies = bodies
         self._arrays = self._world.arrays
         self._looks = looks

@@ -1,4 +1,4 @@
-"""The server of the page: files by HTTP, and a socket to each page that is open."""
+"""The server of the page: files by HTTP, and a WebSocket to each open page."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from carom.viewer.polling import Polling
 from carom.viewer.replay.page import replay_page
 
 _log = logging.getLogger("carom")
-# The library logs browsers that close a connection during a request; that is normal.
+# The websockets library logs an error when a browser closes a connection during a request, which is normal.
 _quiet = logging.getLogger("carom.viewer.sockets")
 _quiet.setLevel(logging.CRITICAL)
 _THREAD_NAME = "carom viewer"
@@ -54,8 +54,8 @@ _POLICY = (
     "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; "
     "style-src 'self' 'unsafe-inline'"
 )
-# Sites that may embed the page: notebooks and editors anywhere, if they know the token; without it, those of
-# this machine.
+# Sites that may embed the page without the token: those of this machine. With the token any site may embed
+# it, such as a notebook or an editor.
 _OWN_FRAMES = "; frame-ancestors 'self' http://localhost:* http://127.0.0.1:*"
 
 
@@ -70,7 +70,7 @@ def _files() -> dict[str, tuple[str, bytes]]:
 def _is_part(path: str) -> bool:
     """Whether a file belongs to the page.
 
-    These files are public: in a notebook of another site the browser sends no cookie.
+    These files need no token: in a notebook of another site the browser sends no cookie.
     """
     return path != "/index.html" and path[1:] in page_files()
 
@@ -94,14 +94,14 @@ class PageServer:
     Args:
         access: Where to listen, and access control.
         port: Port to listen on; None for the default port or, if it is taken, any; 0 for any.
-        board: What pages show.
-        frame: Called at display rate while pages are open: a message with what moves, or None. Slow pages
-            skip frames.
-        receive: Called with the number of a page and what it sends.
+        board: The messages that make up the scene.
+        frame: Called at display rate while pages are open. Returns a message with poses, or None if nothing
+            has changed. Slow pages skip frames.
+        receive: Called with the number of a page and a message that it sends.
         gone: Called with the number of a page that has been closed.
 
     Raises:
-        OSError: It cannot listen on the address.
+        OSError: The server cannot listen on the address.
     """
 
     def __init__(
@@ -142,11 +142,11 @@ class PageServer:
         return len(self._pages)
 
     def page_numbers(self) -> set[int]:
-        """The pages that are open, by the numbers `receive` is called with."""
+        """Numbers of the open pages, as passed to `receive`."""
         return {page.number for page in self._pages}
 
     def stop(self) -> None:
-        """Closes all sockets; pages then say that the simulation has ended."""
+        """Closes all sockets; pages then show that the simulation has ended."""
         loop = self._loop
         if loop is not None:
             with suppress(RuntimeError):
@@ -187,7 +187,7 @@ class PageServer:
             self.access.host,
             port,
             process_request=self._answer,
-            # Compression makes poses hardly smaller, and costs more than sending them.
+            # Compression hardly makes poses smaller, and takes longer than sending them.
             compression=None,
             max_size=MAX_INCOMING_BYTES,
             logger=_quiet,
@@ -227,7 +227,7 @@ class PageServer:
                 return None
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
         if path == "/poll":
-            # Browsers send no origin here, and the cookie to all ports of a machine: the token is required.
+            # The token is required: browsers send no origin here, and the cookie goes to all ports of a host.
             if not access.knows_token(request.path):
                 return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
             return await self._answer_poll(connection, request.path)
@@ -259,7 +259,7 @@ class PageServer:
         try:
             self._receive(page, received(text))
         except (KeyError, TypeError, ValueError) as problem:
-            _log.debug("A page sent something that is not understood: %s", problem)
+            _log.debug("A page sent an invalid message: %s", problem)
 
     async def _talk(self, connection: ServerConnection) -> None:
         page = self._pages.join()

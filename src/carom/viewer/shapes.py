@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 _MAX_TEXTURE_SIDE = 4096
-# Neighbouring body ids get very different colours: each rotates the hue by the golden ratio.
+# Each body id rotates the hue by the golden ratio [turns], so that neighbouring ids get different colours.
 _HUE_STEP = 0.61803398875
 _FIRST_HUE = 0.57
 # Links of a body differ in brightness.
@@ -41,24 +41,24 @@ _FLOOR_SIZE = 9.0
 _NO_SCALE: Vector3 = (1.0, 1.0, 1.0)
 # Sides of the polygons for circles, by level of detail.
 _SEGMENTS = (48, 24, 12)
-# Maximum invisible error of the outline of a round shape [pixels].
+# Maximum error of a round shape's outline, too small to be visible [pixels].
 _OUTLINE_ERROR = 0.35
 
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A level of detail: a mesh, and its maximum size on the screen.
+    """A level of detail: a mesh, and the maximum size on the screen at which it is used.
 
     Attributes:
         mesh: The mesh.
-        reach: Maximum radius on the screen at which it looks round [pixels]; None: any.
+        reach: Maximum radius on the screen at which the mesh looks round [pixels]; None for any radius.
     """
 
     mesh: RenderMesh
     reach: float | None = None
 
 
-# The finest first.
+# Levels of detail, the finest first.
 Levels = tuple[Level, ...]
 
 
@@ -68,7 +68,7 @@ def _round_levels(shape: Sphere | Cylinder) -> Levels:
     return (Level(finest), *map(Level, coarser, reaches))
 
 
-# Shapes of all sizes share their meshes, so that a page draws any number of them in one call.
+# Boxes, spheres and cylinders of all sizes share unit meshes, so that a page draws many in one call.
 _UNIT_BOX: Levels = (Level(primitive_mesh(Box((1.0, 1.0, 1.0)))),)
 _UNIT_SPHERE = _round_levels(Sphere(1.0))
 _UNIT_CYLINDER = _round_levels(Cylinder(1.0, 1.0))
@@ -84,7 +84,7 @@ class Assets:
         self._next = 0
 
     def meshes(self, levels: Levels) -> list[tuple[int, float | None]]:
-        """Numbers of meshes on the pages, and their maximum radii."""
+        """Numbers of the levels' meshes on the pages, and their maximum radii [pixels]."""
         return [(self._mesh(level.mesh), level.reach) for level in levels]
 
     def _mesh(self, mesh: RenderMesh) -> int:
@@ -121,7 +121,7 @@ class Assets:
         every = -(-max(image.shape[:2]) // _MAX_TEXTURE_SIDE)
         texels = image[::every, ::every]
         header = {"type": "texture", "texture": number, "width": texels.shape[1], "height": texels.shape[0]}
-        # The lower row comes first, as in texture coordinates.
+        # The bottom row comes first, as in texture coordinates.
         self._board.put(("texture", number), header, np.ascontiguousarray(texels[::-1]).tobytes())
         return number
 
@@ -139,13 +139,13 @@ class Assets:
 
 
 def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
-    """Everything a page has to know of a body but where its links are; of soft ones the shape they have now.
+    """Message that describes a body, without the poses of its links; a soft body has its present shape.
 
     Args:
         body: The body.
         appearance: The appearance of its world.
         assets: Meshes and textures on the pages.
-        collisions: Describe the collision shapes, too.
+        collisions: Whether to describe the collision shapes, too.
     """
     shapes = []
     for link in range(BASE, body.joint_count):

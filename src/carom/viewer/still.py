@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 640, 420
 _FIELD_OF_VIEW = math.radians(50.0)
-# As in the first view of pages.
+# The same direction as in the first view of pages.
 _YAW, _PITCH = math.radians(50.0), math.radians(-35.0)
 # Margin around the centres of links [m].
 _ROOM = 0.25

@@ -60,20 +60,20 @@ class Viewer:
         host: Address to listen on; by default only for this machine. Pages need a token, which is part of
             `address`.
         port: Port to listen on; None for the default port or, if it is taken, any.
-        title: Of the page.
+        title: Title of the page.
         width: Width of the image in pixels, until a page reports its size.
-        height: Of the image.
+        height: Height of the image in pixels, until a page reports its size.
         token: The token that pages need; random by default.
         names: Host names used by proxies.
 
     Raises:
-        OSError: It cannot listen on the address.
+        OSError: The server cannot listen on the address.
 
     Attributes:
         lock: Held while bodies are read.
         controls: Sliders and buttons.
-        drawings: What scripts draw.
-        keyboard: Keys.
+        drawings: Lines, points and texts that scripts draw.
+        keyboard: Key events.
         mouse: Mouse events.
         camera: The camera.
         previews: Previews of the last camera image of a script.
@@ -258,7 +258,7 @@ class Viewer:
         """Plots a value of the script on all pages, under a name; call it again when it changes.
 
         Raises:
-            ValueError: It is not a finite number.
+            ValueError: The value is not a finite number.
         """
         number = float(value)
         if not isfinite(number):
@@ -290,7 +290,7 @@ class Viewer:
         """Adds a list of texts to the panel; `chosen` is the text that the user has chosen.
 
         Raises:
-            ValueError: There are no texts, or none of that number.
+            ValueError: There are no texts, or `start` is not the index of one.
         """
         texts = tuple(map(str, options))
         if not 0 <= start < len(texts):
@@ -338,7 +338,7 @@ class Viewer:
 
     @property
     def rays(self) -> Rays:
-        """Records rays, while `rays.wanted`."""
+        """Records the rays that scripts cast; needed only while `rays.wanted`."""
         return self._details.rays
 
     def draw_now(self) -> None:
@@ -375,7 +375,7 @@ class Viewer:
         return frame(self._server.port, self._server.access.token, picture)
 
     def close(self) -> None:
-        """Closes it: pages say that the simulation has ended."""
+        """Closes the viewer; pages then show that the simulation has ended."""
         self.is_open = False
         self._leaving.cancel()
         self.pause_control.open()
@@ -409,7 +409,7 @@ class Viewer:
             go_on.start()
 
     def _go_on_unwatched(self) -> None:
-        """No page is left that could end a pause; a page being reloaded would be back by now."""
+        """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
         if self.is_open and not self.page_count and self.pause_control.closed:
             self.pause(False)
 

@@ -1,4 +1,4 @@
-"""The interface to a world that loading uses: adding bodies."""
+"""The interface through which loading functions add bodies to a world."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from carom.scene.body import Body
 
 
 class BodyAdding(ABC):
-    """Something that adds bodies, such as a world."""
+    """Interface of classes that add bodies, such as a world."""
 
     @abstractmethod
     def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
-# What a body computes on demand, for the world it is in.
+# Attributes that a body computes on demand and that refer to its world.
 _COMPUTED = ("joints", "links")
 
 
 def copy_world(world: World) -> World:
-    """See `World.copy`."""
+    """Copy a world; see `World.copy`."""
     other = type(world)()
-    # What bodies were loaded from is never changed, and shared.
+    # Specifications of bodies are never changed, so copies share them.
     memo: dict[int, Any] = {id(world): other}
     memo.update((id(body.spec), body.spec) for body in world.bodies.values())
     other.parameters = deepcopy(world.parameters)

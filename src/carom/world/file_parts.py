@@ -1,4 +1,4 @@
-"""What packages above the engine add to world files."""
+"""Parts of world files that belong to packages above the engine."""
 
 from __future__ import annotations
 

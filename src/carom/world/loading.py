@@ -28,7 +28,7 @@ class DescriptionLoading(BodyAdding):
         scale: float = 1.0,
         flags: int = 0,
     ) -> Body:
-        """Add the robot a URDF file describes.
+        """Add the robot that a URDF file describes.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -47,7 +47,7 @@ class DescriptionLoading(BodyAdding):
         return self._add(spec, position, orientation)
 
     def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
-        """Add the models an SDF file describes, where it puts them.
+        """Add the models that an SDF file describes, at their poses in the file.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -64,7 +64,7 @@ class DescriptionLoading(BodyAdding):
         return self.load_all(sdf_bodies(Path(path), _search(), scale=scale))
 
     def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
-        """Add the bodies an MJCF file describes, where it puts them.
+        """Add the bodies that an MJCF file describes, at their poses in the file.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -86,7 +86,7 @@ class DescriptionLoading(BodyAdding):
         """Add bodies at rest, all or none.
 
         Args:
-            bodies: What they are, and the world pose of the link frame of their base.
+            bodies: Specification of each body, and the world pose of its base's link frame.
             also: Called with the new bodies; if it raises an exception they are removed again.
 
         Raises:
@@ -99,7 +99,7 @@ class DescriptionLoading(BodyAdding):
 
 
 def _search() -> AssetSearch:
-    """Files are looked for as named, and then among those that come with `pybullet_data`."""
+    """A search for files: by the path as given, and then in the folder of `pybullet_data`."""
     from carom.formats.search import AssetSearch
     from carom.formats.shipped import shipped_folder
 

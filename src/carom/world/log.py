@@ -47,7 +47,7 @@ class Log:
         """The recorded rows of an array, the first step first; a copy.
 
         Raises:
-            KeyError: It is not recorded.
+            KeyError: This array is not recorded.
         """
         return self._rows[name][: self._count].copy()
 
@@ -60,12 +60,12 @@ class Log:
         self.stop()
 
     def stop(self) -> None:
-        """Stop recording; what has been recorded is kept."""
+        """Stop recording; recorded rows are kept."""
         if self in self._world.observers:
             self._world.observers.remove(self)
 
     def before_step(self) -> None:
-        """Does nothing: a log records the results of a step."""
+        """Do nothing: a log records the results of a step."""
 
     def after_step(self) -> None:
         """Record the state.

@@ -1,4 +1,4 @@
-"""Where the time of a step goes: its launches, each of them timed."""
+"""Profile of a step: the time that each stage takes, measured launch by launch."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STAGES = (
     "integration",
 )
 SOFT_STAGE = "soft bodies"
-"""What worlds with soft bodies have besides."""
+"""Additional stage of worlds with soft bodies."""
 _STAGE_OF = {
     **dict.fromkeys(SOFT_MOTION, SOFT_STAGE),
     **dict(zip((*DETECTION, *MOTION), STAGES, strict=True)),
@@ -29,11 +29,11 @@ _STAGE_OF = {
 
 
 class StagedStepper(Stepper):
-    """Runs programs on a single world, as an `Interpreter` does, and times their stages.
+    """Performs programs on a single world, as an `Interpreter` does, and times their stages.
 
     Attributes:
-        seconds: Time that each stage has taken.
-        run: Runs the steps that were asked for.
+        seconds: Total time of each stage [s].
+        run: Runs the requested steps.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -47,7 +47,7 @@ class StagedStepper(Stepper):
         self.program = program
 
     def ask(self, **asked: int) -> None:
-        """Set scalars as those of `Interpreter`."""
+        """Set numbers for all later runs, as `Interpreter.ask` does."""
         self._asked.update(asked)
 
     def _run(self) -> None:
@@ -77,10 +77,10 @@ class StagedStepper(Stepper):
 
 
 class Profile:
-    """A context in which the steps of an engine are split into stages.
+    """A context in which the steps of an engine are split into stages and timed.
 
     Attributes:
-        seconds: Time that each stage has taken.
+        seconds: Total time of each stage [s].
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -99,5 +99,5 @@ class Profile:
 
 
 def staged_program(structs: KernelStructs, plan: Plan) -> Program:
-    """The launches of a step as `step_program` gives them, in stages even if bodies do not touch."""
+    """The program of `step_program`, in separate stages even if bodies cannot interact."""
     return step_program(structs, plan._replace(coupled=True))

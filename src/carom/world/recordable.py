@@ -1,4 +1,4 @@
-"""Recording a world into a page that replays it."""
+"""Recording of a world as a page that replays it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Recordable:
-    """Recording of a world, and how notebooks show it."""
+    """Recording of a world, and its display in notebooks."""
 
     def _repr_html_(self) -> str:
         from carom.scene.html_tables import world_table

@@ -32,11 +32,11 @@ class SoftLoading(BodyAdding):
         margin: float = 0.01,
         self_collision: bool = False,
     ) -> SoftBody:
-        """Add cloth: springs along the edges of triangles, and across them against bending.
+        """Add cloth: springs along the edges of triangles, and bending springs across the edges.
 
         Args:
             size: Of a rectangle along x and y [m].
-            cells: How many cells it has along each; it has one node more.
+            cells: Number of cells along each axis; there is one node more along each.
             position: Of its middle [m].
             orientation: Quaternion (x, y, z, w).
             mesh: An OBJ file whose surface is the cloth, instead of a rectangle.
@@ -44,9 +44,9 @@ class SoftLoading(BodyAdding):
             stiffness: Of springs along edges [N/m].
             bending: Of springs between nodes that have a neighbour in common [N/m].
             damping: Of all springs [N s/m].
-            friction: Coulomb coefficient, multiplied by that of what it touches.
+            friction: Coulomb coefficient, multiplied by that of the other surface.
             margin: Distance at which it rests on other surfaces [m].
-            self_collision: It collides with itself.
+            self_collision: Whether it collides with itself.
 
         Raises:
             carom.errors.DescriptionError: A number is out of range, or the file cannot be used; the world is
@@ -89,14 +89,14 @@ class SoftLoading(BodyAdding):
 
         Args:
             length: [m].
-            cells: How many springs it has; it has one node more.
+            cells: Number of springs; there is one node more.
             position: Of its middle [m].
             orientation: Quaternion (x, y, z, w).
             mass: Of all of it [kg]; every node has the same.
             stiffness: Of each spring [N/m].
             bending: Of springs from each node to the next but one [N/m].
             damping: Of all springs [N s/m].
-            friction: Coulomb coefficient, multiplied by that of what it touches.
+            friction: Coulomb coefficient, multiplied by that of the other surface.
             radius: Distance at which its nodes rest on other surfaces [m].
 
         Raises:
@@ -130,11 +130,11 @@ class SoftLoading(BodyAdding):
         friction: float = 0.5,
         margin: float = 0.005,
     ) -> SoftBody:
-        """Add a solid of tetrahedra: a cuboid, a ball, or what is in a VTK file.
+        """Add a solid of tetrahedra: a cuboid, a ball, or the mesh of a VTK file.
 
         Args:
             size: Along x, y and z [m]; one number is the radius of a ball.
-            cells: How many cells along each; of a ball, across it.
+            cells: Number of cells along each axis; for a ball, along its diameter.
             position: Of its middle, or of the origin of the file's mesh [m].
             orientation: Quaternion (x, y, z, w).
             mesh: A VTK file with tetrahedra.
@@ -142,7 +142,7 @@ class SoftLoading(BodyAdding):
             poissons_ratio: For small strains; less than 0.5.
             damping: Viscosity as a share of the elastic parameters [s].
             mass: Of all of it [kg]; every node has the same.
-            friction: Coulomb coefficient, multiplied by that of what it touches.
+            friction: Coulomb coefficient, multiplied by that of the other surface.
             margin: Distance at which it rests on other surfaces [m].
 
         Raises:

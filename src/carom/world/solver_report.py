@@ -1,4 +1,4 @@
-"""What the solver did."""
+"""Statistics of the constraint solver."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def solver_report(world: World) -> list[dict[str, float]]:
-    """The last substep as `World.analytics` reports it."""
+    """Statistics of the last substep, as returned by `World.analytics`."""
     state = world.arrays.state.numpy
     bodies: dict[int, list[Body]] = {}
     for body in world.bodies.values():

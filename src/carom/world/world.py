@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 @record(frozen=False)
 class Derived:
-    """What is derived from the bodies, constraints and arrays of a world, computed on demand."""
+    """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 
     step: Callable[[], None] | None = None
     queries: Queries | None = None
@@ -62,7 +62,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
-    of the state, and `position_memory` and so on the same memory as flat `memoryview` of doubles.
+    of the state; `position_memory` and so on are the same memory as flat `memoryview`s of doubles.
     They may be replaced when bodies are added or removed.
 
     Attributes:
@@ -71,7 +71,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         time: Simulated time [s].
         user_data: Texts attached to bodies.
         undo: Repairs the world after a change that was interrupted.
-        quick: What the fast paths in the native library know of it.
+        quick: Addresses of its data for the fast paths in the native library.
         observers: Objects that are called at every step, such as logs.
 
     Args:
@@ -134,16 +134,17 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     ) -> Body | list[Body]:
         """Add a body at rest, or all bodies of a world that was saved by `save`.
 
-        A world without bodies becomes the one that was saved, parameters and time included, and continues
-        exactly as that one did. To any other world the bodies are added as they were, with their constraints.
+        A world without bodies becomes a copy of the saved world, parameters and time included, and continues
+        exactly as that one did. In any other world, the saved bodies and their constraints are added to those
+        already there.
 
         Args:
-            what: The body, or the file.
-            position: Of the base's link frame [m]; bodies of a file are where they were.
+            what: Specification of the body, or path of the file.
+            position: Of the base's link frame [m]; bodies of a file keep their poses.
             orientation: Of the base's link frame, quaternion (x, y, z, w).
 
         Returns:
-            The body's handle, or those of the file's bodies. The number a body gets is that of the body
+            The body's handle, or those of the file's bodies. A body gets the number of the body that was
             removed last, if any.
 
         Raises:
@@ -161,7 +162,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
         Raises:
-            OSError: The file cannot be written; one that was there is as it was.
+            OSError: The file cannot be written; an existing file is unchanged.
         """
         from carom.world.file_parts import PARTS
         from carom.world_files.world_file import save_world
@@ -191,7 +192,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Remove all bodies and reset all parameters except the time step and the substeps.
 
         Args:
-            also: A function called as part of it, even if interrupted; it may be called again.
+            also: A function called as part of the reset, even if it is interrupted; may be called repeatedly.
         """
         kept = self.parameters
         parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
@@ -208,7 +209,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
 
-        Handles of bodies are found in `bodies` under their numbers. Observers and logs are not copied.
+        The new handles are in `bodies`, under the same numbers. Observers and logs are not copied.
         """
         from carom.world.copying import copy_world
 
@@ -247,7 +248,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     @property
     def link_places(self) -> list[tuple[int, int]]:
-        """Body and link, -1 for the base, that each row of the link arrays stands for."""
+        """Body and link (-1 is the base) of each row of the link arrays."""
         if self._derived.link_places is None:
             bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
             self._derived.link_places = [
@@ -257,7 +258,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     @property
     def link_columns(self) -> tuple[list[int], list[int]]:
-        """The bodies and the links of `link_places`, and -1 for row -1, which stands for none."""
+        """The bodies and the links of `link_places` as two lists; row -1, which stands for no link, is -1."""
         if self._derived.link_columns is None:
             places = [*self.link_places, (-1, -1)]
             self._derived.link_columns = [body for body, _ in places], [link for _, link in places]
@@ -303,7 +304,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Record state arrays after each step, until the log is stopped.
 
         Args:
-            *names: Which ones: `position`, `velocity`, `link_pose`, `motor_impulse`... All rows of the
+            *names: Names of arrays: `position`, `velocity`, `link_pose`, `motor_impulse`... All rows of the
                 world are recorded; those of a body start at its `first_position` and so on.
             every: Record every n-th step.
 
@@ -312,7 +313,9 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """
         unknown = [name for name in names if name not in VIEWS]
         if unknown or every < 1:
-            raise ValueError(f"there is no array {unknown[0]!r}" if unknown else f"every is {every}")
+            raise ValueError(
+                f"there is no array {unknown[0]!r}" if unknown else f"every must be at least 1, not {every}"
+            )
         from carom.world.log import Log
 
         return Log(self, names, every)
@@ -350,7 +353,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             self._viewed, self._replacements = self.arrays.state, self.arrays.state.replacements
 
     def constraints_changed(self) -> None:
-        """Let the next step look at the constraints anew; nothing else has changed."""
+        """Discard the prepared step: constraints have changed, and nothing else."""
         self._derived.step = None
         self.engine.constraints_changed()
 
@@ -400,7 +403,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Advance the world by `count` time steps, as `step` does, and return the time of each stage.
 
         The step is split into more launches than usual, so the sum is a little more than the time of a usual
-        step. The first call compiles these.
+        step.
 
         Returns:
             Seconds per step by stage: "link poses", "broad phase" (pairs of shapes whose bounds meet),
@@ -462,7 +465,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             self._prepare_step()
 
     def _prepare_step(self) -> Callable[[], None]:
-        """Write constraints and settings to the arrays; returns what performs a step."""
+        """Write constraints and settings to the arrays; return the function that performs a step."""
         self.undo.settle()
         self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
         self.user_constraints.write(self.contact_arrays)
@@ -482,7 +485,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         return step
 
     def _step_in_substeps(self) -> None:
-        """One step that calls observers at each substep."""
+        """Perform one step; call observers after each substep but the last (`_step` does that one)."""
         due = self._substeps_due()
         if not self._substep_observers:
             self.engine.step([due])
@@ -495,7 +498,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
                 if substep < rounds and self._status[STATUS] == WELL:
                     self._tell_of_substep()
                 continue
-            # Observers are to read the arrays that there are now.
+            # Observers must read the new arrays.
             self._renew_after_growth()
             self._prepare_step()
             for observer in self._substep_observers:
@@ -537,17 +540,17 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         return self._derived.queries
 
     def _structure(self) -> tuple[int, int]:
-        """The parameters that decide which launches a step consists of."""
+        """The parameters that determine which launches a step consists of."""
         return self.parameters.substeps, self.parameters.minimum_island_size
 
     def _kernel_structs(self) -> KernelStructs:
-        """Structs over the present arrays, by the name kernels give them."""
+        """Structs of the present arrays, by the names of kernel arguments."""
         self.undo.settle()
         self.engine.update_settings(self.parameters)
         return self.engine.structs()
 
     def analytics(self) -> list[dict[str, float]]:
-        """What the solver did in the last substep, for each group of bodies solved together.
+        """Statistics of the solver in the last substep, for each group of bodies solved together.
 
         Returns:
             Dictionaries with `islandId`, `numBodies` (links), `numIterationsUsed` and
@@ -573,7 +576,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         (self._derived.pose_launch or self.be_quick())(body.rows.tree)
 
     def be_quick(self) -> TreeLaunch:
-        """Tell the fast paths in the native library where the data are, after a change of the scene.
+        """Set the addresses that the fast paths in the native library use, after a change of the scene.
 
         Returns:
             A function that updates the link poses of a body.
@@ -587,7 +590,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
         if self.contact_arrays.soft.bodies:
             if self._derived.step is None:
-                # Anchored nodes do not count; the preparation of a step has written which these are.
+                # Nodes anchored to the world are left out; `write_anchors` marks these.
                 self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 

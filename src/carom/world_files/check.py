@@ -1,4 +1,4 @@
-"""Checks of a body from a file, besides the types of its fields, before the engine uses it."""
+"""Checks of the values of a body from a file, before the engine uses it; `records` checks their types."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.formats.robot.context import MAX_MAGNITUDE
 from carom.model.body_spec import BodySpec
 from carom.model.soft_spec import SoftSpec
 
-# What may be infinite: bounds, which then do not bound.
+# Fields that may be infinite: bounds, which then have no effect.
 _BOUNDS = frozenset(
     ("lower", "upper", "effort", "velocity", "twist", "joint_lower_limit", "joint_upper_limit")
 )
@@ -21,14 +21,14 @@ _UNIT_TOLERANCE = 1e-3
 
 
 def check_body(spec: BodySpec) -> None:
-    """See that links form a tree, shapes have the corners they name, and numbers are numbers.
+    """Check that links form a tree, nodes and corners that are referred to exist, and numbers are finite.
 
     Raises:
-        ValueError: They do not.
+        ValueError: One of these is not true.
     """
     for index, link in enumerate(spec.links):
         if not -1 <= link.parent < index:
-            raise ValueError(f"link {index} hangs on link {link.parent}")
+            raise ValueError(f"link {index} has link {link.parent} as its parent, which must come before it")
     check_finite(spec)
     if spec.soft is not None:
         _check_soft(spec, spec.soft)
@@ -41,13 +41,13 @@ def _check_soft(spec: BodySpec, soft: SoftSpec) -> None:
     count = len(soft.nodes)
     _check_rows(soft.nodes, 3, 1)
     if spec.links or not spec.fixed_base or soft.masses.shape != (count,) or not (soft.masses > 0.0).all():
-        raise ValueError("a soft body has nodes of some mass, a fixed base and no links")
+        raise ValueError("a soft body must have nodes with masses > 0, a fixed base and no links")
     for rows, width in ((soft.faces, 3), (soft.springs, 2), (soft.tetras, 4)):
         _check_rows(rows, width, 0)
         if rows.size and not 0 <= rows.min() <= rows.max() < count:
-            raise ValueError("a soft body names a node that does not exist")
+            raise ValueError("a soft body refers to a node that does not exist")
     if soft.spring_terms.shape != (len(soft.springs), 3) or (soft.spring_terms < 0.0).any():
-        raise ValueError("a spring has another number of terms, or a negative one")
+        raise ValueError("the terms of springs have the wrong shape, or one is negative")
     if not (np.linalg.det(soft.edge_matrices()) > 0.0).all():
         raise ValueError("a tetrahedron has no volume")
     if soft.skin is not None:
@@ -55,24 +55,24 @@ def _check_soft(spec: BodySpec, soft: SoftSpec) -> None:
         vertices = len(skin.nodes)
         for rows, most in ((skin.nodes, count), (skin.triangles, vertices)):
             if rows.ndim != 2 or (rows.size and not 0 <= rows.min() <= rows.max() < most):
-                raise ValueError("the skin of a soft body names what does not exist")
+                raise ValueError("the visible mesh of a soft body contains an index that is out of range")
         if skin.weights.shape != skin.nodes.shape or skin.triangles.shape[1] != 3:
-            raise ValueError("the skin of a soft body has another number of weights or corners")
+            raise ValueError("the visible mesh of a soft body has the wrong number of weights or corners")
     if min(soft.mu, soft.lam, soft.damping) < 0.0 or soft.margin <= 0.0:
         raise ValueError("a soft body has a negative parameter")
 
 
 def check_finite(value: Any) -> None:
-    """See that no number of a dataclass is infinite or very large, and every orientation has length 1.
+    """Check that numbers of a dataclass are finite and not very large, and that quaternions have length 1.
 
     Raises:
-        ValueError: One is, or has not.
+        ValueError: One of these is not true.
     """
     for part in _parts(value):
         if isinstance(part, float) and not abs(part) <= MAX_MAGNITUDE:
-            raise ValueError(f"a number is {part:g}")
+            raise ValueError(f"a number is {part:g}: it must be finite and not very large")
         if isinstance(part, np.ndarray) and not (np.abs(part) <= MAX_MAGNITUDE).all():
-            raise ValueError("an array holds a number that is not finite or very large")
+            raise ValueError("an array contains a number that is infinite, NaN or very large")
         if isinstance(part, Pose) and abs(sum(q * q for q in part.orientation) - 1.0) > _UNIT_TOLERANCE:
             raise ValueError("a quaternion does not have length 1")
 
@@ -107,4 +107,4 @@ def _check_geometry(geometry: Geometry) -> None:
 
 def _check_rows(rows: np.ndarray, width: int, least: int) -> None:
     if rows.ndim != 2 or rows.shape[1] != width or len(rows) < least:
-        raise ValueError(f"an array of shape {rows.shape} does not hold points")
+        raise ValueError(f"an array of points or indices has the wrong shape {rows.shape}")

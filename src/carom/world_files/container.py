@@ -3,7 +3,7 @@
 All numbers are little-endian.
 
     offset  size
-         0     8  the bytes 89 43 41 52 4F 4D 0D 0A ("CAROM" between bytes that careless copying changes)
+         0     8  the bytes 89 43 41 52 4F 4D 0D 0A ("CAROM" between bytes that a transfer as text changes)
          8     4  version of the format: 1
         12     4  0
         16     8  size of the payload
@@ -35,14 +35,14 @@ _ALIGNMENT = 8
 
 
 class Blocks:
-    """Bytes that a document refers to, one after the other, each at a multiple of eight."""
+    """Blocks of bytes that a document refers to, one after the other, at offsets that are multiples of 8."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
         self._size = 0
 
     def add(self, data: bytes) -> int:
-        """Takes in some bytes and returns their offset."""
+        """Append a block and return its offset."""
         offset = self._size
         padding = -len(data) % _ALIGNMENT
         self._parts += (data, bytes(padding))
@@ -50,12 +50,12 @@ class Blocks:
         return offset
 
     def joined(self) -> bytes:
-        """All blocks."""
+        """All blocks as one byte string."""
         return b"".join(self._parts)
 
 
 def packed(document: dict[str, Any], blocks: Blocks) -> bytes:
-    """The content of a file."""
+    """The content of a file with a document and its blocks."""
     text = json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode()
     payload = _SIZE.pack(len(text)) + text + blocks.joined()
     return _HEADER.pack(MAGIC, VERSION, 0, len(payload), hashlib.sha256(payload).digest()) + payload
@@ -66,10 +66,10 @@ def unpacked(data: bytes, file: Path) -> tuple[dict[str, Any], memoryview]:
 
     Args:
         data: The content.
-        file: Where it is from, for errors.
+        file: Path of the file, for error messages.
 
     Raises:
-        DescriptionError: It is no such file, of a newer version, or damaged.
+        DescriptionError: The file is not a saved world, has another version of the format, or is damaged.
     """
     if len(data) < _HEADER.size or data[: len(MAGIC)] != MAGIC:
         raise DescriptionError("this is not a world saved by Carom", file=file)

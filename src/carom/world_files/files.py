@@ -1,9 +1,9 @@
-"""Files that a saved world carries: meshes with their materials and textures.
+"""Files embedded in a saved world: meshes with their materials and textures.
 
-The document lists them as `{"path": ..., "members": [[name, offset, size], ...]}`: where the file was, then
-it and what it refers to, named from the nearest folder that holds them all; no members if the file was gone
-already. A file that is still where it was, unchanged, is used from there; otherwise its copy is unpacked for
-as long as the process lives.
+The document lists them as `{"path": ..., "members": [[name, offset, size], ...]}`. `path` is where the file
+was. The members are the file itself and the files it refers to, with paths relative to their nearest common
+folder; there are none if the file did not exist any more. If all of them are still there, unchanged, they
+are used; otherwise the copies are unpacked to a temporary folder, which exists until the process ends.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ class FileTable:
         self.records: list[dict[str, Any]] = []
 
     def add(self, path: Path) -> int:
-        """Adds a file with the files it refers to, and returns its number.
+        """Add a file with the files it refers to, and return its number.
 
         Raises:
-            DescriptionError: It cannot be read.
+            DescriptionError: A file cannot be read.
         """
         path = Path(os.path.abspath(path))
         if path not in self._numbers:
@@ -62,7 +62,7 @@ class FileTable:
 
 
 def _with_references(path: Path) -> dict[Path, bytes]:
-    """Content of a file, and of all there are that it refers to."""
+    """Content of a file, and of the existing files it refers to, directly or through others."""
     contents = {path: read_bounded(path, _MOST_BYTES)[0]}
     waiting = [path]
     while waiting:
@@ -75,20 +75,20 @@ def _with_references(path: Path) -> dict[Path, bytes]:
 
 
 def restored(records: Any, blocks: memoryview, file: Path) -> list[Path]:
-    """Where the files of a saved world are now.
+    """Paths of the files of a saved world, unpacked if the originals are missing or have changed.
 
     Args:
         records: The list in its document.
         blocks: The bytes it refers to.
-        file: The saved world, for errors.
+        file: The saved world, for error messages.
 
     Raises:
-        DescriptionError: The list is not as it should be, or a file cannot be unpacked.
+        DescriptionError: The list is invalid, or a file cannot be unpacked.
     """
     try:
         return [_place(record["path"], _members(record["members"], blocks)) for record in records]
     except (TypeError, KeyError, ValueError) as problem:
-        raise DescriptionError("its list of files is broken", file=file) from problem
+        raise DescriptionError("its list of files is invalid", file=file) from problem
     except OSError as problem:
         raise DescriptionError(f"its files cannot be unpacked: {problem}", file=file) from problem
 
@@ -142,5 +142,5 @@ def _same(path: Path, data: memoryview) -> bool:
 
 @cache
 def _folder() -> TemporaryDirectory[str]:
-    """Where files are unpacked; it goes when the process ends."""
+    """Temporary folder for unpacked files, which is removed when the process ends."""
     return TemporaryDirectory(prefix="carom-")

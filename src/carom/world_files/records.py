@@ -1,9 +1,9 @@
 """Values of the document of a saved world: numbers, texts, arrays, files, and dataclasses of them.
 
-What is written is told by its type, and what is read by the type that is expected, field by field; nothing
-in a file names code. A dataclass is an object of its fields with the name of the class under `is`, an
-enumeration its value, an array `{"array": type, "shape": [...], "at": offset}` and a path the number of an
-embedded file (`carom.world_files.files`).
+The type of a value determines how it is written; the expected type of each field determines how it is read.
+So a file cannot name code to run. A dataclass is written as an object of its fields, with the name of the
+class under `is`; an enumeration as its value; an array as `{"array": type, "shape": [...], "at": offset}`; a
+path as the number of an embedded file (`carom.world_files.files`).
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ _LARGEST = 2**63
 
 
 class Writer:
-    """Turns values into parts of a document.
+    """Converts values to parts of a document.
 
     Attributes:
-        blocks: The bytes it refers to.
-        files: The files it refers to.
+        blocks: The bytes that the document refers to.
+        files: The files that the document refers to.
     """
 
     def __init__(self) -> None:
@@ -63,7 +63,7 @@ class Writer:
         return {_CLASS: type(value).__name__, **record}
 
     def _array(self, array: np.ndarray) -> dict[str, Any]:
-        # The array is kept so that no other one gets its identity.
+        # The array is kept alive so that no other array gets the same `id`.
         known = self._arrays.get(id(array))
         if known is None:
             data = np.ascontiguousarray(array).astype(array.dtype.newbyteorder("<"), copy=False)
@@ -77,11 +77,11 @@ class Writer:
 
 
 class Reader:
-    """Turns parts of a document into values of the types that are expected.
+    """Converts parts of a document to values of the expected types.
 
     Args:
-        file: Where the document is from.
-        blocks: The bytes it refers to.
+        file: Path of the document's file.
+        blocks: The bytes that the document refers to.
         files: Paths of the embedded files by their numbers.
     """
 
@@ -91,19 +91,19 @@ class Reader:
         self._files = files
 
     def fail(self, where: str, reason: str) -> DescriptionError:
-        """The error that a part of the document is wrong."""
+        """An error about a part of the document, to be raised."""
         return DescriptionError(f"{where} {reason}", file=self._file)
 
     def read(self, hint: Any, data: Any, where: str) -> Any:
-        """A value.
+        """Read a value.
 
         Args:
-            hint: Its type.
+            hint: Its expected type.
             data: Its JSON form.
-            where: Its place in the document, for errors.
+            where: Its place in the document, for error messages.
 
         Raises:
-            DescriptionError: It is not of that type.
+            DescriptionError: The value is not of that type.
         """
         hint = _without_alias(hint)
         if get_origin(hint) in (Union, types.UnionType):
@@ -118,13 +118,13 @@ class Reader:
             try:
                 return hint(data)
             except (ValueError, TypeError):
-                raise self.fail(where, f"is no {hint.__name__}") from None
+                raise self.fail(where, f"is not a value of {hint.__name__}") from None
         return self.record(hint, data, where)
 
     def record(self, cls: type[T], data: Any, where: str) -> T:
-        """A dataclass; a field that has a default may be missing, as in files of earlier versions."""
+        """Read a dataclass; fields with a default may be missing, as in files of earlier versions."""
         if not isinstance(data, dict) or data.get(_CLASS) != cls.__name__:
-            raise self.fail(where, f"is no {cls.__name__}")
+            raise self.fail(where, f"is not of type {cls.__name__}")
         hints = _hints(cls)
         given = data.keys() - {_CLASS}
         if not _required(cls) <= given <= hints.keys():
@@ -134,19 +134,19 @@ class Reader:
     def array(
         self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
     ) -> np.ndarray:
-        """An array.
+        """Read an array.
 
         Args:
             data: Its JSON form.
-            dtype: Type of its entries.
-            shape: Its shape; None for lengths that do not matter, or for all of them.
-            where: Its place in the document.
+            dtype: Expected type of its entries.
+            shape: Expected shape; None instead of a length, or of the shape, allows any.
+            where: Its place in the document, for error messages.
 
         Raises:
-            DescriptionError: It has another type or shape, or holds NaN.
+            DescriptionError: The array has another type or shape, or contains NaN.
         """
         if not isinstance(data, dict) or data.keys() != {"array", "shape", "at"}:
-            raise self.fail(where, "is no array")
+            raise self.fail(where, "is not an array")
         sizes = self.read(list[int], data["shape"], f"{where}.shape")
         at = self.read(int, data["at"], f"{where}.at")
         if data["array"] not in _ARRAY_TYPES or np.dtype(data["array"]) != dtype:
@@ -161,7 +161,7 @@ class Reader:
             raise self.fail(where, "lies outside the file")
         array = np.frombuffer(self._blocks, dtype, count, at).reshape(sizes).copy()
         if dtype.kind == "f" and np.isnan(array).any():
-            raise self.fail(where, "holds NaN")
+            raise self.fail(where, "contains NaN")
         return array
 
     def _one_of(self, hints: tuple[Any, ...], data: Any, where: str) -> Any:
@@ -174,11 +174,11 @@ class Reader:
         for hint in hints:
             if hint.__name__ == name:
                 return self.record(hint, data, where)
-        raise self.fail(where, f"is none of {', '.join(hint.__name__ for hint in hints)}")
+        raise self.fail(where, f"is not one of the types {', '.join(hint.__name__ for hint in hints)}")
 
     def _number(self, data: Any, where: str) -> float:
         if isinstance(data, bool) or not isinstance(data, (int, float)) or isnan(data):
-            raise self.fail(where, "is no number")
+            raise self.fail(where, "is not a number")
         try:
             return float(data)
         except OverflowError:
@@ -186,7 +186,7 @@ class Reader:
 
     def _integer(self, data: Any, where: str) -> int:
         if isinstance(data, bool) or not isinstance(data, int) or not -_LARGEST <= data < _LARGEST:
-            raise self.fail(where, "is no integer")
+            raise self.fail(where, "is not an integer of 64 bits")
         return data
 
     def _flag(self, data: Any, where: str) -> bool:
@@ -196,19 +196,19 @@ class Reader:
 
     def _text(self, data: Any, where: str) -> str:
         if not isinstance(data, str):
-            raise self.fail(where, "is no text")
+            raise self.fail(where, "is not a text")
         return data
 
     def _path(self, data: Any, where: str) -> Path:
         number = self._integer(data, where)
         if not 0 <= number < len(self._files):
-            raise self.fail(where, "is no file of this file")
+            raise self.fail(where, "is not the number of an embedded file")
         return self._files[number]
 
     def items(self, data: Any, where: str) -> list[tuple[str, Any]]:
         """The items of a list, each with its place in the document."""
         if not isinstance(data, list):
-            raise self.fail(where, "is no list")
+            raise self.fail(where, "is not a list")
         return [(f"{where}[{place}]", item) for place, item in enumerate(data)]
 
     def _list(self, hints: tuple[Any, ...], data: Any, where: str) -> list[Any]:
@@ -224,7 +224,7 @@ class Reader:
 
     def _dict(self, hints: tuple[Any, ...], data: Any, where: str) -> dict[str, Any]:
         if not isinstance(data, dict):
-            raise self.fail(where, "is no object")
+            raise self.fail(where, "is not an object")
         return {key: self.read(hints[1], item, f"{where}[{key!r}]") for key, item in data.items()}
 
 
@@ -243,19 +243,19 @@ _CONTAINERS: dict[Any, Callable[[Reader, tuple[Any, ...], Any, str], Any]] = {
 
 
 def _without_alias(hint: Any) -> Any:
-    """The type of an alias: `NDArray` is a type alias from NumPy 2.5 on."""
+    """The type that an alias stands for: `NDArray` is a type alias from NumPy 2.5 on."""
     meant = getattr(get_origin(hint), "__value__", None)
     return hint if meant is None else meant[get_args(hint)]
 
 
 @cache
 def _required(cls: Any) -> frozenset[str]:
-    """Fields of a dataclass without a default."""
+    """The fields of a dataclass that have no default."""
     return frozenset(field.name for field in fields(cls) if field.default is MISSING)
 
 
 @cache
 def _hints(cls: Any) -> dict[str, Any]:
-    """Types of the fields of a dataclass; those its module imports for the type checker only included."""
+    """Types of the fields of a dataclass, also those that its module imports for type checkers only."""
     hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray})
     return {field.name: hints[field.name] for field in fields(cls)}

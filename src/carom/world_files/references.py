@@ -1,8 +1,8 @@
-"""What mesh files refer to: material files and images, and nothing else.
+"""The files that mesh files refer to: material files and images only.
 
-A saved world takes these along, and may be passed on. So a name in a mesh file must not be able to pack any
-file there is: what it names has to be a regular file of the kind that belongs there, by its name, by that of
-what a link leads to, and an image by its first bytes.
+They are embedded in a saved world, which may be given to others. So a mesh file must not be able to embed
+arbitrary files by naming them: each has to be a regular file whose suffix is that of a material file or image
+as expected, also after following symbolic links, and an image is checked by its first bytes as well.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pathlib import Path
 _MATERIALS = frozenset({".mtl"})
 _IMAGES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif", ".tif", ".tiff", ".webp"})
 _IMAGE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"BM", b"GIF8", b"II*\0", b"MM\0*", b"RIFF")
-# The third byte of a TGA file, which has no other mark at its start.
+# The third byte of a TGA file, its image type; these files have no signature at their start.
 _TGA_TYPES = frozenset({1, 2, 3, 9, 10, 11})
 _TAG, _END_TAG = b"<init_from>", b"</init_from>"
 
 
 def references(path: Path, data: bytes) -> list[Path]:
-    """The files that a mesh or material file refers to and that may go with it.
+    """The files that a mesh or material file refers to and that may be embedded with it.
 
     Args:
         path: The file.
@@ -40,7 +40,7 @@ def references(path: Path, data: bytes) -> list[Path]:
 
 
 def is_image(start: bytes, suffix: str) -> bool:
-    """Whether a file begins like an image."""
+    """Whether the first bytes of a file are those of an image."""
     if suffix == ".tga":
         return len(start) > 2 and start[1] <= 1 and start[2] in _TGA_TYPES
     return start.startswith(_IMAGE_STARTS)
@@ -69,7 +69,7 @@ def _between_tags(data: bytes) -> Iterator[bytes]:
 
 
 def _belongs(place: Path, suffixes: frozenset[str]) -> bool:
-    """Whether it is a regular file of one of these kinds, and so is what a link leads to."""
+    """Whether a path is a regular file of the expected kind, also after following symbolic links."""
     try:
         target = place.resolve()
         if not target.is_file() or {place.suffix.lower(), target.suffix.lower()} - suffixes:
@@ -79,5 +79,5 @@ def _belongs(place: Path, suffixes: frozenset[str]) -> bool:
         with target.open("rb") as stream:
             return is_image(stream.read(16), target.suffix.lower())
     except (OSError, ValueError, RuntimeError):
-        # Names may hold what no file system has, and links lead in circles.
+        # Names may contain characters that paths cannot have, and symbolic links may form a loop.
         return False

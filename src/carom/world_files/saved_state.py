@@ -1,4 +1,4 @@
-"""The state of a world in a file: its arrays, and the checks that let the engine trust them."""
+"""The state of a world in a file: its arrays, and their checks before the engine uses them."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 _ARRAYS = ("state", "contacts")
 _USER_IMPULSES = 6
-# What makes bodies be where they are, and move.
+# Arrays of positions and velocities.
 _MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position", "node_velocity")
-# Coordinates of a base: a position, then a quaternion.
+# Coordinates of a base: a position, then a quaternion; where that begins, and its length.
 _BASE_TURN, _QUATERNION = 3, 4
 _UNIT_TOLERANCE = 1e-3
 _OF_NODES = ("node_position", "node_velocity", "node_force")
@@ -29,7 +29,7 @@ _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 @dataclass(slots=True)
 class SavedState:
-    """A snapshot as a file has it: the numbers of its bodies are those they were saved under."""
+    """A snapshot in a file; bodies have the numbers they had when they were saved."""
 
     bodies: list[BodyLayout]
     time: float
@@ -39,7 +39,7 @@ class SavedState:
     user_impulses: np.ndarray
 
     def snapshot(self) -> Snapshot:
-        """The same as `World.restore` takes it."""
+        """The same state as an argument for `World.restore`."""
         return Snapshot(
             Layout.of(tuple(self.bodies)),
             self.time,
@@ -51,7 +51,7 @@ class SavedState:
 
 
 def state_of(world: World) -> dict[str, Any]:
-    """The text."""
+    """The present state of a world, as a value for `Writer.write`."""
     snapshot = take(world, layout(world))
     return {
         "bodies": list(snapshot.layout.bodies),
@@ -67,17 +67,17 @@ def read_state(reader: Reader, data: Any) -> SavedState:
     """The state in a document.
 
     Raises:
-        carom.errors.DescriptionError: It has no state, or the arrays are not those of its bodies.
+        carom.errors.DescriptionError: The document has no valid state, or arrays do not fit the bodies.
     """
     if not isinstance(data, dict) or data.keys() != set(SavedState.__dataclass_fields__):
-        raise reader.fail("state", "is no state")
+        raise reader.fail("state", "is missing or does not have the fields of a state")
     bodies = reader.read(list[BodyLayout], data["bodies"], "state.bodies")
     arrays = {part: _arrays(reader, part, data[part]) for part in _ARRAYS}
     for name in _OF_NODES:
-        # Files of versions without soft bodies do not have them.
+        # Files from versions without soft bodies do not have these arrays.
         arrays["state"].setdefault(name, np.zeros((0, 3)))
     split_impulses(arrays["contacts"])
-    # Nor do the first ones with soft bodies have this; the next step finds it.
+    # Nor do files from the first versions with soft bodies have this array; the next step computes it.
     arrays["state"].setdefault("node_push", np.zeros_like(arrays["state"]["node_position"]))
     _check_counts(reader, bodies, arrays["state"])
     impulses = reader.array(
@@ -94,7 +94,7 @@ def read_state(reader: Reader, data: Any) -> SavedState:
 
 
 def split_impulses(contacts: dict[str, np.ndarray]) -> None:
-    """Give warm starting an array of its own: older files have it in a fourth column of impulses."""
+    """Move counters of warm starting to their own array; in older files they are a column of impulses."""
     impulses = contacts.get("contact_impulse")
     if impulses is not None and impulses.ndim == 2 and "contact_warm_start" not in contacts:
         contacts["contact_warm_start"] = impulses[:, 3:].ravel()
@@ -102,7 +102,7 @@ def split_impulses(contacts: dict[str, np.ndarray]) -> None:
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
-    """Check that bodies have no more rows than the file has, so that counts cannot exhaust memory."""
+    """Check that the counts of bodies agree with the arrays, so that wrong counts cannot exhaust memory."""
     for axis, counts in (
         ("link_pose", [body.links for body in bodies]),
         ("position", [body.positions for body in bodies]),
@@ -115,7 +115,7 @@ def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.
 
 def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
     if not isinstance(data, dict):
-        raise reader.fail(f"state.{part}", "is no object")
+        raise reader.fail(f"state.{part}", "is not an object")
     arrays = {}
     for name, record in data.items():
         where = f"state.{part}[{name!r}]"
@@ -125,16 +125,16 @@ def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
 
 
 def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: bool) -> None:
-    """Gives bodies that were just loaded the state they were saved with.
+    """Set bodies that were just loaded to the state in which they were saved.
 
     Args:
         world: Their world.
-        bodies: The last of its bodies, in the order they were saved.
+        bodies: The loaded bodies, which are the last of the world, in the order they were saved.
         saved: The state.
-        whole: There are no others, so contacts, time and what constraints last did are theirs, too.
+        whole: The world has no other bodies, so contacts, time and impulses of constraints are set as well.
 
     Raises:
-        ValueError: It is not the state of such bodies.
+        ValueError: The state does not fit the bodies.
     """
     present = layout(world)
     ours = present.bodies[len(present.bodies) - len(bodies) :]
@@ -156,7 +156,7 @@ def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: b
 
 
 def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:
-    """See that the arrays of a snapshot from a file can be those of its bodies in this world.
+    """Check that the arrays of a snapshot from a file fit its bodies in this world.
 
     Args:
         world: The world.
@@ -164,7 +164,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         snapshot: The snapshot.
 
     Raises:
-        ValueError: They cannot.
+        ValueError: They do not fit, or a value is out of range.
     """
     saved = snapshot.layout.bodies
     lengths = {
@@ -187,16 +187,16 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
                 raise ValueError(f"array {name!r} has the wrong shape")
     islands = snapshot.state["tree_island"]
     if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
-        raise ValueError("there is no such island")
+        raise ValueError("an island number is out of range")
     for name in _MOTION:
         if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
-            raise ValueError(f"array {name!r} holds a number that is not finite or very large")
+            raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)
     _check_contacts(world, snapshot)
 
 
 def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
-    """See that orientations of links, bases and spherical joints are quaternions of about length 1."""
+    """Check that orientations of links, bases and spherical joints are quaternions of about length 1."""
     turns = [snapshot.state["link_pose"][:, 3:]]
     first = 0
     for body, saved in zip(bodies, snapshot.layout.bodies, strict=True):
@@ -214,11 +214,11 @@ def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
 
 
 def _check_contacts(world: World, snapshot: Snapshot) -> None:
-    """Contacts name two shapes and their links."""
+    """Check that contacts refer to shapes that exist, and to their links."""
     shapes, links = np.hsplit(snapshot.contacts["contact_shapes"], 2)
     if not shapes.size:
         return
     if shapes.min() < 0 or shapes.max() >= world.contact_arrays.shapes.shape_count:
-        raise ValueError("a contact is one of shapes that do not exist")
+        raise ValueError("a contact refers to a shape that does not exist")
     if (world.contact_arrays.shapes.table.numpy["shape_link"][shapes] != links).any():
-        raise ValueError("a contact is one of other links")
+        raise ValueError("a contact refers to a link that does not have its shape")

@@ -1,6 +1,6 @@
-"""Worlds as files: everything there is, from meshes to the impulses that contacts remember.
+"""Saving and loading worlds completely, from meshes to the impulses of contacts.
 
-`docs/world-files.md` describes the format; `carom.world_files` knows its outside.
+`docs/world-files.md` describes the format; `container.py` and `records.py` are its lower layers.
 """
 
 from __future__ import annotations
@@ -40,29 +40,32 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _NONE = -1
-# What reading a document that means nothing may raise on its way through the engine.
+# Exceptions that the engine may raise while it loads a document with invalid content.
 _MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionError)
 
 
 class Part(Protocol):
-    """Data of a package above the engine in a file."""
+    """Interface of a package above the engine that keeps data in world files."""
 
     def save(self, world: World, writer: Writer) -> Any:
-        """The text."""
+        """The data for the file, in the form that `Writer.write` returns."""
         ...
 
     def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
-        """Apply the saved colours and textures to these bodies."""
+        """Apply the saved data to bodies that have just been loaded."""
         ...
 
 
 Parts = Mapping[str, Part]
-"""What is in a file beside the world itself, by name; modules with `save` and `load` will do."""
+"""Parts of a file besides the world itself, by name; a module with `save` and `load` can be a part."""
 
 
 @dataclass(slots=True)
 class SavedBody:
-    """One body; `spec` counts those of the file. Its lists have an entry for each link, the base first."""
+    """One body; `spec` is an index in `SavedWorld.specs`.
+
+    `links`, `groups` and `masks` have an entry for each link, the base first; `sensors` one for each joint.
+    """
 
     id: int
     spec: int
@@ -81,7 +84,7 @@ class SavedBody:
 
 @dataclass(slots=True)
 class SavedConstraint:
-    """One motor, limit or user constraint, in the order of the solver's list; `user` is -1 for none."""
+    """One motor, limit or user constraint; `user` is the number of the user constraint, or -1."""
 
     body: int
     joint: int
@@ -117,7 +120,7 @@ class SavedTie:
 
 @dataclass(slots=True)
 class SavedAnchor:
-    """One node of a soft body that is held; `body` is -1 for the world. See `soft_arrays.Anchor`."""
+    """One anchored node of a soft body; `body` is -1 for the world. See `soft_arrays.Anchor`."""
 
     id: int
     soft: int
@@ -129,7 +132,7 @@ class SavedAnchor:
 
 @dataclass(slots=True)
 class SavedFilter:
-    """Two links that a user lets collide or not."""
+    """Two links between which a user has switched collisions on or off."""
 
     body_a: int
     link_a: int
@@ -140,22 +143,22 @@ class SavedFilter:
 
 @dataclass(slots=True)
 class SavedWorld:
-    """Everything but the state and what layers above the engine add.
+    """Everything except the state and the parts of packages above the engine.
 
     Attributes:
-        carom: Version that wrote it.
+        carom: Version of Carom that wrote the file.
         parameters: Parameters of the engine.
-        specs: What bodies are made of; several may share one.
+        specs: Specifications of bodies; several bodies may share one.
         bodies: The bodies in the order of their rows.
-        free_ids: Numbers that removed bodies left, the next one last.
-        next_id: The next number that no body has had.
+        free_ids: Numbers of removed bodies, to be reused; the next one is the last.
+        next_id: The lowest number that no body has had.
         objects: Body and link, the base being 0, in the order of Bullet's list of objects.
         constraints: All constraints in the order of the solver's list.
         ties: The user constraints.
-        next_tie: The next number of those.
-        filters: Pairs of links with a rule.
+        next_tie: The number of the next user constraint.
+        filters: Pairs of links whose collisions a user has switched on or off.
         user_data: Texts attached to bodies.
-        anchors: What holds nodes of soft bodies.
+        anchors: Anchors of nodes of soft bodies.
     """
 
     carom: str
@@ -191,7 +194,7 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
 
 
 def restore_world(world: World, path: Path) -> None:
-    """Give a world the state in a file, as `World.restore` does.
+    """Restore the state in a file, as `World.restore` does.
 
     Raises:
         DescriptionError: The file cannot be used; the world is as it was.
@@ -324,11 +327,11 @@ def _set_parameters(world: World, parameters: EngineParameters) -> None:
 
 
 def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
-    """Adds everything but looks and the state."""
+    """Add the bodies, constraints, filters and texts, without appearance and state."""
     bodies: dict[int, Body] = {}
     for record in saved.bodies:
         if record.id in bodies or not 0 <= record.id < saved.next_id:
-            raise ValueError(f"there cannot be a body {record.id}")
+            raise ValueError(f"the number {record.id} of a body is used twice or out of range")
         if alone:
             world.free_ids = [*world.free_ids, record.id]
         bodies[record.id] = append(world, saved.specs[_index(record.spec, saved.specs)], IDENTITY)
@@ -348,14 +351,14 @@ def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
 
 def _index(number: int, items: list[Any]) -> int:
     if not 0 <= number < len(items):
-        raise ValueError(f"there is no item {number} of {len(items)}")
+        raise ValueError(f"index {number} is out of range for {len(items)} items")
     return number
 
 
 def _give_dynamics(body: Body, record: SavedBody) -> None:
     count = 1 + body.joint_count
     if not len(record.links) == len(record.groups) == len(record.masks) == len(record.sensors) + 1 == count:
-        raise ValueError(f"body {record.id} has {count} links")
+        raise ValueError(f"body {record.id} has {count} links, but a list of another length")
     if record.fixed_base != body.fixed_base:
         change_base_freedom(body.world, body, free=not record.fixed_base)
     for place in range(count):
@@ -397,7 +400,7 @@ def _make_ties(
         if not alone:
             values["id"] = world.user_constraints.next_id
         elif record.id in ties or record.id < 1:
-            raise ValueError(f"there cannot be a constraint {record.id}")
+            raise ValueError(f"the number {record.id} of a constraint is used twice or out of range")
         ties[record.id] = UserConstraint(**values)
         world.user_constraints.put(ties[record.id])
     return ties
@@ -409,10 +412,10 @@ def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alon
         if not isinstance(soft, SoftBody) or not 0 <= record.node < soft.rows.count["node"]:
             raise ValueError(f"body {record.soft} has no node {record.node}")
         if body is not None and (body.spec.soft is not None or not BASE <= record.link < body.joint_count):
-            raise ValueError(f"body {body.id} has no link {record.link} that could hold a node")
+            raise ValueError(f"body {body.id} has no link {record.link} to which a node could be anchored")
         number = record.id if alone else world.user_constraints.take_id()
         if number in world.contact_arrays.soft.anchors or number < 1:
-            raise ValueError(f"there cannot be an anchor {number}")
+            raise ValueError(f"the number {number} of an anchor is used twice or out of range")
         rows = None if body is None else body.rows
         world.contact_arrays.soft.anchors[number] = Anchor(
             number, soft.soft_rows, record.node, rows, record.link, record.pivot
@@ -422,7 +425,7 @@ def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alon
 def _order_constraints(
     world: World, saved: SavedWorld, bodies: dict[int, Body], ties: dict[int, UserConstraint]
 ) -> None:
-    """Puts the lists whose order the solver's follows from into the order they had."""
+    """Restore the order of constraints and of objects, from which the solver's order follows."""
     ours = {id(body) for body in bodies.values()}
     own = [constraint for constraint in world.constraints.all if id(constraint.body) not in ours]
     used = set()
@@ -457,12 +460,12 @@ def _order_constraints(
     if len(set(objects)) != len(objects) or len(objects) != sum(
         1 + body.joint_count for body in bodies.values()
     ):
-        raise ValueError("the list of objects does not name every link once")
+        raise ValueError("the list of objects does not contain every link exactly once")
     world.constraints.tags.reorder([*others, *objects])
 
 
 def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bool:
-    """Whether a constraint is of a kind that its joint, or what ties it, can have."""
+    """Whether the kind of a constraint is one that its joint, or its user constraint, can have."""
     if tie is not None:
         kind_and_place = (ConstraintKind.USER, tie.parent, tie.parent_link)
         return (record.kind, body, record.joint) == kind_and_place

@@ -1,4 +1,4 @@
-"""Writing a file atomically: other programs never see half of it."""
+"""Writing a file atomically: other programs never see an incomplete file."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Writes a file beside its place and moves it there.
+    """Write a file under a temporary name in the same folder, then rename it.
 
     A symbolic link is kept, and its target is written. An existing file keeps its permissions; a new one has
     those of the umask. Devices, such as `/dev/null`, are written to and never replaced.
 
     Raises:
-        OSError: It cannot be written; a file that was there is as it was.
+        OSError: The file cannot be written; an existing file is unchanged.
     """
     target = Path(os.path.realpath(path))
     mode = 0o666
@@ -28,7 +28,7 @@ def write_whole(path: Path, data: bytes) -> None:
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(target.parent))
     draft = target.parent / f".carom-{secrets.token_hex(8)}"
-    # Not by `tempfile`, whose files are for their owner alone.
+    # Not by `tempfile`: only the owner may read such files.
     descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
         with os.fdopen(descriptor, "wb") as stream:

@@ -166,7 +166,7 @@ class BodyBatch:
         """`Joint.set_position_target` for joints in all worlds.
 
         Args:
-            targets: Positions, clipped to the limits: (count, dofs) or what broadcasts to it.
+            targets: Positions, clipped to the limits: (count, dofs) or a shape that broadcasts to it.
             gains: Share of the position error corrected per substep.
             velocities: Target velocities.
             velocity_gains: Share of the velocity error corrected per substep.
@@ -231,7 +231,7 @@ class BodyBatch:
         """`Joint.set_torque` for joints in all worlds: for the next step, replacing those set before.
 
         Args:
-            torques: [N m or N], (count, dofs) or what broadcasts to it.
+            torques: [N m or N], (count, dofs) or a shape that broadcasts to it.
             joints: Which joints, by index or name; None for all movable joints.
         """
         dofs, places = self._chosen(joints, one_freedom=joints is not None)
@@ -296,7 +296,7 @@ class BodyBatch:
         """Set linear and angular velocities of the base in world axes.
 
         Args:
-            velocities: (6,) or (n, 6) for the n worlds chosen, as `base_velocities` has them.
+            velocities: (6,) or (n, 6) for the n worlds chosen, ordered as in `base_velocities`.
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
         worlds = world_numbers(self._take(where), self._count)
@@ -325,8 +325,8 @@ class BodyBatch:
     def stepped_link_poses(self) -> Array:
         """`link_poses` as `pybullet.getLinkState` has them after a step; a view (count, links, 7).
 
-        They are those at the start of the last substep. Reading `link_poses` or `link_velocities` updates
-        them in all worlds, `update_link_poses` in some.
+        They are the poses at the start of the last substep. Reading `link_poses` or `link_velocities`
+        updates them in all worlds, `update_link_poses` in chosen worlds.
         """
         return self._state["link_pose"][:, self._links]
 
@@ -334,8 +334,8 @@ class BodyBatch:
     def stepped_link_velocities(self) -> Array:
         """`link_velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
 
-        They go with `stepped_link_poses` and the present velocities of the joints. The next call overwrites
-        the same array.
+        They are computed from `stepped_link_poses` and the present velocities of the joints. The next call
+        overwrites the same array.
         """
         return self._poses.velocities_at_step()[:, self._links]
 
@@ -354,8 +354,8 @@ class BodyBatch:
 
         Args:
             link: The link by index (-1 is the base) or name.
-            forces: [N] in world axes, (count, 3) or what broadcasts to it.
-            points: Where they act, in world axes [m], likewise; None for the centre of mass.
+            forces: [N] in world axes, (count, 3) or a shape that broadcasts to it.
+            points: Points of application in world axes [m], likewise; None for the centre of mass.
             torques: [N m] in world axes, likewise.
         """
         (row,) = self.link_rows(link)
@@ -391,7 +391,7 @@ class BodyBatch:
         change_dynamics(self._engine, self._body, self._link_index(link), changes)
 
     def link_rows(self, link: int | str | None) -> np.ndarray:
-        """Rows of a link, or of all links with the base for None, in the arrays of the engine."""
+        """Rows of a link in the arrays of the engine; None stands for the base and all links."""
         first = self._body.first_link
         if link is None:
             return np.arange(first, self._links.stop)
@@ -410,7 +410,7 @@ class BodyBatch:
     def _chosen(
         self, joints: list[int | str] | None, *, one_freedom: bool = True
     ) -> tuple[slice | np.ndarray, np.ndarray]:
-        """Velocity coordinates of some joints, and their places among all movable ones."""
+        """Velocity coordinates of some joints, and the indices of these joints among all movable ones."""
         body = self._body
         movable = [joint for joint in range(body.joint_count) if body.velocity_count[joint]]
         if joints is None:

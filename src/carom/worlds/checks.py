@@ -14,23 +14,23 @@ Mask = NDArray[np.bool_]
 
 
 def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bool = True) -> Array:
-    """`value` as doubles of a shape; one value may stand for all worlds, or all joints.
+    """Broadcast `value` to an array of doubles; one value can be for all worlds, or for all joints.
 
     Args:
         value: The user's value; numbers on another device stay there, and are not checked.
-        shape: The shape wanted, worlds first.
+        shape: The shape of the result, worlds first.
         name: Its name in messages.
         finite: Whether infinities raise an error; NaN always does.
 
     Raises:
-        ValueError: It does not broadcast to that shape, or something in it is not finite.
+        ValueError: `value` does not broadcast to that shape, or a number is not finite.
     """
     if isinstance(value, OnDevice):
         return _spread(value, shape, name)
     array = np.asarray(value, dtype=np.float64)
     good = np.isfinite(array).all() if finite else not np.isnan(array).any()
     if not good:
-        raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, and is not everywhere")
+        raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, but some entries are not")
     return _spread(array, shape, name)
 
 
@@ -51,7 +51,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
         count: Number of worlds.
 
     Raises:
-        ValueError: A mask has another length.
+        ValueError: A mask has the wrong length, or the indices are not integers.
         IndexError: There is no such world.
     """
     if where is None:
@@ -71,7 +71,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
 
 
 def choose(what: str, names: Sequence[str], key: int | str) -> int:
-    """The index of a joint or a link by index or name.
+    """The index of the joint or link with an index or a name.
 
     Raises:
         KeyError: Nothing has that name.

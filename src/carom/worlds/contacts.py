@@ -21,8 +21,8 @@ class ContactSummary(NamedTuple):
         touching: Whether there is a contact with a force, (count,).
         number: Number of contact points, including those that do not touch yet, (count,).
         forces: Force on the body, friction included, in world axes [N], (count, 3).
-        distances: Of the deepest point [m], negative for penetration; infinite without contacts, (count,).
-        deepest: That point on the body in world axes [m], (count, 3); NaN without contacts.
+        distances: Distance at the deepest point [m], < 0 for penetration, inf without contacts, (count,).
+        deepest: Deepest point on the body in world axes [m], (count, 3); NaN without contacts.
     """
 
     touching: NDArray[np.bool_]
@@ -36,7 +36,7 @@ class ContactFinder:
     """Finds contacts between links in all worlds.
 
     Args:
-        engine: The worlds.
+        engine: The engine of the worlds.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -65,11 +65,14 @@ class ContactFinder:
         return ContactSummary(touching.view(np.bool_), number, impulse / substep_time, distance, deepest)
 
     def links(self, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
-        """Which of some links have a contact point with some others in each world: (worlds, links) booleans.
+        """Whether each of some links has a contact point with any of others, in each world.
 
         Args:
-            first: Rows of links.
-            second: Rows of the others.
+            first: Rows of the links.
+            second: Rows of the other links.
+
+        Returns:
+            (worlds, links) booleans.
         """
         self._ask(first, second)
         touching = self._table.numpy["place_touching"][: self._count * len(first)].copy()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 CPU = "cpu"
 _CUDA = "cuda"
-# For tests: the launches of a GPU, on the processor.
+# For tests: the launches for a GPU, performed on the CPU.
 _WARP_CPU = "warp-cpu"
 
 
@@ -25,12 +25,12 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
     Args:
         scene: The scene.
         count: Number of worlds.
-        device: See `Worlds`; or a device of `carom.gpu`.
+        device: A name as for `Worlds`, or a device of `carom.gpu`.
         threads: Number of threads on the processor; None for the number of cores available.
 
     Raises:
         ValueError: There is no such device.
-        ImportError: A GPU is asked for, and Warp is not installed.
+        ImportError: A GPU is requested, and Warp is not installed.
         MemoryError: There is not enough memory for so many worlds.
     """
     if device == CPU:
@@ -39,7 +39,7 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
         arrays = scene.arrays.repeated(count)
         return Engine(arrays, scene.contact_arrays.repeated(arrays), min(count, threads or core_count()))
     if threads is not None:
-        raise ValueError("threads share worlds on the device 'cpu' only")
+        raise ValueError("threads can be set for the device 'cpu' only")
     found = open_device(device) if isinstance(device, str) else device
     from carom.gpu.engine import DeviceEngine
 
@@ -50,7 +50,7 @@ def open_device(name: str) -> Device:
     """A device by name: "cuda", "cuda:1".
 
     Raises:
-        ValueError: It is unknown, or not present in this machine.
+        ValueError: The name is unknown, or this machine has no such device.
         ImportError: Warp is not installed.
     """
     kind, _, number = name.partition(":")

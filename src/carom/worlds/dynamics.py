@@ -33,11 +33,13 @@ _NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping")
 
 
 def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str, ArrayLike]) -> None:
-    """See `BodyBatch.change_dynamics`; nothing changes if something does not fit."""
+    """Perform `BodyBatch.change_dynamics`; nothing changes if an argument is wrong."""
     count = engine.arrays.world_count
     unknown = [name for name in changes if name not in _ALL]
     if unknown:
-        raise TypeError(f"there is no parameter {unknown[0]!r} that can differ; there are {', '.join(_ALL)}")
+        raise TypeError(
+            f"no parameter {unknown[0]!r} can differ between worlds; those that can are {', '.join(_ALL)}"
+        )
     values = {
         name: broadcast(
             np.asarray(engine.take(value)),
@@ -58,7 +60,7 @@ def change_dynamics(engine: Engine, body: Body, link: int, changes: Mapping[str,
 def _writes(
     engine: Engine, body: Body, link: int, values: Mapping[str, np.ndarray]
 ) -> Iterator[tuple[str, str, int | slice, np.ndarray]]:
-    """What to write: table, field, rows, numbers (first axis: worlds)."""
+    """The changes of arrays: table, field, rows, numbers (first axis: worlds)."""
     row, tree = body.first_link + 1 + link, body.rows.tree
     for name, numbers in values.items():
         if name in OF_SURFACE:
@@ -97,5 +99,5 @@ def _limit_row(engine: Engine, body: Body, joint: int) -> int:
     rows = np.flatnonzero(is_limit & (model["constraint_link"][:used] == body.first_link + 1 + joint))
     if not len(rows):
         name = body.spec.links[joint].joint_name
-        raise ValueError(f"joint {name!r} has no limits: set them in the original world before")
+        raise ValueError(f"joint {name!r} has no limits: set them in the original world before it is copied")
     return int(rows[0])

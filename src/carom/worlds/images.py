@@ -32,9 +32,9 @@ class Images(NamedTuple):
 
 
 def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray) -> Images:
-    """Images of some worlds, taken one after the other in a scene that gets the state of each.
+    """Images of some worlds: the coordinates of each are copied to a scene, which is drawn.
 
-    A camera that is mounted on a link of the original world follows that link in each.
+    A camera that is mounted on a link of the original world follows that link in each world.
     """
     mounted = camera.link
     if mounted is not None:

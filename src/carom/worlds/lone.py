@@ -38,7 +38,7 @@ def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:
 
 
 def _take_parameters(world: World, engine: Engine, number: int) -> None:
-    """Update a world's parameters of bodies from the arrays, where worlds differ."""
+    """Set the parameters of a world that can differ between worlds to those of one of an engine's worlds."""
     model, shapes = engine.arrays.model, engine.contact_arrays.shapes.table
     x, y, z = _row(model, "gravity_vector", number)[0].tolist()
     world.parameters.gravity = (x, y, z)
@@ -84,6 +84,6 @@ def _take_limits(world: World, engine: Engine, number: int) -> None:
 
 
 def _row(table: ArrayTable, field: str, number: int) -> np.ndarray:
-    """The rows of a world; where worlds do not differ, the first row."""
+    """The values of a field in a world; if the worlds do not differ, they share one row."""
     array = table.numpy[field]
     return array[number if len(array) > 1 else 0]

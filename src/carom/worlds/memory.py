@@ -24,7 +24,7 @@ def check_memory(count: int, bytes_per_world: int) -> None:
     """Check that there is enough memory for the worlds.
 
     Raises:
-        MemoryError: There is not.
+        MemoryError: There is not enough.
     """
     needed, free = count * bytes_per_world, free_memory()
     if free is not None and needed > free:

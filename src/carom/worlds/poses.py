@@ -12,8 +12,8 @@ class PoseFinder:
     """Updates link poses and velocities of one tree in all worlds.
 
     Args:
-        engine: The worlds.
-        tree: The tree.
+        engine: The engine of the worlds.
+        tree: Row of the tree.
     """
 
     def __init__(self, engine: Engine, tree: int) -> None:

@@ -21,7 +21,7 @@ class RayHits(NamedTuple):
     """Results of rays in each world.
 
     Attributes:
-        bodies: Numbers of the bodies, -1 for nothing, (count, n).
+        bodies: Numbers of the bodies, -1 without a hit, (count, n).
         links: Their links, -1 for the base and without a hit, (count, n).
         fractions: Fraction along the ray: 0 at the start, 1 at the end and without a hit, (count, n).
         positions: Points in world axes [m], (count, n, 3).
@@ -39,7 +39,7 @@ class RayCaster:
     """Casts rays in all worlds at once.
 
     Args:
-        engine: The worlds.
+        engine: The engine of the worlds.
         places: Body and link of each row of the link arrays.
     """
 

@@ -49,7 +49,7 @@ class SavedWorlds:
         return len(self.worlds)
 
     def rows_for(self, worlds: np.ndarray, count: int) -> np.ndarray:
-        """The index of the state that each of some worlds gets.
+        """For each of some worlds, the index of the saved state that it gets.
 
         Raises:
             ValueError: The number of states is wrong.
@@ -66,7 +66,7 @@ class SavedWorlds:
         return np.arange(len(worlds))
 
     def put_back(self, engine: Engine, worlds: np.ndarray, rows: np.ndarray) -> None:
-        """Restore worlds from the states of some rows.
+        """Restore worlds to saved states; `rows` are the indices of the states that they get.
 
         Raises:
             ValueError: They are states of other bodies; nothing is changed.

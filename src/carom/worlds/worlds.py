@@ -113,7 +113,7 @@ class Worlds:
         A world whose velocities become NaN or infinite is halted; a `SimulationWarning` names it.
 
         Args:
-            count: How many steps.
+            count: Number of steps.
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
@@ -130,7 +130,7 @@ class Worlds:
         if parameters.substeps <= 1:
             self._engine.step([1] * steps, None if len(running) == self.count else running)
         else:
-            # Worlds whose clocks differ have their substeps at different steps.
+            # Worlds with different unspent times have their substeps in different steps.
             for unspent in np.unique(self._unspent_times[running]):
                 worlds = running[self._unspent_times[running] == unspent]
                 due, left = [], float(unspent)
@@ -139,7 +139,7 @@ class Worlds:
                     due.append(substeps)
                 self._engine.step(due, worlds)
                 self._unspent_times[worlds] = left
-        # One after the other, in the order of a single world, for the same rounding.
+        # Added one by one, as in a single world, for the same rounding.
         for _ in range(steps):
             self.times[running] += self.time_step
         status = self._engine.status[running, STATUS]
@@ -147,7 +147,7 @@ class Worlds:
             self._halt(running[status > WELL], steps)
 
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
-        """Clear all other results of the failed step than the coordinates, as in a single world, and warn."""
+        """Clear the results of the failed step except the coordinates, as in a single world, and warn."""
         state = self._engine.arrays.state.numpy
         self.halted[worlds] = True
         state["link_reaction"][worlds] = 0.0
@@ -222,7 +222,7 @@ class Worlds:
 
         Raises:
             IndexError: There is no such world.
-            ValueError: It has other bodies.
+            ValueError: That world has other bodies.
         """
         (row,) = world_numbers([number], self.count)
         if world.arrays.used["position"] != self._engine.arrays.used["position"]:
@@ -261,7 +261,7 @@ class Worlds:
         row = self._scene.user_constraints.rows[number]
         self._engine.set_parameter("users", "user_enabled", row, holds)
 
-    # Questions
+    # Queries
 
     def contacts(
         self,
@@ -316,7 +316,7 @@ class Worlds:
             starts: Start points in world axes [m], shape (n, 3) for the same rays in all worlds, or (count,
                 n, 3).
             ends: End points, likewise.
-            mask: Mask of the collision groups that are hit.
+            mask: Mask of the collision groups that the rays can hit.
         """
         return self._ray_caster(starts, ends, mask)
 

@@ -247,8 +247,8 @@ def calculateMassMatrix(
         physicsClientId: The connection.
 
     Returns:
-        Its rows. With a floating base six rows and columns for its angular and linear velocity come
-        first.
+        The rows of the matrix. With a floating base six rows and columns for its angular and linear velocity
+        come first.
 
     Raises:
         pybullet.error: Not connected, there is no such body, or there are too few positions.
@@ -286,7 +286,7 @@ def calculateMassMatrix(
 
 
 def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
-    """Positions as in the engine: quaternions of spherical joints instead of three angles."""
+    """Joint positions as the engine stores them: quaternions of spherical joints instead of three angles."""
     if body.position_count == body.velocity_count:
         return values
     result: list[float] = []

@@ -46,7 +46,7 @@ _LIMITS = ("lowerLimits", "upperLimits", "jointRanges", "restPoses")
 _MISSING = object()
 _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
-# PyBullet counts as stuck if its iteration leaves more than this share of the distance.
+# PyBullet's iteration is considered stuck if it leaves more than this fraction of the distance.
 _STUCK = 0.5
 _STEPS_WHERE_STUCK = 200
 
@@ -134,7 +134,7 @@ def calculateInverseKinematics(
         currentPositions: Joint positions to start from.
         maxNumIterations: Maximum number of steps of PyBullet's iteration; default 20. The continued search
             has the same maximum, with limits at least 300.
-        residualThreshold: Distance [m], and angle [rad], that are close enough; default 1e-4.
+        residualThreshold: Tolerance of distances [m] and angles [rad]; default 1e-4.
         physicsClientId: The connection.
         bodyIndex: Another name of `bodyUniqueId`.
 
@@ -173,7 +173,7 @@ def calculateInverseKinematics(
     _check_link(body, link)
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
         # Scripts that do not ask for accuracy may depend on PyBullet's result (trained policies, for
-        # example), and come closer with each call; but not if PyBullet is stuck.
+        # example). Each call brings them closer to the target, unless PyBullet's iteration is stuck.
         options["further"], options["patience"] = _STEPS_WHERE_STUCK, _STUCK
 
     with client.lock:
@@ -214,7 +214,7 @@ def calculateInverseKinematics2(
         solver: `IK_DLS` or `IK_SDLS`.
         currentPositions: Joint positions to start from.
         maxNumIterations: Maximum number of steps.
-        residualThreshold: Distance that is close enough [m].
+        residualThreshold: Tolerance of distances [m].
         physicsClientId: The connection.
 
     Returns:
@@ -258,7 +258,7 @@ def calculateInverseKinematics2(
 
 @cache
 def _algorithm() -> Callable[..., tuple[float, ...]]:
-    """Imported when first needed, for a quick import of the module."""
+    """The function of `carom.algorithms`, imported at the first call to keep the module's import quick."""
     from carom.algorithms import inverse_kinematics
 
     return inverse_kinematics
@@ -277,7 +277,7 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
     name = "targetOrientation"
     given = numbers(values, _PROBLEM, name)
     if len(given) != 4:
-        warn_once("calculateInverseKinematics: targetOrientation has not 4 values and is ignored")
+        warn_once("calculateInverseKinematics: targetOrientation does not have 4 values and is ignored")
         return None
     return rotation(given, _PROBLEM, name)
 

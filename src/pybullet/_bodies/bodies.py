@@ -152,8 +152,8 @@ def computeDofCount(bodyUniqueId: int, physicsClientId: int = 0) -> int:
         physicsClientId: The connection.
 
     Returns:
-        The number of revolute and prismatic joints; 0 if there is no such body. With a spherical or planar
-        joint, -1 or -2, whichever comes first.
+        The number of revolute and prismatic joints; 0 if there is no such body. If there are spherical or
+        planar joints: -1 if the first of them is spherical, -2 if it is planar.
 
     Raises:
         pybullet.error: Not connected.
@@ -291,5 +291,5 @@ def resetBaseVelocity(
         with client.lock:
             present_linear, present_angular = client.bodies[body.id].base_velocity()
             body.set_base_velocity(linear or present_linear, angular or present_angular)
-            # PyBullet's getLinkState is up to date from here on.
+            # As in PyBullet, `getLinkState` returns up-to-date poses from now on.
             body.update_link_poses()

@@ -31,13 +31,13 @@ _AT_REST = (0.0,) * 6
 
 
 class BodyAccess:
-    """One body.
+    """Direct access to the state of one body.
 
     Attributes:
         body: The body itself.
         joints: Access to its joints, by index.
-        groups: Access to several of its joints, by their indices.
-        record: Its record for the native library; None if Python handles all calls.
+        groups: Access to groups of its joints, by the tuple of their indices.
+        record: The body's record for the native library; None if Python handles all calls.
     """
 
     def __init__(self, client: Client, body: Body) -> None:
@@ -65,7 +65,7 @@ class BodyAccess:
         return links
 
     def weighed(self, link: int) -> None:
-        """Lets the native library see to the next changes of the mass of a link, -1 for the base."""
+        """Let the native library handle the next changes of a link's mass; -1 is the base."""
         if self.record is None:
             return
         from carom.native.quick_calls import Moments
@@ -79,9 +79,9 @@ class BodyAccess:
             write_moments(self._moments[link + 1], shape_terms(self.body, link))
 
     def commanded(self, group: JointGroup) -> None:
-        """Lets the native library handle the next commands to this group of joints."""
+        """Let the native library handle the next commands to this group of joints."""
         if self.record is not None and group.record is not None:
-            # The record lives as long as the library uses it.
+            # `_group` keeps the record alive while the library uses it. The old record is withdrawn first.
             self.record.motors = None
             self._group = group
             self.record.motors = addressof(group.record)
@@ -89,7 +89,7 @@ class BodyAccess:
     @cached_property
     def boxes(self) -> Mapping[int, LinkBox | SoftBox]:
         """The bounding boxes of the links, by index, -1 for the base."""
-        # Made on demand: most scripts never need it, and its imports take long.
+        # Created on demand: most scripts never need the boxes, and these imports are slow.
         from pybullet._bodies.link_box import LinkBox, SoftBox
 
         if self.body.spec.soft is not None:
@@ -104,7 +104,7 @@ class BodyAccess:
 
     @cached_property
     def mechanism(self) -> Mechanism | None:
-        """Its equations of motion, if none of its joints has more than one degree of freedom."""
+        """The body's equations of motion; None if a joint has more than one degree of freedom."""
         if any(freedoms > 1 for freedoms in self.body.velocity_count):
             return None
         from carom.algorithms.mechanism import mechanism_of
@@ -113,11 +113,11 @@ class BodyAccess:
 
     @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:
-        """What `getJointInfo` returns, by joint index."""
+        """The return values of `getJointInfo`, by joint index."""
         return {index: joint_info(self.body, index) for index in range(self.body.joint_count)}
 
     def forget_inertia(self) -> None:
-        """Drop data that depend on masses and inertias. Some scripts change a mass at every step."""
+        """Drop only the data that depend on masses and inertias: some scripts change a mass at every step."""
         self.__dict__.pop("mechanism", None)
 
     def base_pose(self) -> tuple[Vector3, Quaternion]:
@@ -131,11 +131,11 @@ class BodyAccess:
         return ((vx, vy, vz), (wx, wy, wz))
 
     def inertial_frame(self, link: int) -> tuple[Vector3, Quaternion]:
-        """World pose of the inertial frame of a link, -1 for the base."""
+        """World pose of a link's inertial frame; -1 is the base."""
         return self.base_pose() if link < 0 else self.links[link].pose()
 
     def place_base(self, position: Vector3, orientation: Quaternion) -> None:
-        """Sets the pose of the base and its velocity to 0, as `resetBasePositionAndOrientation` does."""
+        """Set the pose of the base and its velocity to 0, as `resetBasePositionAndOrientation` does."""
         with self._client.lock:
             if self.body.spec.soft is not None:
                 self.body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -143,7 +143,7 @@ class BodyAccess:
             self.body.set_base_pose(position, orientation)
 
     def push(self, link: int, force: Vector3, torque: Vector3) -> None:
-        """Adds a force and a torque about the centre of mass [N, N m] to a link, -1 for the base."""
+        """Add a force [N] and a torque about the centre of mass [N m] to a link, in world axes; -1: base."""
         wrenches = self._client.world.link_force_memory
         at = (self.body.first_link + 1 + link) * _SPATIAL.size
         fx, fy, fz, tx, ty, tz = _read_spatial(wrenches, at)
@@ -152,15 +152,15 @@ class BodyAccess:
 
 
 class BodyTable(dict[int, BodyAccess]):
-    """Access to the bodies of one client by id; an entry is made on first use.
+    """Direct access to the bodies of one client, by id; an entry is created on first use.
 
-    Asking for a body that does not exist raises `KeyError`.
+    The id of a body that does not exist raises `KeyError`.
 
     Attributes:
-        client: The client; set once.
-        forces_of_motion: The functions for `calculateInverseDynamics`, by body id: a plain dictionary,
-            because it is fastest.
-        quick: The records of these bodies for the native library, if it may use them.
+        client: The client, which sets this attribute when it is created.
+        forces_of_motion: The functions for `calculateInverseDynamics`, by body id; a plain dictionary,
+            because its look-up is fastest.
+        quick: The records of these bodies for the native library; None if Python handles all calls.
     """
 
     __slots__ = ("client", "forces_of_motion", "quick")
@@ -172,7 +172,7 @@ class BodyTable(dict[int, BodyAccess]):
         self.quick: QuickBodies | None = None
 
     def forget(self, body_id: int) -> None:
-        """Drop the access to a body whose id will be used for another."""
+        """Drop the access to a body, because data that it caches change."""
         if self.quick is not None:
             self.quick.hide(body_id)
         self.pop(body_id, None)

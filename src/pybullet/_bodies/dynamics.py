@@ -23,13 +23,13 @@ DynamicsInfo = tuple[
 
 _MULTI_BODY, _SOFT_BODY = 2, 3
 
-# Defaults, recognised by identity, because arrays cannot be compared with `==`.
+# Default arguments, compared with `is`, because `==` fails for arrays.
 _UNCHANGED, _NO_LIMIT = -1, 1
-# Limits and thresholds, which may be infinite.
+# Parameters that may be infinite: limits and thresholds.
 _ANY_SIZE = frozenset(
     {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
 )
-# Parameters that a `BodyAccess` depends on, and those that only its equations of motion depend on.
+# Changes of these parameters make a whole `BodyAccess` outdated, or only its equations of motion.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}
 
@@ -116,10 +116,10 @@ def changeDynamics(
 ) -> None:
     """Changes parameters of a link, of its joint, or of the whole body. Negative numbers change nothing.
 
-    PyBullet has a trap here, which is kept: damping, activation state, maximum velocity and collision margin
-    belong to the body. If one of them is the last of the arguments given, in the order written below, all
-    others in the same call go to the base as well. Use one call for the body and another for the link; a
-    warning is logged if it happens. A body or link that does not exist is no error.
+    Carom keeps a trap of PyBullet: damping, activation state, maximum velocity and collision margin belong to
+    the body. If one of them is the last of the arguments given, in the order below, all others in the same
+    call go to the base as well, with a warning. Use one call for the body and another for the link. A body or
+    link that does not exist is no error.
 
     The order: jointLimitForce, joint limits, mass, anisotropicFriction, localInertiaDiagonal,
     lateralFriction, spinningFriction, rollingFriction, linearDamping*, angularDamping*, jointDamping,
@@ -152,7 +152,7 @@ def changeDynamics(
         jointLowerLimit: [rad or m]; limits are changed if it is not greater than the upper one.
         jointUpperLimit: [rad or m].
         jointLimitForce: Maximum force of the limits [N m or N].
-        sleepThreshold: Sum of all its squared velocities below which a body may sleep; default 0.05.
+        sleepThreshold: Sum of the body's squared velocities below which it may sleep; default 0.05.
         physicsClientId: The connection.
 
     Raises:
@@ -228,13 +228,13 @@ def changeDynamics(
             named_link,
         )
     with client.lock:
-        # First, so that after an interrupt no old data of the body remain.
+        # Before the change, so that an interrupt between the two leaves no outdated data.
         if not _LIMITS.isdisjoint(changes.values):
             client.bodies.forget(body.id)
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
         body.change_dynamics(link, **changes.values)
-        # So that the native library can see to it next time.
+        # Let the native library handle the next change.
         access = client.bodies[body.id]
         if "mass" in changes.values:
             access.weighed(link)
@@ -245,7 +245,7 @@ def changeDynamics(
 def enableJointForceTorqueSensor(
     bodyUniqueId: int, jointIndex: int, enableSensor: int = 1, physicsClientId: int = 0
 ) -> None:
-    """Switches the force-torque sensor of a joint on or off, which `getJointState` reads.
+    """Switches the force-torque sensor of a joint on or off; `getJointState` returns its values.
 
     Args:
         bodyUniqueId: The body.
@@ -274,16 +274,17 @@ def enableJointForceTorqueSensor(
 
 
 def _refuse_size(name: str, value: float) -> NoReturn:
-    fail(f"{name} is {value:g}; it may be at most {MAX_MAGNITUDE:g}, as products of it have to be numbers.")
+    fail(f"{name} is {value:g}; it may be at most {MAX_MAGNITUDE:g}, so that its products do not overflow.")
 
 
 class _Changes:
-    """The changes of a call of `changeDynamics`, and their link.
+    """The changes that one call of `changeDynamics` makes, and the link that they apply to.
 
     Attributes:
-        link: The link that was addressed last.
+        link: The link that all changes apply to: the named link or the base, whichever the value taken last
+            belongs to.
         values: New values by name.
-        misdirected: Names of values intended for a link.
+        misdirected: Names of the values that belong to the named link, even if they go to the base.
     """
 
     __slots__ = ("_named_link", "link", "misdirected", "values")
@@ -295,7 +296,7 @@ class _Changes:
         self.misdirected: list[str] = []
 
     def take(self, name: str, value: float) -> None:
-        """Takes a value for the named link, unless it is negative."""
+        """Take a value that belongs to the named link, unless it is negative."""
         if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
             _refuse_size(name, value)
         if value >= 0:
@@ -304,7 +305,7 @@ class _Changes:
             self.misdirected.append(name)
 
     def take_for_body(self, name: str, value: float) -> None:
-        """Takes a value for the whole body, unless it is negative."""
+        """Take a value that belongs to the whole body, unless it is negative."""
         if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
             _refuse_size(name, value)
         if value >= 0:
@@ -312,14 +313,14 @@ class _Changes:
             self.link = BASE
 
     def take_limits(self, lower: float, upper: float) -> None:
-        """Takes the limits of the named link's joint, unless the lower one is greater."""
+        """Take the limits of the named link's joint, unless the lower limit is greater than the upper one."""
         if lower <= upper:
             self.values |= {"joint_lower_limit": lower, "joint_upper_limit": upper}
             self.link = self._named_link
             self.misdirected += "joint_lower_limit", "joint_upper_limit"
 
     def take_vector(self, name: str, value: Vector, argument: str) -> None:
-        """Takes three numbers for the named link."""
+        """Take three numbers that belong to the named link."""
         vector = vector3(value, f"{argument} needs 3 numbers.", argument)
         for number in vector:
             if abs(number) > MAX_MAGNITUDE:

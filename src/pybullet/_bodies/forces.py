@@ -46,7 +46,7 @@ def applyExternalForce(
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base. For a soft body the node; -1 for all nodes.
         forceObj: Force [N].
-        posObj: Where it acts [m].
+        posObj: Point where the force acts [m].
         flags: `WORLD_FRAME`: both are in the world frame. `LINK_FRAME`: both are in the inertial frame of
             the link, so that a position of zeros is its centre of mass.
         physicsClientId: The connection.
@@ -117,7 +117,7 @@ def applyExternalTorque(
 
 
 def _push_node(body: Body, node_index: int, force: Vector3, frame: int) -> None:
-    """Adds a force to a node of a soft body, or, for -1, distributes it over all nodes."""
+    """Add a force to a node of a soft body; for node -1, distribute it equally over all nodes."""
     from carom.scene.soft_body import SoftBody
 
     assert isinstance(body, SoftBody)
@@ -141,7 +141,7 @@ def _frame(flags: int) -> int:
 
 
 def _body(client: Client, body_id: int, link_index: int, function: str) -> BodyAccess | None:
-    """Access to a body that has a link, None if there is no such body."""
+    """Access to a body after a check of the link index; None if there is no such body."""
     body = client.body(body_id)
     link = integer(link_index, "linkIndex")
     if body is None:

@@ -24,7 +24,7 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class LinkAccess:
-    """One link other than the base."""
+    """Direct access to the state of one link other than the base."""
 
     __slots__ = ("frame", "from_inertial", "pose_at", "poses", "rotated", "velocities", "velocity_at")
 
@@ -40,7 +40,7 @@ class LinkAccess:
         self.rotated = self.from_inertial.orientation != _NO_TURN
 
     def state(self) -> LinkState:
-        """World poses of the inertial frame and of the link frame, and the former in the latter."""
+        """World pose of the inertial frame, its pose in the link frame, and world pose of the link frame."""
         x, y, z, qx, qy, qz, qw = _read_pose(self.poses, self.pose_at)
         orientation = (qx, qy, qz, qw)
         dx, dy, dz = turned(orientation, self.from_inertial.position)

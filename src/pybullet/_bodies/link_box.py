@@ -23,13 +23,13 @@ _DOUBLE = 8
 
 
 class LinkBox:
-    """The box around one link, wherever it is when it is asked for.
+    """The bounding box of one link, at the link's present pose.
 
     Attributes:
-        center: Its centre in the inertial frame of the link [m].
-        half: Half its size along the axes of that [m].
-        is_moved: It moves with the link; that around a plane does not.
-        is_turned: It turns with the link; that around a ball does not.
+        center: Centre of the box in the inertial frame of the link [m].
+        half: Half its size along the axes of the inertial frame [m].
+        is_moved: Whether the box moves with the link; the box of a plane does not.
+        is_turned: Whether the box rotates with the link; the box of a sphere does not.
     """
 
     __slots__ = ("_at", "_poses", "center", "half", "is_moved", "is_turned")
@@ -42,12 +42,12 @@ class LinkBox:
         self.is_turned = self.is_moved and lone is not Sphere
         bounds = world.contact_arrays.shapes.bounds(row)
         self.center, self.half = bounds.center, bounds.half
-        # The base is where its coordinates say, also after a step.
+        # Read the base's pose from its coordinates: after a step, link poses are one substep behind.
         self._poses = world.position_memory if link == BASE else world.link_pose_memory
         self._at = body.first_position * _DOUBLE if link == BASE else row * _POSE.size
 
     def corners(self) -> tuple[Vector3, Vector3]:
-        """The lowest and the highest corner, in the world frame [m]."""
+        """The minimum and the maximum corner, in the world frame [m]."""
         center, half = self.center, self.half
         if self.is_moved:
             x, y, z, qx, qy, qz, qw = _read_pose(self._poses, self._at)

@@ -1,4 +1,4 @@
-"""From rows of the world's arrays to bodies and links."""
+"""The body and the link of a row of the world's link arrays."""
 
 from __future__ import annotations
 
@@ -11,6 +11,6 @@ Place = tuple[int, int]
 
 
 def places(world: World, rows: list[int]) -> list[Place | None]:
-    """Body and link, -1 for the base, of rows of link arrays; None for negative rows."""
+    """Body id and link index (-1 for the base) of each row of the link arrays; None for a negative row."""
     table = world.link_places
     return [table[row] if row >= 0 else None for row in rows]

@@ -99,7 +99,7 @@ def getLinkStates(
         physicsClientId: The connection.
 
     Returns:
-        What `getLinkState` returns, for each link; None for an index that the body does not have.
+        The result of `getLinkState` for each link; None for an index that the body does not have.
 
     Raises:
         pybullet.error: Not connected, there is no such body, or the indices are not a sequence.
@@ -127,7 +127,7 @@ def getLinkStates(
 
 
 def _prepare(access: BodyAccess, compute_velocity: Any, compute_kinematics: Any) -> bool:
-    """Updates the poses and velocities asked for; returns whether velocities were."""
+    """Update poses and velocities as the arguments request; return whether they request velocities."""
     with_velocity = integer(compute_velocity, "computeLinkVelocity") != 0
     with_kinematics = integer(compute_kinematics, "computeForwardKinematics") != 0
     if with_kinematics:

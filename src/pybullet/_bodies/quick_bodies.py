@@ -1,8 +1,8 @@
 """The records of a connection's bodies for quick calls.
 
-Each body in `BodyTable` has a record of addresses, which is dropped together with it: whatever moves rows of
-the state makes the table forget its bodies. A record keeps its arrays alive, so that an outdated address
-could give wrong values, but never point to freed memory.
+Each entry of `BodyTable` has a record with the addresses of the body's state. The record is dropped together
+with the entry: every operation that moves rows of the state arrays makes the table drop its entries. A record
+keeps its arrays alive, so an outdated address could give wrong values, but never point to freed memory.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ if TYPE_CHECKING:
 
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW = 7 * _DOUBLE, 6 * _DOUBLE
-# Names of attributes are interned.
+# CPython interns names of attributes.
 _TIME_STEP, _JOINT_COUNT, _NAMES = map(sys.intern, ("time_step", "joint_count", "_encoded_names"))
 _FIRST_ROOM = 16
-# Bodies of higher numbers are handled by Python.
+# Python handles bodies whose id is not less than this.
 _MOST_ROOM = 1 << 20
 
 
 class QuickBodies:
-    """The records of a connection's bodies for quick calls, until it is closed.
+    """The records of a connection's bodies for quick calls; in use until `close`.
 
     Args:
         calls: The quick calls.
-        number: Of the connection.
+        number: Number of the connection.
         client: The connection.
     """
 
@@ -47,7 +47,7 @@ class QuickBodies:
         self._clients = calls.clients
         self._number: int | None = number
         self._places: Array[c_void_p] = (c_void_p * _FIRST_ROOM)()
-        # The arrays that addresses point to, by the number of the body.
+        # The objects that the addresses in each record point to, by body id.
         self._shown: dict[int, Any] = {}
         lock = client.lock
         self._kept = (client.world.quick, lock.acquire, lock.release, (False,), client.world.bodies)
@@ -76,7 +76,7 @@ class QuickBodies:
     __del__ = close
 
     def show(self, access: BodyAccess) -> None:
-        """Give the record of a body to the library, unless it is soft."""
+        """Give the record of a body to the native library, unless the body is soft or its id too high."""
         body = access.body
         if body.spec.soft is not None or body.id >= _MOST_ROOM:
             return
@@ -120,7 +120,7 @@ class QuickBodies:
     def _make_room(self, count: int) -> None:
         places = (c_void_p * max(count, 2 * len(self._places)))()
         places[: len(self._places)] = self._places[:]
-        # Without both tables the library finds no bodies.
+        # While the count is 0, the library finds no bodies, so it never uses a wrong table.
         self._record.body_count = 0
         self._record.bodies = addressof(places)
         self._places = places
@@ -140,7 +140,7 @@ def _joint_records(body: Handle) -> Array[Joint]:
 
 
 def link_records(links: Collection[LinkAccess]) -> Array[Link]:
-    """The records of a body's links, except the base, for the library."""
+    """The records of a body's links, except the base, for the native library."""
     records = (Link * len(links))()
     for record, link in zip(records, links, strict=True):
         position, orientation = link.frame
@@ -152,7 +152,7 @@ def link_records(links: Collection[LinkAccess]) -> Array[Link]:
 
 
 def write_moments(record: Moments, terms: MassTerms) -> None:
-    """Show the library how the moments of inertia of a link depend on its mass."""
+    """Write into a record how the moments of inertia of a link depend on its mass."""
     for shown, of_axis in zip(record.terms, terms, strict=True):
         for term, given in zip(shown, of_axis, strict=True):
             term.divisor, term.factors[:] = given.divisor, given.factors
@@ -160,5 +160,5 @@ def write_moments(record: Moments, terms: MassTerms) -> None:
 
 
 def box_records(boxes: Collection[LinkBox]) -> Array[Box]:
-    """What the library is shown of the boxes around the links of a body, the base's first."""
+    """The records of the bounding boxes of a body's links, the base first, for the native library."""
     return (Box * len(boxes))(*[Box(box.center, box.half, box.is_moved, box.is_turned) for box in boxes])

@@ -26,7 +26,7 @@ _unscaled: WeakKeyDictionary[Body, tuple[Collision, ...]] = WeakKeyDictionary()
 def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId: int = 0) -> None:
     """Scales the collision shapes of a body's base, relative to the size at loading.
 
-    Mass, inertia, joints, other links and visual shapes do not change. Balls use the factor of x, capsules
+    Mass, inertia, joints, other links and visual shapes do not change. Spheres use the factor of x, capsules
     those of y and z. A body that does not exist is no error.
 
     Args:

@@ -28,7 +28,9 @@ def createSoftBodyAnchor(
     bodyFramePosition: Vector | None = None,
     physicsClientId: int = 0,
 ) -> int:
-    """Anchors a node of a soft body at its present place, in the world or on a link, which feels the force.
+    """Anchors a node of a soft body, at its present place, to the world or to a link.
+
+    The link gets the reaction force.
 
     Args:
         softBodyBodyUniqueId: The soft body.

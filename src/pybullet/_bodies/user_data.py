@@ -65,7 +65,7 @@ def addUserData(
 
 @exported
 def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
-    """A text.
+    """The text with an id.
 
     Args:
         userDataId: Its id.
@@ -257,11 +257,11 @@ READERS: dict[str, Callable[..., Any]] = {
     "getNumUserData": _count,
     "getUserDataInfo": _info,
 }
-"""Functions that answer queries about texts, by public name; their first argument is all texts."""
+"""Functions that answer queries about texts, by public name; their first argument holds all texts."""
 
 
 def _c_string(value: Any, name: str) -> str:
-    """A text as a C string."""
+    """A text that fits a C string: it holds no null character and can be encoded as UTF-8."""
     words = text(value, name)
     if "\0" in words:
         fail(f"{name} must not contain a null character: {words!r}.")

@@ -1,7 +1,7 @@
-"""A client's copy of the texts of a world that others change too.
+"""A client's copy of the texts (user data) of a world that other clients can change, too.
 
 In PyBullet every client has a copy of all texts as of the time when it connected, with its own changes since.
-Changes by others appear after `syncUserData`.
+Changes by other clients appear after `syncUserData`.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ _LOADING = frozenset({"loadURDF", "loadSDF", "loadMJCF", "loadBullet"})
 _ALL = -1
 
 Ask = Callable[..., Any]
-"""Calls a function of the world by name, with positional arguments."""
+"""A function that calls a function of PyBullet in the world's process: name, positional arguments."""
 
 
 class UserDataView:
     """The copy of one client.
 
     Args:
-        ask: Calls functions where the world is.
+        ask: Calls a function in the world's process.
     """
 
     def __init__(self, ask: Ask) -> None:
@@ -39,13 +39,13 @@ class UserDataView:
     def call(
         self, function: Function, arguments: Any, keywords: dict[str, Any], go_on: Callable[[], Any]
     ) -> Any:
-        """Answers a call from the copy, or passes it on to the world and copies the changes.
+        """Answer a call from the copy, or pass the call on to the world and copy the changes.
 
         Args:
-            function: What is called.
+            function: The function that is called.
             arguments: Its positional arguments.
             keywords: Its keyword arguments.
-            go_on: Calls it where the world is.
+            go_on: Makes the call in the world's process.
         """
         reader = READERS.get(function.name)
         if function.name in _LOADING:
@@ -62,7 +62,7 @@ class UserDataView:
         return result
 
     def _take_over(self, name: str, bound: BoundArguments, result: Any) -> None:
-        """Makes the same change in the copy as in the world."""
+        """Make the same change in the copy as in the world."""
         given = bound.arguments
         match name:
             case "addUserData":
@@ -80,7 +80,7 @@ class UserDataView:
                 self._synchronise(given["bodyUniqueId"], given["bodyUniqueIds"])
 
     def _loaded(self, result: Any) -> Any:
-        """Copies the texts in the files of new bodies, which PyBullet does only on request."""
+        """Copy the texts that come with bodies loaded from files; PyBullet does this only on request."""
         self._read_anew(result if isinstance(result, tuple) else (result,))
         return result
 
@@ -94,13 +94,13 @@ class UserDataView:
             self._read_anew((asked,))
 
     def _read_all(self) -> None:
-        """Copies all texts."""
+        """Copy all texts."""
         self._known = UserData()
         count = self._ask("getNumBodies")
         self._read_anew(tuple(self._ask("getBodyUniqueId", place) for place in range(count)))
 
     def _read_anew(self, bodies: tuple[int, ...]) -> None:
-        """Copies the texts of some bodies."""
+        """Copy the texts of some bodies."""
         for body in bodies:
             self._known.removal(body)()
             for place in range(self._ask("getNumUserData", body)):

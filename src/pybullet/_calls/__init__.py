@@ -1,1 +1,1 @@
-"""How a function is called: arguments, errors, builtins, constants."""
+"""Calls of public functions: arguments, errors, builtins, constants."""

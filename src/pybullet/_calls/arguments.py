@@ -1,7 +1,7 @@
-"""Checking of arguments: scripts get a clear error, never a corrupt world.
+"""Checks and conversions of arguments: a wrong argument raises a clear error and never corrupts the world.
 
-Getters and setters that are called every step first try the arguments as they are; only when that does
-not work do they come here, to find out what is wrong or to convert what is merely unusual.
+Getters and setters that are called every step first use the arguments as they are. Only if that fails do they
+call these functions, which raise the error or convert arguments of unusual types.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from pybullet._calls.errors import fail
 
 _ONLY_INTEGERS = frozenset((int,))
 _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
-# Squared lengths of quaternions that have a direction: their products are still ordinary numbers.
+# Range of the squared lengths of valid quaternions: their products neither underflow nor overflow.
 _LEAST_SQUARE, _GREATEST_SQUARE = 1e-60, 1e60
 MAX_MAGNITUDE = 1e30
-"""Positions, velocities, masses and the like may be so great; readers of files have the same bound."""
+"""Greatest magnitude of positions, velocities, masses and similar quantities; the same as in files."""
 
-# Lists, tuples, ranges and NumPy arrays are all iterables to a type checker, but not all sequences.
+# For a type checker, lists, tuples, ranges and NumPy arrays are all iterables, but not all sequences.
 Vector = Iterable[float]
 Indices = Iterable[int]
 Vectors = Iterable[Vector]
 
 
 def integer(value: Any, name: str) -> int:
-    """An integer of 32 bits.
+    """A signed 32-bit integer.
 
     Raises:
         TypeError: It is not an integer.
-        OverflowError: It does not fit.
+        OverflowError: It needs more than 32 bits.
     """
     if type(value) is int and _LEAST_INT <= value <= _GREATEST_INT:
         return value
@@ -49,7 +49,7 @@ def integer(value: Any, name: str) -> int:
 
 
 def real(value: Any, name: str, problem: str = "") -> float:
-    """A finite number; `problem` is PyBullet's text if it is not.
+    """A finite number; `problem` is PyBullet's error message for other numbers, if it has one.
 
     Raises:
         TypeError: It is not a number.
@@ -68,7 +68,7 @@ def real(value: Any, name: str, problem: str = "") -> float:
 
 
 def bound(value: Any, name: str) -> float:
-    """A number that may be infinite: a limit that is not there.
+    """A number or infinity, which stands for no limit.
 
     Raises:
         TypeError: It is not a number.
@@ -105,18 +105,18 @@ def _as_float(value: Any, name: str) -> float:
 def by_name(
     function: str, names: Sequence[str], arguments: tuple[Any, ...], keywords: dict[str, Any]
 ) -> dict[str, Any]:
-    """The arguments of a call that follow its first one, by name.
+    """The arguments of a call after the first one, by name.
 
-    For functions whose arguments mean different things in different calls.
+    For functions that can be called with different lists of arguments.
 
     Args:
         function: Name of the function.
-        names: Of the arguments, in order.
-        arguments: Those given by position.
-        keywords: Those given by name.
+        names: Names of the arguments, in order.
+        arguments: The positional arguments.
+        keywords: The keyword arguments.
 
     Raises:
-        TypeError: There are too many, an unknown one, or one is given twice.
+        TypeError: There are too many arguments, one is unknown, or one is given twice.
     """
     if len(arguments) > len(names):
         raise TypeError(f"{function}() takes at most {len(names) + 1} arguments ({len(arguments) + 1} given)")
@@ -131,10 +131,10 @@ def by_name(
 
 
 def one_body(body_unique_id: Any, body_index: Any, function: str) -> Any:
-    """The body of a call, by whichever of its two names it was given.
+    """The body of a call, given as either `bodyUniqueId` or `bodyIndex`.
 
     Raises:
-        TypeError: By neither, or by both.
+        TypeError: Neither or both are given.
     """
     if body_unique_id is None and body_index is None:
         raise TypeError(f"{function}() missing required argument 'bodyUniqueId' (pos 1)")
@@ -155,11 +155,11 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
 
     Args:
         values: The sequence.
-        problem: PyBullet's text for one that is not fit.
-        name: Of the argument.
+        problem: PyBullet's error message for a wrong argument.
+        name: Name of the argument.
 
     Raises:
-        pybullet.error: It is not a sequence, or an item is not a finite number.
+        pybullet.error: `values` is not a sequence, or an item is not a finite number.
     """
     if isinstance(values, (list, tuple)):
         try:
@@ -183,7 +183,7 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
 
 
 def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
-    """Three quantities; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    """Three quantities; raises `pybullet.error` as `quantities` does, and if there are more or fewer."""
     try:
         x, y, z = values
         if abs(x) + abs(y) + abs(z) <= MAX_MAGNITUDE:
@@ -195,7 +195,7 @@ def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
 
 
 def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
-    """Four quantities; raises `pybullet.error` as `numbers` does, and for more or fewer."""
+    """Four quantities; raises `pybullet.error` as `quantities` does, and if there are more or fewer."""
     try:
         x, y, z, w = values
         if abs(x) + abs(y) + abs(z) + abs(w) <= MAX_MAGNITUDE:
@@ -207,7 +207,7 @@ def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, 
 
 
 def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
-    """A quaternion (x, y, z, w) that has a direction; raises `pybullet.error`."""
+    """A quaternion (x, y, z, w) that can be normalised; raises `pybullet.error` for others."""
     x, y, z, w = vector4(values, problem, name)
     squared = x * x + y * y + z * z + w * w
     if not _LEAST_SQUARE < squared < _GREATEST_SQUARE:
@@ -216,7 +216,7 @@ def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float,
 
 
 def check_rotation(values: Sequence[float], problem: str, name: str) -> None:
-    """Raises `pybullet.error` for a quaternion that has no direction."""
+    """Raises `pybullet.error` for a quaternion that cannot be normalised."""
     if not _LEAST_SQUARE < sum(value * value for value in values) < _GREATEST_SQUARE:
         _refuse_rotation(values, problem, name)
 
@@ -228,7 +228,10 @@ def _refuse_rotation(values: Sequence[float], problem: str, name: str) -> NoRetu
 
 
 def moderate(value: float, problem: str, name: str) -> float:
-    """A number whose products with a few others are numbers, too; raises `pybullet.error` for any other."""
+    """A number whose magnitude is at most `MAX_MAGNITUDE`; raises `pybullet.error` for others.
+
+    Products of a few such numbers do not overflow.
+    """
     if not abs(value) <= MAX_MAGNITUDE:
         particulars = f"{name} is {value:g}; it has to be from {-MAX_MAGNITUDE:g} to {MAX_MAGNITUDE:g}."
         fail(problem or particulars, particulars if problem else "")
@@ -236,17 +239,17 @@ def moderate(value: float, problem: str, name: str) -> float:
 
 
 def quantity(value: Any, name: str) -> float:
-    """A position, velocity, gain or the like: a number that kernels can reckon with.
+    """A position, velocity, gain or the like: a finite number that kernels can compute with.
 
     Raises:
         TypeError: It is not a number.
-        pybullet.error: It is not finite, or greater than `MAX_MAGNITUDE`.
+        pybullet.error: It is not finite, or its magnitude is greater than `MAX_MAGNITUDE`.
     """
     return moderate(real(value, name), "", name)
 
 
 def quantities(values: Any, problem: str, name: str) -> tuple[float, ...]:
-    """As `numbers`; each is a `quantity`."""
+    """As `numbers`, with the bound of `quantity` for each item."""
     result = numbers(values, problem, name)
     for item in result:
         moderate(item, problem, f"An item of {name}")
@@ -261,7 +264,7 @@ def _counted(values: Any, count: int, problem: str, name: str) -> tuple[float, .
 
 
 def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:
-    """The items of any sequence; raises `pybullet.error` when it is none."""
+    """The items of any sequence; raises `pybullet.error` if `values` is not a sequence."""
     try:
         return tuple(values)
     except TypeError:
@@ -269,10 +272,10 @@ def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:
 
 
 def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:
-    """Indices from any sequence of integers or of floats that stand for integers.
+    """Indices from any sequence of integers or of floats with integer values.
 
     Raises:
-        pybullet.error: It is not a sequence, or an item is no index.
+        pybullet.error: `values` is not a sequence, or an item is not an index.
     """
     items = sequence(values, problem, name)
     if _ONLY_INTEGERS.issuperset(map(type, items)):

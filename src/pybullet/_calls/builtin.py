@@ -1,15 +1,15 @@
-"""Python functions that are C builtins, as PyBullet's are.
+"""Makes C builtins that call Python functions, because PyBullet's functions are builtins.
 
-`pybullet_utils.bullet_client.BulletClient`, and the many copies of it in other people's repositories,
-add `physicsClientId` to a call only when `inspect.isbuiltin` says that the function is a builtin. Plain
-Python functions are not, so with them every wrapped call would silently go to client 0. Subclasses and
-`__class__` tricks pass the test too but cost a second call frame and, with keywords, a dictionary.
+`pybullet_utils.bullet_client.BulletClient`, and its many copies in other repositories, add `physicsClientId`
+to a call only if `inspect.isbuiltin` is true for the function. It is false for plain Python functions, so
+every wrapped call of them would silently go to client 0. Subclasses and `__class__` tricks pass the test too
+but cost a second call frame and, with keywords, a dictionary.
 
 CPython makes a builtin from a C function of the form `f(self, args, nargs, kwnames)`. Its own
 `PyObject_Vectorcall(callable, args, nargs, kwnames)` has that form, so a builtin whose `self` is a Python
-function and whose C code is `PyObject_Vectorcall` calls that function: a real builtin for about 10 ns.
+function and whose C code is `PyObject_Vectorcall` calls that function. This adds about 10 ns to a call.
 
-CPython reads the address of the C code at every call, so that it can be exchanged: `quick.py`.
+CPython reads the address of the C code at every call, so `quick.py` can replace it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any, NamedTuple, TypeVar
 F = TypeVar("F", bound=Callable[..., Any])
 
 _METH_FASTCALL_WITH_KEYWORDS = 0x0080 | 0x0002
-# Flags of code objects.
+# Flags of code objects: CO_VARARGS and CO_VARKEYWORDS.
 _TAKES_MORE_BY_PLACE, _TAKES_MORE_BY_NAME = 0x04, 0x08
 
 
@@ -41,13 +41,13 @@ class _MethodDefinition(ctypes.Structure):
 _new_builtin = ctypes.pythonapi.PyCFunction_NewEx
 _new_builtin.restype = ctypes.py_object
 _new_builtin.argtypes = (ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object)
-# Python 3.10 does not export that one, but the same for Python functions alone.
+# Python 3.10 does not export `PyObject_Vectorcall`, but an equivalent for Python functions only.
 _VECTORCALL = "PyObject_Vectorcall" if sys.version_info >= (3, 11) else "_PyFunction_Vectorcall"
 vectorcall: int = ctypes.cast(getattr(ctypes.pythonapi, _VECTORCALL), ctypes.c_void_p).value or 0
-"""Address of the function that calls a Python function."""
+"""Address of the C function that calls a Python function."""
 
 UsualForm = Callable[[tuple[Any, ...], dict[str, Any]], tuple[tuple[Any, ...], dict[str, Any]]]
-"""Turns arguments by position and by name into others that mean the same and fit the signature."""
+"""Converts positional and keyword arguments into equivalent ones that fit the signature."""
 
 
 class Export(NamedTuple):
@@ -56,9 +56,9 @@ class Export(NamedTuple):
     Attributes:
         function: The Python function.
         builtin: The builtin that calls it.
-        usual_form: For a function that is also called in other ways than its signature shows.
-        definition: What CPython knows of the builtin.
-        code: The code of the function, which may be exchanged for another.
+        usual_form: Converts other forms of the arguments to that of the signature; None if there are none.
+        definition: The C API's definition of the builtin.
+        code: The function's own code, which `detours.py` may replace for a while.
     """
 
     function: FunctionType
@@ -71,7 +71,7 @@ class Export(NamedTuple):
 exports: dict[str, Export] = {}
 """All functions of the public interface, by name."""
 
-# A builtin points to its definition for as long as it lives, and builtins of a module live for ever.
+# Keeps the definitions in memory: the builtins of a module point to them and are never freed.
 _definitions: list[_MethodDefinition] = []
 
 
@@ -81,11 +81,11 @@ def exported(function: F) -> F:
 
 
 def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable[[F], F]:
-    """As `exported`, for a function whose Python signature is not the one to show.
+    """As `exported`, but `help` shows the given signature instead of the Python function's.
 
     Args:
-        signature: What `help` and `inspect.signature` show, parentheses included.
-        usual_form: For a function that is also called in other ways.
+        signature: The signature that `help` and `inspect.signature` show, parentheses included.
+        usual_form: Converts other forms of the arguments to that of the signature, if there are any.
     """
 
     def export(function: F) -> F:
@@ -107,9 +107,10 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
 
 
 def _plain_signature(function: Callable[..., Any]) -> str:
-    """The signature without annotations: what the text signature of a builtin may hold.
+    """The signature without annotations, which the text signature of a builtin cannot contain.
 
-    As `inspect.signature` says it, in a tenth of the time; there are functions enough for that to count.
+    The result is that of `inspect.signature`, in a tenth of the time: there are so many functions that this
+    matters for the import of the module.
     """
     assert isinstance(function, FunctionType)
     code = function.__code__
@@ -136,6 +137,6 @@ def _plain_signature(function: Callable[..., Any]) -> str:
 
 
 def _documentation(function: Callable[..., Any]) -> str:
-    """The docstring without the indentation of a function of a module, which Python strips from 3.13 on."""
+    """The docstring without its indentation, which Python itself strips from version 3.13 on."""
     text = function.__doc__ or ""
     return (text if sys.version_info >= (3, 13) else text.replace("\n    ", "\n")).strip()

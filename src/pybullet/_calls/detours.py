@@ -1,9 +1,10 @@
-"""Calls that take another way: to a server in another process, past a lock, or into a log.
+"""Detours: calls that are redirected to a server in another process, through a lock, or through a log.
 
-Which way a call takes depends on its `physicsClientId`, and asking that first would cost every call of every
-script, most of which know no servers. So functions ask only while there is a connection with a detour: the
-code of each Python function behind a builtin is then exchanged for code that asks, and put back with the last
-detour. No function has to know. Nor does the native library, which does not try such functions meanwhile.
+Whether a call is redirected depends on its `physicsClientId`. Checking that in every call would slow down all
+scripts, most of which use no servers. So calls are checked only while a connection has a detour: the code of
+each Python function behind a builtin is then replaced by code that checks, and restored when the last detour
+is removed. The functions need no code for this. While there are detours, quick calls leave these functions to
+Python.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pybullet._calls.quick import pause
 
 # Functions of these modules need no world.
 _HELPERS = frozenset({"pybullet._maths.maths", "pybullet._maths.camera_maths", "pybullet._shapes.vhacd"})
-# These are about the connection itself, or only call others.
+# These functions handle the connection itself, or only call other functions.
 _ABOUT_CONNECTIONS = frozenset(
     {"connect", "disconnect", "isConnected", "getConnectionInfo", "getAPIVersion", "isNumpyEnabled"}
     | {"setTimeOut", "renderImage"}
@@ -38,12 +39,12 @@ class Function:
 
     Attributes:
         name: Its name.
-        plain: A copy that never takes a detour.
-        usual_form: What gives arguments the form of the signature, if there are other forms.
-        client_place: Position of `physicsClientId` among its arguments; None if it has to be named.
+        plain: A copy of the function that is never redirected.
+        usual_form: Converts other forms of the arguments to that of the signature; None if there are none.
+        client_place: Position of `physicsClientId` among its arguments; None if it is keyword-only.
         asked: The function behind the builtin.
         usual: Its own code.
-        asking: The code it has while there are detours.
+        asking: Its code while there are detours, which checks for them.
     """
 
     name: str
@@ -55,18 +56,18 @@ class Function:
     asking: CodeType
 
     def ask(self) -> None:
-        """Lets the function ask which way to take."""
-        # `setattr`, because type checkers take a function in an attribute for a method.
+        """Makes every call of the function check for detours."""
+        # `setattr`, because type checkers regard a function in an attribute as a method.
         setattr(self.asked, "__code__", self.asking)  # noqa: B010
 
     def ask_no_more(self) -> None:
-        """Gives the function its own code back."""
+        """Restores the function's own code."""
         setattr(self.asked, "__code__", self.usual)  # noqa: B010
 
     def with_client(
         self, client: int, arguments: list[Any], keywords: dict[str, Any]
     ) -> tuple[list[Any], dict[str, Any]]:
-        """Arguments that name a connection, in place of the one that they name, if any."""
+        """The arguments of a call with `physicsClientId` set to `client`."""
         named = {_CLIENT: client}
         if self.client_place is None or len(arguments) <= self.client_place:
             return arguments, {**keywords, **named}
@@ -76,10 +77,10 @@ class Function:
 
 
 class Detour(Protocol):
-    """Another way for the calls of a connection."""
+    """Receives the calls of a connection."""
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        """Calls a function that needs a world."""
+        """Performs the call of a function that needs a world."""
         ...
 
 
@@ -96,7 +97,7 @@ def functions() -> dict[str, Function]:
 
 
 def add_detour(client: int, detour: Detour) -> None:
-    """Sends the calls of a connection another way from now on."""
+    """Redirects the calls of a connection to a detour from now on."""
     with _changing:
         if not _detours:
             pause(paused=True)
@@ -106,12 +107,12 @@ def add_detour(client: int, detour: Detour) -> None:
 
 
 def detour_of(client: int) -> Detour | None:
-    """The way that the calls of a connection take; None for the usual one."""
+    """The detour of a connection; None if its calls are not redirected."""
     return _detours.get(client)
 
 
 def remove_detour(client: int) -> None:
-    """Lets the calls of a connection take the usual way again, if they take another."""
+    """Ends the redirection of a connection's calls, if there is one."""
     with _changing:
         if _detours.pop(client, None) is not None and not _detours:
             for function in functions().values():
@@ -120,7 +121,7 @@ def remove_detour(client: int) -> None:
 
 
 def call(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-    """Calls a function on the way that belongs to its connection."""
+    """Calls a function, through the detour of its connection if there is one."""
     function = _functions[name]
     if function.usual_form is not None:
         arguments, keywords = function.usual_form(arguments, keywords)
@@ -131,13 +132,13 @@ def call(name: str, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any
     try:
         hash(client)
     except TypeError:
-        # It cannot even be looked up: the function will say so.
+        # Such an id cannot be looked up, and the function raises an error for it.
         return function.plain(*arguments, **keywords)
     return call_on(client, function, arguments, keywords)
 
 
 def call_on(client: int, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-    """Calls a function, whose arguments name a connection, on the way that belongs to this connection."""
+    """Calls a function, through the detour of connection `client` if there is one."""
     detour = _detours.get(client)
     if detour is None:
         return function.plain(*arguments, **keywords)
@@ -147,7 +148,7 @@ def call_on(client: int, function: Function, arguments: tuple[Any, ...], keyword
 def _worldly() -> dict[str, Function]:
     found = {}
     for name, (function, builtin, usual_form, *_) in exports.items():
-        # Functions made by others are those that are not available, wherever they are called.
+        # The code of a function with a closure cannot be replaced.
         if name in _ABOUT_CONNECTIONS or function.__closure__:
             continue
         if function.__globals__["__name__"] in _HELPERS:

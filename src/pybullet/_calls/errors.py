@@ -1,4 +1,4 @@
-"""The one exception of the module, and the warnings it logs."""
+"""The exception and the warnings of the module `pybullet`."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from carom.logger import Logger
 
 
 class error(Exception):
-    """Anything PyBullet itself reports: a wrong id, a missing file, no connection.
+    """An error that PyBullet itself reports: a wrong id, a missing file, no connection.
 
-    The message starts with PyBullet's own text; what follows says what exactly was wrong. Arguments
-    that are missing, misspelt or of the wrong type raise `TypeError`, as in PyBullet.
+    The message starts with PyBullet's own text, followed by the details. Arguments that are missing, misspelt
+    or of the wrong type raise `TypeError`, as in PyBullet.
     """
 
 
@@ -29,5 +29,5 @@ logger = Logger("pybullet")
 
 @cache
 def warn_once(message: str) -> None:
-    """Logs a warning, the first time only: control loops make the same call in every step."""
+    """Logs a warning only the first time, because control loops make the same call in every step."""
     logger.warning(message)

@@ -1,7 +1,7 @@
-"""Vectors that a call can do without: one of the wrong length stands for the default.
+"""Optional vectors: if one has the wrong length, a warning is logged and the default is used.
 
-PyBullet does so without a word, and scripts have come to live with it: colours without opacity, angles where
-a quaternion belongs, one factor for three.
+PyBullet uses the default without a warning, and scripts depend on that: they pass colours without opacity,
+Euler angles instead of a quaternion, or one factor instead of three.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from pybullet._calls.errors import warn_once
 
 
 def optional_vector3(values: Any, problem: str, name: str) -> Vector3 | None:
-    """Three finite numbers, or None, with a warning where there is something else.
+    """Three finite numbers; None if not given or, with a warning, if the length is not three.
 
     Args:
         values: The argument.
-        problem: PyBullet's text where one of three items is not a finite number.
-        name: Of the argument.
+        problem: PyBullet's error message if one of three items is not a finite number.
+        name: Name of the argument.
 
     Raises:
         pybullet.error: There are three items, and one is not a finite number.
@@ -28,17 +28,17 @@ def optional_vector3(values: Any, problem: str, name: str) -> Vector3 | None:
 
 
 def optional_vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, float] | None:
-    """Four finite numbers, or None, as `optional_vector3`."""
+    """Four finite numbers, or None as from `optional_vector3`."""
     return vector4(values, problem, name) if has_length(values, 4, name) else None
 
 
 def optional_rotation(values: Any, problem: str, name: str) -> Quaternion | None:
-    """A quaternion (x, y, z, w) that is a rotation, or None, as `optional_vector3`."""
+    """A quaternion (x, y, z, w) that can be normalised, or None as from `optional_vector3`."""
     return rotation(values, problem, name) if has_length(values, 4, name) else None
 
 
 def has_length(values: Any, count: int, name: str) -> bool:
-    """Whether an argument was given and has that many items; warns where it has others."""
+    """Whether an argument was given and has `count` items; warns if it was given without these."""
     if values is None:
         return False
     try:

@@ -1,7 +1,7 @@
-"""Functions that the native library tries first: those that loops call every step.
+"""Quick calls: functions that loops call every step, which the native library tries first.
 
-Which these are, and what their arguments and results look like. A builtin whose call the library declines, or
-cannot read, calls its Python function as if there were nothing else.
+This module lists them, with the kinds of their arguments and results. If the library cannot handle a call,
+the builtin calls its Python function as usual.
 """
 
 from __future__ import annotations
@@ -49,17 +49,17 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "getNumJoints": ("joint_count", "ic", None),
     "getBodyInfo": ("body_names", "ic", None),
 }
-"""Kernel, kinds of parameters and lengths of the groups of results (None where the kernel makes the
-result), by the name of the function. What the letters mean is in `carom.native.quick_calls.Parameter`."""
+"""Kernel, kinds of parameters and lengths of the groups of results (None if the kernel makes the result
+itself), by the name of the function. `carom.native.quick_calls.Parameter` explains the letters."""
 
 
 class _Installed:
-    """What there is of quick calls.
+    """The state of the quick calls in this process.
 
     Attributes:
-        calls: The quick calls; None before they are installed, and where there are none.
-        tried: They have been installed, or cannot be.
-        is_paused: All calls that name a connection are left to Python.
+        calls: The quick calls; None before they are installed, or if they are not available.
+        tried: Whether installing them has been tried.
+        is_paused: Whether all calls that name a connection are left to Python.
     """
 
     calls: QuickCalls | None = None
@@ -71,7 +71,7 @@ _installing = Lock()
 
 
 def install() -> QuickCalls | None:
-    """Lets the native library try these functions from now on; None where it cannot."""
+    """Lets the native library try these functions from now on; returns None if it cannot."""
     with _installing:
         if not _Installed.tried:
             from carom.native.quick_calls import quick_calls
@@ -89,7 +89,7 @@ def install() -> QuickCalls | None:
 
 
 def pause(*, paused: bool) -> None:
-    """Leaves all calls that name a connection to Python, or no longer."""
+    """Leaves all calls that name a connection to Python if `paused`, otherwise lets the library try them."""
     with _installing:
         _Installed.is_paused = paused
         if _Installed.calls is not None:
@@ -100,7 +100,7 @@ def _install(calls: QuickCalls, name: str, kernel: str, kinds: str, groups: tupl
     from carom.native.quick_calls import Parameter
 
     export = exports[name]
-    # The function's own code: that which asks for detours has no parameters.
+    # Not the function's present code, which has no named parameters while there are detours.
     names = export.code.co_varnames[: export.code.co_argcount]
     defaults = export.function.__defaults__ or ()
     required = len(names) - len(defaults)

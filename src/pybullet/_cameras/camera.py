@@ -61,8 +61,8 @@ def getCameraImage(
             given, the camera is that of the window, or without a window one near the origin that looks at it.
         lightDirection: Towards the light, world axes; default (-50, 30, 100).
         lightColor: Red, green and blue of the light; default (1, 1, 1).
-        lightDistance: Distance of the lamp that casts shadows from the world's origin [m]; default 2. It
-            lights what the camera would see from there. Negative: no change.
+        lightDistance: Distance of the lamp that casts shadows from the world's origin [m]; default 2. The
+            shadow map is rendered from there with the camera's projection. Negative: no change.
         shadow: 1 for shadows, 0 for none; -1: no change; default none.
         lightAmbientCoeff: Ambient share of the colour, visible without light; default 0.6. Negative: no
             change.
@@ -144,7 +144,7 @@ def getCameraImage(
 
 
 def _matrix(values: Any, name: str) -> NDArray[np.float64] | None:
-    """4 x 4 matrix from 16 numbers, column after column; None, with a warning, for any other number."""
+    """4 x 4 matrix from 16 numbers, column after column; None if not given or, with a warning, not 16."""
     if not has_length(values, 16, name):
         return None
     return _square(numbers(values, _FAILED, name))
@@ -157,7 +157,7 @@ def _square(columns: Sequence[float]) -> NDArray[np.float64]:
 
 
 def view_of_window(client: Client) -> NDArray[np.float64]:
-    """World to the camera of the window, or to PyBullet's camera without a window."""
+    """View matrix of the window's camera; without a window that of PyBullet's default camera."""
     width, _, view = client.window.camera_info()[:3]
     if width and isinstance(view, tuple):
         return _square(view)
@@ -169,7 +169,7 @@ def view_of_window(client: Client) -> NDArray[np.float64]:
 
 
 def _projection_of_window(client: Client) -> NDArray[np.float64]:
-    """Camera of the window to image; PyBullet's without a window."""
+    """Projection matrix of the window's camera; without a window that of PyBullet's default camera."""
     width, _, _, projection = client.window.camera_info()[:4]
     if width and isinstance(projection, tuple):
         return _square(projection)
@@ -184,7 +184,7 @@ def _changed_light(
     coefficients: dict[str, float],
     shadow: int,
 ) -> Light:
-    """The light with what was given; negative numbers stand for no change."""
+    """The light with the given changes; None and negative numbers stand for no change."""
     changes: dict[str, Any] = {name: value for name, value in coefficients.items() if value >= 0.0}
     if has_length(direction, 3, "lightDirection"):
         changes["direction"] = vector3(direction, _FAILED, "lightDirection")

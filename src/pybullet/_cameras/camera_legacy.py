@@ -33,7 +33,7 @@ def renderImage(*arguments: Any) -> Any:
     vertical fields of view are equal for any image size.
 
     Args:
-        *arguments: These.
+        *arguments: One of these lists.
 
     Returns:
         As `getCameraImage`.

@@ -1,4 +1,4 @@
-"""Videos of what the window shows, by the software camera."""
+"""Videos of the window's view, drawn by the software renderer."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
 PICTURES_PER_SECOND = 60.0
-"""Of a video unless told otherwise, as PyBullet's windows have it."""
+"""Default rate of videos, which is that of PyBullet's windows."""
 
-# The size without a window.
+# Width and height without a window [pixels].
 _WIDTH, _HEIGHT = 640, 480
 # PyBullet's background.
 _BACKGROUND = (0.7, 0.7, 0.8)
@@ -29,7 +29,7 @@ _NEAR, _FAR = 0.01, 1000.0
 
 
 def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Film:
-    """A video of the world of a client, with the camera of its window.
+    """A video of the world of a client, seen from the camera of its window.
 
     Its size is the present size of the window. It takes a picture each `1 / fps` seconds of simulated time,
     so it plays in simulated time.

@@ -31,19 +31,19 @@ NOT_CONNECTED = "Not connected to physics server."
 
 
 class Client:
-    """One connection and the world behind it.
+    """One connection and its world.
 
     Attributes:
         logs: Logs of states that are being written.
-        method: How it was connected: `DIRECT`, `GUI`, ...
-        world: Its world.
+        method: Connection method: `DIRECT`, `GUI`, ...
+        world: The world of the connection.
         bodies: Direct access to the state of bodies, by id; made on first use and dropped whenever bodies are
             added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
         plugins: Plugins the script has loaded.
         real_time: `useRealTimeSimulation` as the script set it.
-        report_analytics: `stepSimulation` returns the statistics of the solver.
+        report_analytics: Whether `stepSimulation` returns the statistics of the solver.
         server: The server for other processes, if there is one.
         search_path: Additional search directory of this connection.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all
@@ -51,8 +51,8 @@ class Client:
         shapes: Shapes the script has created.
         states: States the script has saved, by id.
         window: The graphical interface.
-        clock: Steps the world in real time if enabled.
-        deformable: The world is one of `resetSimulation(RESET_USE_DEFORMABLE_WORLD)`.
+        clock: Steps the world in real time; None if that is not enabled.
+        deformable: Whether the last `resetSimulation` had a flag for deformable worlds.
         lock: Held during a step and while bodies are added, removed or change shape. Getters and setters of
             the state do not need it: they read and write single numbers.
     """
@@ -100,11 +100,11 @@ class Client:
         bodies.client = self
 
     def body(self, body_id: Any) -> Body | None:
-        """The body of an id, or None; raises `TypeError` if it is not an integer."""
+        """The body with an id, or None; raises `TypeError` if the id is not an integer."""
         return self.world.bodies.get(integer(body_id, "bodyUniqueId"))
 
     def search(self) -> AssetSearch:
-        """Directories in which files are searched."""
+        """The directories that are searched for files."""
         return self.plugins.search(self.search_path, Client.latest_search_path)
 
     def set_search_path(self, path: Path) -> None:
@@ -130,7 +130,7 @@ class Client:
 
 
 closed_by_users: set[int] = set()
-"""The clients whose window a user has closed, until the script disconnects or connects anew."""
+"""Ids of clients whose window the user has closed, until the script disconnects them or connects again."""
 
 clients: dict[int, Client] = {}
 """Every client with a world in this process, by its id."""
@@ -140,7 +140,7 @@ remote_clients: dict[int, RemoteClient] = {}
 
 
 def living_client(physics_client_id: Any) -> Client | None:
-    """The client of an id, unless there is none or its window was closed, which ends the connection.
+    """The client with an id; None if there is none, or if its window was closed, which ends the connection.
 
     Raises:
         TypeError: The id is not an integer.
@@ -155,17 +155,17 @@ def living_client(physics_client_id: Any) -> Client | None:
 
 
 def why_not_connected(physics_client_id: Any) -> str:
-    """Advice on a connection that does not exist."""
+    """Error message: the reason why there is no such connection."""
     if physics_client_id in closed_by_users:
         return f"The window of client {physics_client_id} has been closed."
-    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) before."
+    return f"There is no client {physics_client_id}: call connect(DIRECT) or connect(GUI) first."
 
 
 def client_of(physics_client_id: Any) -> Client:
-    """The client of an id.
+    """The client with an id.
 
     Raises:
-        pybullet.error: There is none.
+        pybullet.error: There is no such client.
         TypeError: The id is not an integer.
     """
     client = clients.get(physics_client_id) if type(physics_client_id) is int else None
@@ -177,7 +177,7 @@ def client_of(physics_client_id: Any) -> Client:
 
 
 def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
-    """The client of an id, wherever its world is, unless there is none or it has lost its server or window.
+    """The client with an id, local or remote; None if there is none, or its server or window is gone.
 
     Raises:
         TypeError: The id is not an integer.
@@ -191,7 +191,7 @@ def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
 
 
 def forget(number: int) -> None:
-    """Closes a client, which frees its id."""
+    """Closes a client and frees its id."""
     remove_detour(number)
     client = clients.pop(number, None) or remote_clients.pop(number, None)
     if client is not None:

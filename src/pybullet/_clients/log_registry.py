@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class StateLog(Protocol):
-    """Interface of logs: called at every step, and closed at the end."""
+    """Interface of a log: it is called before and after every step, and closed at the end."""
 
     def before_step(self) -> None:
         """Called before a step."""
@@ -30,9 +30,9 @@ class Logs:
     """Logs by id.
 
     Attributes:
-        by_id: Those that are being written.
-        next_id: Id of the next one; ids are not used again.
-        zones: Names of the zones of `submitProfileTiming` that have begun.
+        by_id: The logs that are being written.
+        next_id: Id of the next log; ids are never reused.
+        zones: Names of the zones of `submitProfileTiming` that have begun and not ended.
     """
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Logs:
         self.zones: list[str] = []
 
     def shoot(self) -> None:
-        """Takes a picture for each video; from now on videos get only such pictures."""
+        """Takes a picture for each video; from now on these videos take no pictures automatically."""
         if not self.by_id:
             return
         from carom.recording.recorder import Film

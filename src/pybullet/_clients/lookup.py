@@ -30,7 +30,7 @@ def no_joint(body: Body, index: int) -> str:
 
 
 def body_of(client: Client, body_id: Any, problem: str) -> Body:
-    """A body.
+    """The body with an id.
 
     Args:
         client: The connection.
@@ -38,7 +38,7 @@ def body_of(client: Client, body_id: Any, problem: str) -> Body:
         problem: PyBullet's error message if there is no such body.
 
     Raises:
-        pybullet.error: There is none.
+        pybullet.error: There is no such body.
         TypeError: The id is not an integer.
     """
     body = client.body(body_id)
@@ -48,16 +48,16 @@ def body_of(client: Client, body_id: Any, problem: str) -> Body:
 
 
 def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str) -> tuple[Body, int] | None:
-    """A body and the index of a link of it; None, with a warning, if there is no such body or link.
+    """A body and the index of one of its links; None, with a warning, if there is no such body or link.
 
     Args:
         client: The connection.
         body_id: The body.
         link_index: The link, from 0; -1 for the base.
-        function: Name of the function that needs them.
+        function: Name of the called function, for the warning.
 
     Raises:
-        TypeError: One is not an integer.
+        TypeError: The id or the index is not an integer.
     """
     body, link = client.body(body_id), integer(link_index, "linkIndex")
     if body is None:
@@ -104,7 +104,7 @@ def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> Join
 
 
 def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint to read its state, for unusual integers such as arrays without dimensions.
+    """Access to a joint to read its state: the slow path, for wrong ids and for integers such as 0-d arrays.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.

@@ -12,9 +12,9 @@ class FileLoad:
     """A call that loaded a file.
 
     Attributes:
-        function: Its name.
+        function: Name of the function.
         arguments: Its arguments except the file, by name.
-        takes_pose: It has arguments for the pose of the body.
+        takes_pose: Whether the function has arguments for the pose of the body.
         count: Number of bodies loaded.
     """
 
@@ -26,7 +26,7 @@ class FileLoad:
 
 @record
 class Origin:
-    """Origin of a body: the `index`-th body of a load."""
+    """Origin of a body: it is number `index`, from 0, of the bodies loaded by a call."""
 
     load: FileLoad
     index: int = 0

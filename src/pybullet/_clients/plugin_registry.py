@@ -1,4 +1,4 @@
-"""The plugins of one client, and the additional search places of its file plugin."""
+"""The plugins of one client, and the folders and archives that its file plugin has added to the search."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ BUILT_IN = {"pdControlPlugin": 0, "collisionFilterPlugin": 1, "tinyRendererPlugi
 """Ids of the plugins that are part of PyBullet."""
 FILE_IO = BUILT_IN["fileIOPlugin"]
 EGL_RENDERER = len(BUILT_IN)
-"""Id of the renderer in a library of its own, the only one that scripts load."""
+"""Id of `eglRenderer`, the only plugin that scripts load from a separate library."""
 
 
 def is_egl_renderer(path: str) -> bool:
     """Whether a path is that of the library `eglRenderer`, as Python's import system finds it."""
     file = Path(path)
-    # `os.path`, which accepts names that no file can have.
+    # Not `Path.is_file`, which raises an exception for names that no file can have.
     return os.path.isfile(path) and "eglRenderer" in (file.parent.name, file.name.partition(".")[0])
 
 
@@ -28,8 +28,8 @@ class Plugins:
     """Plugins of a client.
 
     Attributes:
-        loaded: Ids of those that have been loaded.
-        places: Folders and archives by slot. Slot 0 is the file system itself.
+        loaded: Ids of the plugins that have been loaded.
+        places: Folders and archives that are searched, by slot. Slot 0 stands for the file system itself.
     """
 
     def __init__(self) -> None:
@@ -37,7 +37,7 @@ class Plugins:
         self.places: dict[int, Path | Archive] = {}
 
     def slot_of(self, path: Path) -> int | None:
-        """The slot of a folder or an archive that is searched already."""
+        """The slot of a folder or an archive; None if it is not searched."""
         for slot, place in self.places.items():
             if path == (place if isinstance(place, Path) else place.path):
                 return slot
@@ -61,11 +61,11 @@ class Plugins:
             self.remove_place(slot)
 
     def search(self, additional: Path | None, last: Path | None) -> AssetSearch:
-        """Where files are looked for.
+        """The directories and archives that are searched for files.
 
         Args:
             additional: The directory of `setAdditionalSearchPath`.
-            last: Directories that are searched last.
+            last: Directory that is searched last.
         """
         from carom.formats.search import AssetSearch
 

@@ -22,7 +22,7 @@ _running: WeakSet[RealTimeClock] = WeakSet()
 
 
 class Pace:
-    """The delay of a simulation behind a clock. Steps are counted from one start time, without drift."""
+    """Counts the steps that a simulation is behind a clock. Counting from one start time avoids drift."""
 
     def __init__(self, now: float) -> None:
         """Starts at a time of the clock [s]."""
@@ -33,7 +33,7 @@ class Pace:
 
         Args:
             now: Time of the clock [s].
-            time_step: Of the simulation [s]; it may change from call to call.
+            time_step: Time step of the simulation [s]; it may change from call to call.
         """
         earliest = now - max(_GREATEST_LAG, time_step)
         if self._simulated_until < earliest:
@@ -58,11 +58,11 @@ class RealTimeClock:
         self._thread.start()
 
     def stop(self) -> None:
-        """Stops and waits for the step in progress: none if the caller holds the client's lock."""
+        """Stops, and waits for the step in progress; there is none if the caller holds the client's lock."""
         self._stopping.set()
         _running.discard(self)
-        # Not waiting for the thread, which may wait for the lock that the caller holds.
-        # In a forked process the thread does not exist, and the lock may be held for ever.
+        # Waiting for the thread could block for ever: it may be waiting for the lock that the caller holds.
+        # In a forked process the thread does not exist, and the lock may never be released.
         if self._thread.is_alive():
             with self._client.lock:
                 return
@@ -85,6 +85,6 @@ class RealTimeClock:
 
 @atexit.register
 def _stop_all() -> None:
-    # A thread that is inside compiled code while the interpreter shuts down would crash it.
+    # The interpreter would crash if a thread were inside compiled code while it shuts down.
     for clock in list(_running):
         clock.stop()

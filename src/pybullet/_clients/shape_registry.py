@@ -18,7 +18,7 @@ class CollisionShape:
     Attributes:
         collisions: The collision shapes.
         visuals: The visual shapes, for links without visual shape.
-        used: A body was made of it.
+        used: Whether a body was made of it.
     """
 
     collisions: tuple[Collision, ...]
@@ -27,7 +27,7 @@ class CollisionShape:
 
 
 class ShapeTable(Generic[Shape]):
-    """Shapes by id; ids of removed shapes are used again, the last one first."""
+    """Shapes by id; ids of removed shapes are reused, the last removed first."""
 
     def __init__(self) -> None:
         self._shapes: dict[int, Shape] = {}
@@ -65,7 +65,7 @@ class ShapeRegistry:
 
     Attributes:
         collisions: Collision shapes.
-        visuals: Visual shapes; each is a list of visuals.
+        visuals: Visual shapes; each is a tuple of visuals.
     """
 
     def __init__(self) -> None:

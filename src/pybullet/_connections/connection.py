@@ -57,7 +57,7 @@ _API_VERSION = 202010061
 _WITH_WINDOW = (GUI, GUI_SERVER, GUI_MAIN_THREAD, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _SERVERS = (SHARED_MEMORY_SERVER, GUI_SERVER, GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
 _TO_A_SERVER = (SHARED_MEMORY, UDP, TCP)
-# Without a server these have a world of their own without a window.
+# Without a server these methods make a world without a window.
 _TO_GRAPHICS = (GRAPHICS_CLIENT, GRAPHICS_SERVER_TCP)
 _METHODS = {DIRECT, *_WITH_WINDOW, *_SERVERS, *_TO_A_SERVER, *_TO_GRAPHICS}
 _NO_SERVER = -1
@@ -93,16 +93,15 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
             which connects by `GRAPHICS_CLIENT` (also called `SHARED_MEMORY_GUI`) or, over TCP, by
             `GRAPHICS_SERVER_TCP`; without such a server these two have a world without a window.
         key: Key of shared memory: servers and clients with the same key connect.
-        options: Separated by spaces; unknown ones are ignored. Of the window: `--width=1024 --height=768`,
-            the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a video;
-            `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
-            `--port=8400`, where the page is. Of servers: `--tcp=6667` and
-            `--udp=1234`, additional ports to listen at; `--bind=127.0.0.1`, the address of these ports. Of
-            servers and of `TCP` and `UDP`: `--key-file=FILE`, a file with the secret key that both sides
-            need; otherwise it is the environment variable `CAROM_SERVER_KEY`. Processes of one user on one
-            machine need no key.
-        hostName: Of a server.
-        port: Of a server; 6667 for TCP and 1234 for UDP if it is negative.
+        options: Options separated by spaces; unknown ones are ignored. For a window: `--width=1024
+            --height=768`, the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a
+            video; `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
+            `--port=8400`, the address of the page. For servers: `--tcp=6667` and `--udp=1234`, additional
+            ports to listen at; `--bind=127.0.0.1`, the address of these ports. For servers and for `TCP` and
+            `UDP`: `--key-file=FILE`, a file with the secret key that both sides need; without it the key is
+            the environment variable `CAROM_SERVER_KEY`. Processes of one user on one machine need no key.
+        hostName: Host of the server.
+        port: Port of the server; 6667 for TCP and 1234 for UDP if it is negative.
 
     Returns:
         The id of the connection, from 0; it is the `physicsClientId` of the other functions. -1 when no
@@ -176,7 +175,7 @@ def _new_client(method: int, target: Target) -> Client:
 
 
 def _let_quick_calls_in(slot: int) -> None:
-    """Lets the native library use the bodies of a client without window and server."""
+    """Lets the native library access the bodies of a client that has neither a window nor a server."""
     from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._calls.quick import install
 
@@ -200,7 +199,7 @@ def _serve(slot: int, target: Target) -> None:
 def disconnect(physicsClientId: int = 0) -> None:
     """Ends a connection and removes its world.
 
-    A connection that the user has ended, by closing the window, may be ended once more.
+    If the user has ended it by closing the window, the first call afterwards is no error.
 
     Args:
         physicsClientId: The connection.

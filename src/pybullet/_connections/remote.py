@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from pybullet._connections.server_options import Address
 
 RESULT, PROBLEM = 0, 1
-"""First item of an answer; what follows is the result, or name and text of the exception."""
+"""First item of an answer; the result follows, or the name and text of the exception."""
 
 ERROR = "pybullet.error"
-"""Name of `pybullet.error` in answers; other exceptions have their own."""
+"""Name of `pybullet.error` in answers; other exceptions have their Python names."""
 
 # Exceptions that functions raise for wrong arguments; all others become `error`.
 EXCEPTIONS = {
@@ -35,7 +35,7 @@ class RemoteClient:
     """A connection to a world in another process.
 
     Args:
-        method: How it was connected: `SHARED_MEMORY`, `TCP`, ...
+        method: Connection method: `SHARED_MEMORY`, `TCP`, ...
         connection: The connection itself.
     """
 
@@ -49,8 +49,8 @@ class RemoteClient:
         """Calls a function on the server.
 
         Raises:
-            pybullet.error: The server does not answer, or raised it.
-            TypeError: The arguments are wrong; other exceptions likewise.
+            pybullet.error: The server does not answer, or the function raised it there.
+            TypeError: The arguments are wrong. Other exceptions of `EXCEPTIONS` are raised likewise.
         """
         if not self._connection.is_usable:
             fail(NOT_CONNECTED, "The server has closed the connection, or did not answer in time.")
@@ -84,7 +84,7 @@ class RemoteClient:
         self._connection.close()
 
     def leave_to_the_parent(self) -> None:
-        """Drops the connection, in a forked process."""
+        """Drops the connection in a forked process; the parent process keeps it."""
         self._connection.abandon()
 
 

@@ -20,27 +20,27 @@ from pybullet._clients.clients import NOT_CONNECTED, Client, living_client
 from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
 from pybullet._connections.server_options import ServerOptions, reachable
 
-# Time limit for a server's answer that it exists [s].
+# Time limit for an answer when checking whether a server exists [s].
 _PATIENCE = 5.0
 _CANNOT_START = "Cannot start the physics server:"
-# Takes the lock itself, but not while the simulation is paused.
+# This function locks the client itself, but not while it waits because the simulation is paused.
 _STEP = "stepSimulation"
 
 _alive: WeakSet[Served] = WeakSet()
 
 
 class Served:
-    """A world, its own client, and the clients in other processes.
+    """A server for the world of a client in this process, used by clients in other processes.
 
-    All of them call the same functions, one call at a time. Only user data are copied for each.
+    All clients call the same functions, one call at a time. Only user data are copied for each client.
 
     Args:
         number: Id of the client in this process.
         client: The client in this process.
-        options: Where to listen, and under which names.
+        options: Addresses and key of the server.
 
     Raises:
-        pybullet.error: There is such a server already, or it cannot listen at an address.
+        pybullet.error: A server with the same key or port exists, or it cannot listen at an address.
     """
 
     def __init__(self, number: int, client: Client, options: ServerOptions) -> None:
@@ -52,7 +52,7 @@ class Served:
         for rendezvous in options.meetings:
             name = rendezvous.name(rendezvous.port)
             if _is_taken(name):
-                fail(_CANNOT_START, f"there is one already that is found as {name}.")
+                fail(_CANNOT_START, f"there is one already, named {name}.")
         try:
             places = [(rendezvous.host, rendezvous.port) for rendezvous in options.meetings]
             self._listener = Listener(places, options.key, self._answer)
@@ -70,16 +70,16 @@ class Served:
 
     @property
     def addresses(self) -> list[tuple[str, int]]:
-        """Where it listens."""
+        """The hosts and ports at which it listens."""
         return self._listener.addresses
 
     @property
     def client_count(self) -> int:
-        """How many processes are connected."""
+        """The number of connected clients."""
         return self._listener.client_count
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
-        """Calls a function for the script in this process, or for another process through a log."""
+        """Calls a function for this process's script or, if a log forwards the call, for another process."""
         if getattr(self._for_others, "answering", False):
             return self._call(function, arguments, keywords)
         return self._user_data.call(
@@ -99,11 +99,11 @@ class Served:
         self._listener.close()
 
     def leave_to_the_parent(self) -> None:
-        """Drops the server, in a forked process."""
+        """Drops the server in a forked process; the parent process keeps it."""
         self._notes = []
         self._listener.abandon()
         remove_detour(self._number)
-        # Another thread may have held it, and there are no others here.
+        # A thread that does not exist in this process may have held the old lock.
         self._client.lock = RLock()
         self._client.server = None
 
@@ -112,7 +112,7 @@ class Served:
         request = unpack(frame.message, frame.contents, lists=True)
         name, arguments, keywords = _checked(request)
         function = functions().get(name)
-        # A thread that answers clients never ends.
+        # It is not reset, because this thread only answers clients.
         self._for_others.answering = True
         try:
             if function is None:
@@ -120,7 +120,7 @@ class Served:
             if living_client(self._number) is not self._client:
                 fail(NOT_CONNECTED, "The server is closing.")
             arguments, keywords = function.with_client(self._number, arguments, keywords)
-            # A log may have been put before this server.
+            # A log of commands may record the calls and forward them to this server.
             way = detour_of(self._number) or self
             answer = pack((RESULT, way.call(function, tuple(arguments), keywords)))
             check_size(*answer, OF_RESULTS)
@@ -158,7 +158,7 @@ def _text(problem: Exception) -> str:
 
 
 def _is_taken(name: str) -> bool:
-    """Whether the server of a note answers; a server that was killed leaves its note behind."""
+    """Whether the server with a name answers; a server that was killed leaves its note behind."""
     note = find(name)
     if note is None:
         return False

@@ -40,10 +40,10 @@ class Meeting(NamedTuple):
     """An address at which a server can be reached.
 
     Attributes:
-        kind: Of connection.
-        host: Address it listens at.
-        port: Port it listens at; 0 for any.
-        number: Distinguishes servers of a kind: key or port; 0 for the port it gets.
+        kind: Kind of connection.
+        host: Address at which the server listens.
+        port: Port at which it listens; 0 for any free one.
+        number: Distinguishes servers of one kind: key or port; 0 for the port that the server is assigned.
     """
 
     kind: str
@@ -52,7 +52,7 @@ class Meeting(NamedTuple):
     number: int
 
     def name(self, port: int) -> str:
-        """The name of its note, if it listens at that port."""
+        """Name of the note by which clients find the server, if it listens at `port`."""
         return f"{self.kind}-{self.number or port}"
 
 
@@ -70,13 +70,13 @@ class ServerOptions:
 
 
 class Address(NamedTuple):
-    """The address of a client's server.
+    """The address of the server that a client connects to.
 
     Attributes:
         places: Address and key, for each possible key.
         timeout: Initial time limit for an answer [s].
         importance: Log level of the message if there is no server.
-        nobody: Message if there is no key for it.
+        nobody: Message if `places` is empty.
     """
 
     places: tuple[Note, ...]
@@ -89,7 +89,7 @@ def server_options(method: int, target: Target) -> ServerOptions:
     """The addresses and the key of a server.
 
     Raises:
-        pybullet.error: There is no such port, or the key cannot be used.
+        pybullet.error: A port is not valid, or the key cannot be used.
     """
     bind = target.option("bind") or _LOOPBACK
     graphics = method in (GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
@@ -103,14 +103,14 @@ def server_options(method: int, target: Target) -> ServerOptions:
 
 
 def address_of(method: int, target: Target) -> Address:
-    """The address of the server that a client asks for.
+    """The address of the server for a client's arguments of `connect`.
 
     Raises:
         pybullet.error: The file with the key cannot be used.
     """
     if method in (SHARED_MEMORY, GRAPHICS_CLIENT):
         note = find(f"{_SHARED_MEMORY if method == SHARED_MEMORY else _GRAPHICS}-{target.key}")
-        nobody = f"None has the key {target.key}."
+        nobody = f"No server has the key {target.key}."
         return Address((note,) if note else (), _FOR_EVER, logging.INFO, nobody)
     assert method in (TCP, UDP, GRAPHICS_SERVER_TCP)
     kind = _UDP if method == UDP else _TCP
@@ -120,7 +120,7 @@ def address_of(method: int, target: Target) -> Address:
         note = find(f"{kind}-{port}")
         keys.append(note.key if note else None)
     places = tuple(Note(target.host, port, key) for key in keys if key)
-    nobody = f"None of yours on this machine is found as {kind}-{port}, and no key is given for others."
+    nobody = f"You have none named {kind}-{port} on this machine, and no key is given for others."
     return Address(places, _A_MINUTE, logging.WARNING, nobody)
 
 
@@ -155,7 +155,7 @@ def _given_key(target: Target) -> bytes | None:
 
 
 def _own_key(target: Target, bind: str) -> bytes:
-    """The key of a server; a file that does not exist gets a new one."""
+    """The key of a server; if its key file does not exist, the file is written with a new key."""
     file = target.option("key-file")
     if file and not Path(file).exists():
         key = new_key()
@@ -175,7 +175,8 @@ def _own_key(target: Target, bind: str) -> bytes:
 
 
 def _write_private(file: Path, key: bytes) -> None:
-    # Other users must never be able to read it, so it is moved to its place when it is complete.
+    # Other users must never be able to read the key: the file of `mkstemp` is private, and it is moved to its
+    # place when it is complete.
     handle, draft = tempfile.mkstemp(dir=file.parent)
     try:
         with os.fdopen(handle, "wb") as stream:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
 from carom.record import record
 from pybullet._calls.constants import SHARED_MEMORY_KEY
-
-_WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
+from pybullet._calls.options import values_of
 
 
 @record
@@ -15,10 +12,10 @@ class Target:
     """The arguments of `connect` after the method.
 
     Attributes:
-        key: Of shared memory.
-        host: Of a server.
-        port: Of a server; negative for the usual one.
-        options: Separated by spaces; double quotes enclose values with spaces.
+        key: Key of shared memory.
+        host: Host of the server.
+        port: Port of the server; negative for the default.
+        options: Options separated by spaces; double quotes enclose values with spaces.
     """
 
     key: int = SHARED_MEMORY_KEY
@@ -27,9 +24,5 @@ class Target:
     options: str = ""
 
     def option(self, name: str) -> str | None:
-        """The value of `--name=value`, empty for `--name`; None if it is not there."""
-        for word in reversed(_WORDS.findall(self.options)):
-            found, _, value = word.lstrip("-").partition("=")
-            if found == name:
-                return value.replace('"', "")
-        return None
+        """The value of the last `--name=value`, empty for `--name`; None if not given."""
+        return values_of(self.options).get(name)

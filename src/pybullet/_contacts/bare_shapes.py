@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pybullet._bodies.link_rows import Place
 
 BARE_LINK = -2
-"""What is reported as link of a shape without a body."""
+"""Link index that is reported for a shape without a body."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +31,9 @@ class Thing:
     """One side of a query: a link, or a shape without a body.
 
     Attributes:
-        place: Body and link that are reported.
-        spec: Its shapes, as a fixed body.
-        pose: Of its link frame, in the world.
+        place: The body and link that are reported.
+        spec: A fixed body with its shapes.
+        pose: Pose of its link frame in the world.
     """
 
     place: Place
@@ -44,18 +44,19 @@ class Thing:
 def bare_shape(
     client: Client, number: Any, body_id: int, position: Any, orientation: Any, side: str
 ) -> Thing | None:
-    """A collision shape at a place; None, with a warning, if there is no such shape.
+    """A collision shape at a pose; None, with a warning, if there is no such shape.
 
     Args:
         client: The connection.
         number: Id of the shape.
-        body_id: The body that the script gave with it, which is reported.
-        position: Position of the shape; None for the origin.
-        orientation: Its orientation; None for no rotation.
-        side: A or B, for errors.
+        body_id: Body id given by the script, which is reported.
+        position: Position of the shape [m]; None for the origin.
+        orientation: Its orientation (x, y, z, w); None for no rotation.
+        side: A or B, for error messages.
 
     Raises:
-        pybullet.error: The position is not three, or the orientation not four, finite numbers.
+        pybullet.error: The position or orientation has a number that is not finite, or the orientation has
+            length 0.
     """
     from carom.layouts.flags import LoadFlags
     from carom.model.body_spec import BodySpec, LinkSpec
@@ -75,7 +76,7 @@ def bare_shape(
 
 
 def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
-    """A link, or with `BARE_LINK` all links, of a body; nothing if there is no such body or link."""
+    """One link of a body, or with `BARE_LINK` all; an empty list if there is no such body or link."""
     from carom.model.body_spec import BodySpec
 
     body = client.world.bodies.get(body_id)
@@ -98,10 +99,10 @@ def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
 def nearest_points(
     first: list[Thing], second: list[Thing], reach: float
 ) -> list[tuple[Place, Place, Vector3, Vector3, Vector3, float]]:
-    """The nearest points of all shapes of pairs of things that are no farther apart than `reach` [m].
+    """The nearest points of pairs of shapes, one from each list, that are at most `reach` [m] apart.
 
     Returns:
-        As from `Queries.nearest`, with the reported body and link instead of rows of links.
+        As from `Queries.nearest`, but with the reported body and link instead of the row of a link.
     """
     from carom.world.world import World
 

@@ -85,7 +85,9 @@ def setCollisionFilterGroupMask(
     group = integer(collisionFilterGroup, "collisionFilterGroup")
     mask = integer(collisionFilterMask, "collisionFilterMask")
     row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
-    if row is not None:
+    if row is None:
+        return
+    with client.lock:
         client.world.contact_arrays.shapes.set_group_and_mask(row, group, mask)
         client.world.scene_changed()
 

@@ -65,10 +65,10 @@ def getContactPoints(
     Returns:
         For each contact (0, bodyA, bodyB, linkIndexA, linkIndexB, point on A, point on B, normal on B
         towards A, distance, normal force, friction force 1, its direction, friction force 2, its
-        direction). Points and directions are in the world frame; a negative distance is penetration. Of a
-        soft body there is one for each node that touches a link or another soft body, the distance that is
-        kept between them taken off.
-        The friction is that on the body that is listed first when no body is asked for.
+        direction). Points and directions are in the world frame; a negative distance is penetration. A soft
+        body has a contact for each node that touches a link or another soft body; the distance that is kept
+        between them is subtracted. Friction forces are those on the body that is listed first if the script
+        asks for no body.
 
     Raises:
         pybullet.error: Not connected.
@@ -87,7 +87,7 @@ def getContactPoints(
         integer(bodyB, "bodyB"),
         integer(linkIndexB, "linkIndexB"),
     )
-    # Another thread may be stepping, and contacts are read from what a step works with.
+    # Another thread may be stepping, and contacts are read from arrays that a step changes.
     with client.lock:
         count, columns = client.world.queries().contacts(*asked, client.time_step)
         return tuple(zip(repeat(0, count), *columns, strict=False)) if count else ()

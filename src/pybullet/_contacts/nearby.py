@@ -90,12 +90,14 @@ def getClosestPoints(
                 for a, b, on_a, on_b, normal, gap in nearest_points(sides[0], sides[1], reach)
             ]
         )
-    links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
-    bodies, links = world.link_columns
+    with client.lock:
+        links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
+        bodies, links = world.link_columns
+        found = world.queries().nearest(links_a, links_b, reach)
     return tuple(
         [
             _contact_point(bodies[a], links[a], bodies[b], links[b], on_a, on_b, normal, gap)
-            for a, b, on_a, on_b, normal, gap in world.queries().nearest(links_a, links_b, reach)
+            for a, b, on_a, on_b, normal, gap in found
         ]
     )
 
@@ -145,8 +147,9 @@ def getOverlappingObjects(
         >>> p.getOverlappingObjects([0.45, -0.05, 0.02], [0.55, 0.05, 0.1])
         ((2, -1),)
     """
-    world = client_of(physicsClientId).world
+    client = client_of(physicsClientId)
     lower = vector3(aabbMin, _BAD_CORNER, "aabbMin")
     upper = vector3(aabbMax, _BAD_CORNER, "aabbMax")
-    found = places(world, world.queries().overlapping(lower, upper))
+    with client.lock:
+        found = places(client.world, client.world.queries().overlapping(lower, upper))
     return tuple(sorted(place for place in found if place is not None)) or None

@@ -1,4 +1,4 @@
-"""The points of many rays as arrays."""
+"""The start and end points of many rays as arrays."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from pybullet._calls.errors import fail
 
 
 def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
-    """Points as rows; arrays of numbers are taken as they are."""
+    """Points as an array of shape (count, 3); raises `pybullet.error` for other values."""
     items = values if isinstance(values, np.ndarray) else sequence(values, problem, name)
     if isinstance(items, np.ndarray) and not items.ndim:
         fail(problem, f"{name} is {values!r}.")
     try:
         if not isinstance(items, np.ndarray) and set(map(len, items)) == {3}:
-            # Four times as fast as letting NumPy find the depth of the lists.
+            # Four times as fast as `np.asarray`, which has to find the depth of the nested lists.
             points = np.frombuffer(pack(f"{3 * len(items)}d", *chain.from_iterable(items))).reshape(-1, 3)
         else:
             points = np.asarray(items, dtype=float).reshape(len(items), -1)
@@ -38,5 +38,5 @@ def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
 
 
 def in_world(points: np.ndarray, frame: Pose) -> np.ndarray:
-    """Points of a frame, in world coordinates; shape (count, 3) both."""
+    """Converts points from a frame to the world frame; both arrays have shape (count, 3)."""
     return product(points, np.array(rotation_matrix(frame.orientation)).T) + frame.position

@@ -61,7 +61,8 @@ def rayTest(
         integer(collisionFilterMask, "collisionFilterMask"),
         integer(reportHitNumber, "reportHitNumber"),
     )
-    hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
+    with client.lock:
+        hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
     client.window.show_rays((start,), (end,), (hit,))
     return (hit,)
 
@@ -127,17 +128,19 @@ def rayTestBatch(
     )
     if frame is not None:
         starts, ends = in_world(starts, frame), in_world(ends, frame)
-    hits = client.world.queries().cast_rays(
-        starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
-    )
+    with client.lock:
+        hits = client.world.queries().cast_rays(
+            starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
+        )
     client.window.show_rays(starts, ends, hits)
     return hits
 
 
 def _frame_of(client: Client, body_id: int, link: int) -> Pose | None:
-    """The frame of the rays; None for the world frame, also used for unknown bodies.
+    """The frame of the rays; None for the world frame, which is also used for unknown bodies.
 
-    As in PyBullet it is that of `getLinkState`, after a step at the start of its last substep.
+    As in PyBullet it is the frame that `getLinkState` returns: after a step, that at the start of its last
+    substep.
     """
     body = client.world.bodies.get(body_id)
     if body is None or not _BASE <= link < body.joint_count:

@@ -36,21 +36,21 @@ _WORK = {
     "noncontact_inner_iterations": ("numNonContactInnerIterations", 10_000),
 }
 _MOST_WORK = 10_000_000
-# Forces are impulses by time [s].
+# Forces are computed as impulses divided by the time step [s], which must not be too small.
 _LEAST_TIME_STEP = 1e-12
 
 
-# In both, soft bodies have the material of their parameters.
+# In both kinds of world, soft bodies use the material parameters of `loadSoftBody`.
 _DEFORMABLE = RESET_USE_DEFORMABLE_WORLD | RESET_USE_REDUCED_DEFORMABLE_WORLD
 
 
 def _switch(value: Any, name: str) -> int:
-    """An integer of which only the sign, and whether it is 0, matter."""
+    """A switch as 0 or 1: 1 for all positive integers; negative ones are unchanged."""
     number = integer(value, name)
     return number if number < 0 else int(number != 0)
 
 
-# What arguments of `setPhysicsEngineParameter` set, how they are read, and from which number on.
+# Arguments of `setPhysicsEngineParameter`: parameter, conversion, and least value that is not ignored.
 _PARAMETERS: dict[str, tuple[str, Callable[[Any, str], Any], int]] = {
     "numSolverIterations": ("solver_iterations", integer, 0),
     "useSplitImpulse": ("split_impulse", _switch, 0),
@@ -174,7 +174,7 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
     """
     client = client_of(physicsClientId)
     gravity = (quantity(gravX, "gravX"), quantity(gravY, "gravY"), quantity(gravZ, "gravZ"))
-    # So that setting the same gravity before every step costs little.
+    # Scripts may set the same gravity before every step: that should cost little.
     if gravity != client.world.parameters.gravity:
         _change(client, gravity=gravity)
 
@@ -333,14 +333,15 @@ def setPhysicsEngineParameter(
     Args:
         fixedTimeStep: Time step of `stepSimulation` [s].
         numSolverIterations: Maximum number of solver iterations in a step; default 50.
-        useSplitImpulse: Correct penetration of rigid bodies without adding velocity.
-        splitImpulsePenetrationThreshold: Penetration above which that is done [m].
+        useSplitImpulse: 1: a joint limit violated by more than a threshold, 0.04 rad or m, is not corrected:
+            the violation only stops growing. No effect on contacts, as in Bullet for multibodies.
+        splitImpulsePenetrationThreshold: Any number from 0 on makes this threshold 0.
         numSubSteps: Number of substeps, each solved separately; 0 or 1 for none. The maximum impulse of a
             motor applies to each substep.
         collisionFilterMode: 0: both bodies' filters have to agree; 1: one is enough.
-        contactBreakingThreshold: Distance at which a contact is removed, relative to the size.
-        maxNumCmdPer1ms: Of PyBullet's server; no effect.
-        enableFileCaching: Of PyBullet's file reader; no effect: files are read again when they change.
+        contactBreakingThreshold: Distance at which a contact is removed, relative to the size of a shape.
+        maxNumCmdPer1ms: Option of PyBullet's server; no effect.
+        enableFileCaching: Option of PyBullet's file reader; no effect: files are read again when they change.
         restitutionVelocityThreshold: Speed below which nothing bounces [m/s].
         erp: Fraction of an error of limits and constraints corrected in one step.
         contactERP: The same for penetration.
@@ -362,7 +363,7 @@ def setPhysicsEngineParameter(
         reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
         warmStartingFactor: Fraction of the last step's impulses to start from, for rigid bodies other than
             multibodies; no effect.
-        sparseSdfVoxelSize: Of deformable bodies; no effect.
+        sparseSdfVoxelSize: Option for PyBullet's deformable bodies; no effect.
         numNonContactInnerIterations: Iterations over motors, limits and constraints for each iteration over
             contacts; at least 1.
         physicsClientId: The connection.
@@ -394,7 +395,7 @@ def setPhysicsEngineParameter(
 
 
 def _check_work(client: Client, changes: dict[str, Any]) -> None:
-    """Check that a step does not take too long: a launch of kernels cannot be interrupted."""
+    """Checks that a step does not take too long, because a launch of kernels cannot be interrupted."""
     parameters = client.world.parameters
     product = 1
     for name, (argument, greatest) in _WORK.items():

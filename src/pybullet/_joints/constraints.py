@@ -164,23 +164,26 @@ def changeConstraint(
     if constraint is None:
         logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
         return
-    if auxiliary >= 0:
-        constraint.gear_auxiliary_link = _link(constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED)
-    if pivot is not None or orientation is not None:
-        old = constraint.child_frame
-        constraint.child_frame = Pose(
-            pivot or old.position, old.orientation if orientation is None else unit(orientation)
-        )
-    if force >= 0.0:
-        constraint.max_force = force
-        constraint.max_impulse = force * client.world.parameters.substep_time
-    if ratio != 0.0:
-        constraint.gear_ratio = ratio
-    if target < _UNCHANGED_TARGET:
-        constraint.relative_position_target = target
-    if share >= 0.0:
-        constraint.erp = share
-    client.world.user_constraints.write(client.world.contact_arrays)
+    with client.lock:
+        if auxiliary >= 0:
+            constraint.gear_auxiliary_link = _link(
+                constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED
+            )
+        if pivot is not None or orientation is not None:
+            old = constraint.child_frame
+            constraint.child_frame = Pose(
+                pivot or old.position, old.orientation if orientation is None else unit(orientation)
+            )
+        if force >= 0.0:
+            constraint.max_force = force
+            constraint.max_impulse = force * client.world.parameters.substep_time
+        if ratio != 0.0:
+            constraint.gear_ratio = ratio
+        if target < _UNCHANGED_TARGET:
+            constraint.relative_position_target = target
+        if share >= 0.0:
+            constraint.erp = share
+        client.world.user_constraints.write(client.world.contact_arrays)
 
 
 @exported
@@ -272,8 +275,8 @@ def getConstraintInfo(constraintUniqueId: int, physicsClientId: int = 0) -> Cons
         (parentBodyUniqueId, parentLinkIndex, childBodyUniqueId, childLinkIndex, jointType, jointAxis,
         parentFramePosition, childFramePosition, parentFrameOrientation, childFrameOrientation, maxForce,
         gearRatio, gearAuxLink, relativePositionTarget, erp); the child is -1 for the world, and gearAuxLink
-        is also 0 if there is none. Of the anchor of a soft body, a point-to-point constraint, the parent
-        is the soft body and its link the node.
+        is also 0 if there is none. An anchor of a soft body is reported as a point-to-point constraint
+        whose parent is the soft body and whose parentLinkIndex is the node.
 
     Raises:
         pybullet.error: Not connected, or there is no such constraint.
@@ -338,7 +341,7 @@ def getConstraintState(constraintUniqueId: int, physicsClientId: int = 0) -> Num
 
 
 def _numbers(client: Client) -> list[int]:
-    """The numbers of all constraints, in order of creation."""
+    """The numbers of all constraints and anchors, in order of creation."""
     world = client.world
     return sorted(
         [constraint.id for constraint in world.user_constraints.all] + [*world.contact_arrays.soft.anchors]
@@ -377,7 +380,7 @@ def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
 
 
 def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:
-    """A gear needs a joint of one degree of freedom on each side."""
+    """Check that both links of a gear have a joint with one degree of freedom."""
     for body, link, name in ((parent, parent_link, "parent"), (child, child_link, "child")):
         if body is None or link < 0 or body.velocity_count[link] != 1:
             fail(_FAILED, f"The {name} of a gear has to be a revolute or prismatic joint.")

@@ -1,7 +1,7 @@
 """Direct access to the rows of joints in the state arrays.
 
-These objects are made once per joint and hold the memory of the arrays, so that reading a state or
-commanding a motor is a few reads or writes of numbers. They live until bodies are added or removed.
+A `JointAccess` is created once per joint and keeps views of the arrays, so that reading a state or commanding
+a motor takes only a few reads or writes of numbers. It is dropped when bodies are added or removed.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ _DOUBLE = 8
 _WRENCH_ROW = 6 * _DOUBLE
 # The maximum force of a motor that was given a target but no force [N or N m].
 _UNSTATED_FORCE = 1000000.0
-# The gains of a multi-dof motor whose gains were given in the wrong number.
+# The gain of a multi-dof motor if a list of gains has the wrong length.
 _UNSTATED_GAIN = 0.1
 _read_wrench = Struct("6d").unpack_from
 
 
 class JointAccess:
-    """A joint without motion: fixed. The other kinds build on it.
+    """Direct access to a fixed joint; base class for the other joint types.
 
     Attributes:
-        q: Row of its first position.
+        q: Row of the joint's first position.
         u: Row of its first velocity.
-        has_sensor: Its reaction is measured.
+        has_sensor: Whether its reaction force and torque are measured.
         motor: Its motor.
     """
 
@@ -76,17 +76,17 @@ class JointAccess:
         return (0.0, 0.0, self._reaction(), 0.0)
 
     def multi_dof_state(self) -> MultiDofState:
-        """The same with a tuple for each of position, velocity and torque."""
+        """As `state`, with tuples of positions, velocities and motor torques."""
         return ((), (), self._reaction(), ())
 
     def reset(self, position: float, velocity: float) -> None:
-        """Sets the state of a joint with one degree of freedom, without physics; ignores other joints."""
+        """Set the state of a joint with one degree of freedom, without physics; ignore other joints."""
 
     def _reaction(self) -> Wrench:
         return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH
 
     def add_torques(self, torques: Sequence[float]) -> None:
-        """Adds to the torques of the next step; ignored unless there is one for each degree of freedom."""
+        """Add to the torques of the next step; ignored unless there is one for each degree of freedom."""
 
     def command_multi_dof(
         self,
@@ -99,9 +99,10 @@ class JointAccess:
         clamp: float,
         damping: float | Sequence[float],
     ) -> None:
-        """Sets the motor or the PD drive by one number for each freedom, as the calls for several do.
+        """Set the motor or the PD controller, as the functions for joints with several dofs do.
 
-        A sequence of the wrong length counts as not given.
+        Each sequence has one number for each dof (a position may be a quaternion). A sequence of the wrong
+        length counts as not given.
         """
 
 
@@ -222,7 +223,7 @@ class MultiDofJoint(JointAccess):
         if _is_triple(force) and _is_triple(kp) and _is_triple(kd):
             forces, kps, kds = force, kp, kd
         else:
-            # One value for all axes as soon as one of the three was not given axis by axis.
+            # Unless forces, kp and kd are all given for each axis, one value of each holds for all axes.
             greatest = force[0] if len(force) in (1, 3) else _UNSTATED_FORCE
             forces = (greatest,) * 3
             kps = (_first_gain(kp, 3, has_position),) * 3
@@ -232,7 +233,7 @@ class MultiDofJoint(JointAccess):
 
 
 def joint_access(client: Client, body: Body, index: int) -> JointAccess:
-    """Access to one joint, by its kind."""
+    """Create the access to one joint, in the class for its joint type."""
     freedoms = body.velocity_count[index]
     if freedoms == 1:
         return AxisJoint(client, body, index)

@@ -1,7 +1,7 @@
-"""Several joints of a body at once.
+"""Access to several joints of a body at once.
 
-Scripts use the same joints in every step of a control loop, so their data are cached. If their rows are
-contiguous in the state arrays, as for all joints of most arms, one loop reads them all.
+Scripts use the same joints in every step of a control loop, so data of a group of joints are cached. If their
+rows are contiguous in the state arrays, as for all joints of most arms, one loop reads all states.
 """
 
 from __future__ import annotations
@@ -23,39 +23,39 @@ _MOST_GROUPS = 64
 
 
 class JointGroup:
-    """Any joints, one after the other. The other kinds build on it."""
+    """A group of joints of any types, handled one by one; base class for the other groups."""
 
     def __init__(self, client: Client, joints: Sequence[JointAccess]) -> None:
         self.client = client
         self.joints = joints
 
     def states(self) -> tuple[JointState, ...]:
-        """The state of each, as `getJointState` returns it."""
+        """The state of each joint, as `getJointState` returns it."""
         return tuple([joint.state() for joint in self.joints])
 
     def command(self, mode: int, *lists: Iterable[float] | None) -> None:
-        """Sets the motor of each as `setJointMotorControl2` does.
+        """Set the motor of each joint as `setJointMotorControl2` does. After an error nothing has been set.
 
         Args:
-            mode: The mode.
+            mode: Velocity, torque or position control.
             *lists: Positions, velocities, forces, position gains and velocity gains; a number for each joint,
-                or None.
+                or None for the defaults.
 
         Raises:
-            ValueError: Nothing has been set: the joints differ in kind, the mode is not one of the common
-                ones, or a number is not finite.
-            struct.error: Nothing has been set: a list does not fit.
+            ValueError: Some joints are neither revolute nor prismatic, the mode is another one, or a number
+                is not finite.
+            struct.error: A list does not have a number for each joint.
         """
         raise ValueError("these motors are set one by one")
 
     @cached_property
     def record(self) -> MotorRecord | None:
-        """Their record for the native library; None if Python handles all commands."""
+        """The group's record for the native library; None if Python handles all commands."""
         return None
 
 
 class AxisGroup(JointGroup):
-    """Revolute and prismatic joints."""
+    """A group of revolute and prismatic joints, commanded together."""
 
     def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
         super().__init__(client, joints)
@@ -81,7 +81,7 @@ class AxisGroup(JointGroup):
 
 
 class ConsecutiveAxes(AxisGroup):
-    """Such joints without sensors, in rows that follow each other."""
+    """A group of revolute and prismatic joints without sensors, in consecutive rows of the state arrays."""
 
     def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
         super().__init__(client, joints)
@@ -103,9 +103,9 @@ class ConsecutiveAxes(AxisGroup):
 
 
 class JointGroups(dict[tuple[int, ...], JointGroup]):
-    """The groups of a body's joints by their indices; an entry is made on first use.
+    """Groups of a body's joints, by the tuple of their indices; an entry is created on first use.
 
-    Asking for a joint that does not exist raises `KeyError`.
+    The index of a joint that does not exist raises `KeyError`.
     """
 
     def __init__(self, client: Client, joints: dict[int, JointAccess]) -> None:

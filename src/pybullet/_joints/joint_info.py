@@ -1,4 +1,4 @@
-"""Data of `getJointInfo`: the joints as described by their file."""
+"""Data of `getJointInfo`: joints as their file describes them."""
 
 from __future__ import annotations
 
@@ -72,16 +72,16 @@ def joint_info(body: Body, index: int) -> JointInfo:
 
 
 def _axis_in_inertial_frame(link: LinkSpec) -> Vector3:
-    """The axis of a link's joint, as long as it was stated."""
+    """The axis of a link's joint in the link's inertial frame, with the length that it has in the file."""
     x, y, z = rotate(conjugate(link.inertial_frame.orientation), link.joint_axis)
     length = link.joint_axis_length
     return (x * length, y * length, z * length)
 
 
 def _rotation_from_parent(joint_frame: Pose, inertial_frame: Pose) -> Quaternion:
-    """Turns vectors of the parent's inertial frame into the link's at joint position 0.
+    """Rotation of vectors from the parent's inertial frame to the link's, at joint position 0.
 
-    The product of two quaternions that were each read off a matrix, which decides its sign.
+    Both factors are quaternions computed from rotation matrices, because this decides the result's sign.
     """
     return multiplied(_inverse_rotation(inertial_frame), _inverse_rotation(joint_frame))
 

@@ -1,4 +1,4 @@
-"""Joints: data from their file, their state, and setting it."""
+"""Joints: their data from the file, and reading and setting their state."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def getJointStates(
         physicsClientId: The connection.
 
     Returns:
-        What `getJointState` returns, for each joint; None without indices.
+        The result of `getJointState` for each joint; None if there are no indices.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -192,7 +192,7 @@ def getJointStatesMultiDof(
         physicsClientId: The connection.
 
     Returns:
-        What `getJointStateMultiDof` returns, for each joint; None without indices.
+        The result of `getJointStateMultiDof` for each joint; None if there are no indices.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.
@@ -239,7 +239,7 @@ def resetJointState(
     try:
         joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
         if _LEAST < targetValue < MAX_MAGNITUDE and _LEAST < targetVelocity < MAX_MAGNITUDE:
-            # Arrays compare like numbers; they are refused before the first of the two is written.
+            # Arrays may pass the comparison, so both numbers are converted before either is written.
             joint.reset(float(targetValue), float(targetVelocity))
             return
     except (KeyError, TypeError, ValueError):
@@ -291,7 +291,9 @@ def resetJointStatesMultiDof(
     targetVelocities: Vectors | None = None,
     physicsClientId: int = 0,
 ) -> None:
-    """Sets the states of several joints: `resetJointStateMultiDof` for each. Nothing changes if one is wrong.
+    """Sets the states of several joints: `resetJointStateMultiDof` for each.
+
+    Nothing changes if an argument is wrong.
 
     Args:
         bodyUniqueId: The body.
@@ -336,7 +338,7 @@ def resetJointStatesMultiDof(
 
 
 def _requested(body_id: int, joint_indices: Indices, physics_client_id: int) -> tuple[int, ...]:
-    """The joint indices of a query, after the checks that come before them."""
+    """The joint indices of a query, after checks of the connection and of the sign of the body id."""
     client_of(physics_client_id)
     if integer(body_id, "bodyUniqueId") < 0:
         body_access(body_id, physics_client_id, _NO_STATE, _NEGATIVE_BODY)
@@ -344,7 +346,7 @@ def _requested(body_id: int, joint_indices: Indices, physics_client_id: int) -> 
 
 
 def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Positions and velocities of one joint from what the script gave for them."""
+    """Positions and velocities of one joint as tuples, from the arguments of a script."""
     positions = quantities(position, _NO_LISTS, "targetValue") if position is not None else ()
     velocities = quantities(velocity, _NO_LISTS, "targetVelocity") if velocity is not None else ()
     if not positions and not velocities:

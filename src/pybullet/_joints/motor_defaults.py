@@ -1,4 +1,4 @@
-"""Defaults of motors."""
+"""Default arguments of the functions that command motors."""
 
 DEFAULT_FORCE = 100000.0
 """Maximum force [N or N m]."""

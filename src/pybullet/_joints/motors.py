@@ -1,4 +1,4 @@
-"""Joint motors by numbers: one joint or many joints of one degree of freedom each."""
+"""Motor commands for one joint or several joints with one degree of freedom each."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def setJointMotorControl2(
     """
     try:
         check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
-        # Anything else, such as an array, would be noticed only after half of the motor was written.
+        # Any other type, such as an array, would raise an error only after a part of the motor was written.
         if isinstance(check, float) and -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
             joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
             joint.motor.command(
@@ -149,7 +149,7 @@ def setJointMotorControl2(
         bound(maxVelocity, "maxVelocity"),
     )
     if mode not in MODES:
-        fail(_ILLEGAL_MODE, f"{mode} is none of those a single joint can have.")
+        fail(_ILLEGAL_MODE, f"{mode} is not a control mode for a single joint.")
     joint.motor.command(mode, *command)
 
 
@@ -242,12 +242,12 @@ def setJointMotorControlArray(
 def _set_array_carefully(
     body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
 ) -> None:
-    """Sets the motors after checking, and where needed converting, every argument."""
+    """Set the motors after checking, and where needed converting, every argument."""
     required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
     client_of(physics_client_id)
     mode = integer(control_mode, "controlMode")
     if mode not in MODES:
-        fail(_ILLEGAL_MODE, f"{mode} is none of the modes an array of joints can have.")
+        fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of joints.")
     requested = indices(joint_indices, NO_INDICES, "jointIndices")
     if not requested:
         return
@@ -293,7 +293,7 @@ def setJointMotorControl(
 ) -> None: ...
 @exported_as("(*arguments, physicsClientId=0)")
 def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
-    """Sets the motor of a joint. An old form of `setJointMotorControl2`, by position only.
+    """Sets the motor of a joint. An old form of `setJointMotorControl2`, with positional arguments.
 
     Called as `(body, joint, mode, target)`, `(body, joint, mode, target, maxForce)`,
     `(body, joint, mode, target, maxForce, gain)` or
@@ -335,7 +335,7 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
     elif mode == TORQUE_CONTROL and count == 4:
         torque = values[0]
     else:
-        fail(_UNPARSED, f"Mode {mode} does not go with {count} arguments.")
+        fail(_UNPARSED, f"Mode {mode} cannot be used with {count} arguments.")
     joint = joint_access(body, index, physicsClientId)
     if mode not in (POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position, velocity nor torque control.")
@@ -345,14 +345,14 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
 
 
 def _force(value: Any, mode: int, name: str) -> float:
-    """A torque has to be finite; the bound of a motor need not be."""
+    """A checked force: a torque has to be finite, the maximum force of a motor may be infinite."""
     return real(value, name) if mode == TORQUE_CONTROL else bound(value, name)
 
 
 def _one_each(
     values: Any, default: float, count: int, problem: str, name: str, infinite: bool = False
 ) -> tuple[float, ...]:
-    """A number for each joint."""
+    """A checked number for each joint; the default if no list is given."""
     if values is None:
         return (default,) * count
     items = sequence(values, problem, name)

@@ -1,4 +1,4 @@
-"""Joint motors by lists: for joints with any number of degrees of freedom, mainly spherical ones."""
+"""Motor commands as lists, for joints with any number of degrees of freedom, mainly spherical joints."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ def setJointMotorControlMultiDof(
 ) -> None:
     """Sets the motor of a joint by one number for each degree of freedom.
 
-    A list of the wrong length counts as not given; a motor with neither position nor velocity is not changed.
-    A motor without force is very strong.
+    A list of the wrong length counts as not given. If neither position nor velocity is given, the motor does
+    not change. If no force is given, the maximum is 1000000 N m or N.
 
     Args:
         bodyUniqueId: The body.
@@ -71,9 +71,9 @@ def setJointMotorControlMultiDof(
         targetVelocity: One number [rad/s or m/s], or three; a spherical motor ignores it.
         force: Maximum forces of the motor, or the torques [N m or N]: a number for each degree of freedom, or
             one for all.
-        positionGain: Fraction of the error corrected in one step. A number, or one for each degree of
-            freedom; the latter count only if forces and both gains are all given so.
-        velocityGain: As in `setJointMotorControl2`, and a number or numbers as before.
+        positionGain: Fraction of the error corrected in one step. One number, or one for each degree of
+            freedom; these count only if forces and both gains each have one for each degree of freedom.
+        velocityGain: As in `setJointMotorControl2`; one or several numbers, as for `positionGain`.
         maxVelocity: Maximum velocity that the motor aims for if greater than 0; not for spherical joints.
         damping: Fraction of the angular velocity that a spherical motor removes, for each axis or for all.
         physicsClientId: The connection.
@@ -198,7 +198,7 @@ def _stable_pd(
     kds: Sequence[float],
     time_step: float,
 ) -> None:
-    """Adds the torques of a stable PD controller to those of the next step."""
+    """Add the torques of a stable PD controller to those of the next step."""
     from carom.algorithms.stable_pd import stable_pd_torques
 
     columns = zip(positions, velocities, forces, kps, kds, strict=True)
@@ -208,7 +208,7 @@ def _stable_pd(
 
 
 def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[Sequence[float]]:
-    """The numbers of each joint, checked together in the usual case."""
+    """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
     try:
         if (
             _USUAL_LISTS.issuperset(map(type, entries))
@@ -222,14 +222,14 @@ def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[S
 
 
 def _gains(values: Sequence[float], name: str) -> Sequence[float]:
-    """Finite numbers, checked together in the usual case."""
+    """Checked finite numbers; plain Python numbers are checked all at once, which is faster."""
     if _USUAL_NUMBERS.issuperset(map(type, values)) and -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
         return values
     return [quantity(value, name) for value in values]
 
 
 def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
-    """The numbers of one joint, at most as many as any joint has; none if not given."""
+    """The checked numbers of one joint, cut off after `most`; empty if not given."""
     if isinstance(values, (list, tuple)) and len(values) <= most:
         try:
             if -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
@@ -244,10 +244,10 @@ def _entries(values: Any, name: str) -> tuple[Any, ...]:
 
 
 def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
-    """A number, or at most three of them; no number at all stands for the default of each use."""
+    """A checked number, or at most three; an empty sequence is kept and counts as not given."""
     if type(value) is float or type(value) is int:
         return quantity(value, name)
-    # Arrays of one number can be floats, too, but are lists.
+    # An array of one number can be converted to a float, too, but counts as a list.
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
         return quantity(value, name)
     return quantities(value, f"expected a {name} sequence", name)[:3]

@@ -46,7 +46,7 @@ def setAdditionalSearchPath(path: str, physicsClientId: int = 0) -> None:
 def _in_usual_form(
     arguments: tuple[Any, ...], keywords: dict[str, Any]
 ) -> tuple[tuple[Any, ...], dict[str, Any]]:
-    """Converts a call with numbers for the pose to one with vectors; returns any other call unchanged."""
+    """Convert a call with numbers for the pose to one with vectors; return any other call unchanged."""
     options = _legacy_pose(arguments[1:], keywords)
     return (arguments[:1], options) if arguments and options else (arguments, keywords)
 
@@ -86,8 +86,8 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     Args:
         fileName: The file: as given, in `data` folders near the working directory, or in the directory
             of `setAdditionalSearchPath`.
-        *arguments: The following, by position.
-        **keywords: The following, by name.
+        *arguments: The parameters below, by position.
+        **keywords: The parameters below, by name.
         basePosition: Position of the link frame of the base [m]; its centre of mass may be elsewhere.
         baseOrientation: Orientation of that frame (x, y, z, w).
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
@@ -97,12 +97,12 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         physicsClientId: The connection.
 
     Returns:
-        The id of the body: that of the body removed last; otherwise ids count up from 0.
+        The id of the body. The id of the body removed last is used again; otherwise ids count up from 0.
 
     Raises:
-        pybullet.error: Not connected, the file is missing or cannot be used (what follows PyBullet's text
-            names file, line, element and reason), or the pose is not three and four finite numbers. The world
-            is then unchanged.
+        pybullet.error: Not connected, the file is missing or cannot be used (after PyBullet's text the
+            message names file, line, element and reason), or the pose is not three and four finite numbers.
+            The world is then unchanged.
 
     Examples:
         >>> robot = p.loadURDF("r2d2.urdf", basePosition=[0, 2, 0.5])
@@ -157,7 +157,7 @@ _DEFAULTS = {
 
 
 def _named(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any]:
-    """The options of a call in the usual form; None stands for the default of a pose."""
+    """The options of a call in the usual form; a position or orientation of None gets its default."""
     given = by_name("loadURDF", tuple(_DEFAULTS), arguments, keywords)
     for name in ("basePosition", "baseOrientation"):
         if given.get(name, ()) is None:

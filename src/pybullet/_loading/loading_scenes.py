@@ -29,9 +29,9 @@ _MOST_BODIES = 512
 def loadSDF(
     sdfFileName: str, useMaximalCoordinates: int = -1, globalScaling: float = -1, physicsClientId: int = 0
 ) -> tuple[int, ...]:
-    """Loads the models of an SDF file, where the file puts them.
+    """Loads the models of an SDF file, at the poses that the file gives them.
 
-    As in PyBullet inertias come from collision shapes, the pose of a model is that of its root link,
+    As in PyBullet, inertias are computed from collision shapes, the pose of a model is that of its root link,
     only `<static>1</static>` makes a model static, joints are at the origins of their child links, and nested
     models are ignored. Unlike in PyBullet, files named by `<include>` are loaded too.
 
@@ -39,16 +39,16 @@ def loadSDF(
         sdfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
-        globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet balls and limits of
-            joints keep their size.
+        globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet, it does not apply to
+            radii of spheres and to joint limits.
         physicsClientId: The connection.
 
     Returns:
         The ids of the bodies, in the order of the file.
 
     Raises:
-        pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
-            text names file, line, element and reason). The world is then unchanged.
+        pybullet.error: Not connected, or the file is missing or cannot be used (after PyBullet's text the
+            message names file, line, element and reason). The world is then unchanged.
 
     Examples:
         >>> bodies = p.loadSDF("kuka_iiwa/model.sdf")
@@ -76,13 +76,13 @@ def loadSDF(
 def loadMJCF(
     mjcfFileName: str, flags: int = -1, useMultiBody: int = -1, physicsClientId: int = 0
 ) -> tuple[int, ...]:
-    """Loads the bodies of an MJCF file, where the file puts them.
+    """Loads the bodies of an MJCF file, at the poses that the file gives them.
 
-    Elements that PyBullet reads are read as by PyBullet: every joint has a link of its own without mass,
-    geoms weigh 1000 kg/m³, joints have neither damping nor armature, a body without joints floats, and
-    every geom of the world is a body, `axisangle` rotates geoms but not bodies, and named default classes do
-    not limit joints. What PyBullet cannot read is read as by MuJoCo: other attributes of such classes, ball
-    joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
+    Elements that PyBullet supports have the same meaning as in PyBullet: every joint has a link of its own
+    without mass, geoms have a density of 1000 kg/m³, joints have neither damping nor armature, a body without
+    joints floats, every geom of the world is a body, `axisangle` rotates geoms but not bodies, and named
+    default classes do not limit joints. Other elements have the same meaning as in MuJoCo: other attributes
+    of such classes, ball joints, ellipsoids, all kinds of orientations, `<frame>` and `<include>`.
 
     Args:
         mjcfFileName: The file: as given, in `data` folders near the working directory, or in the
@@ -95,8 +95,8 @@ def loadMJCF(
         The ids of the bodies, in the order of the file.
 
     Raises:
-        pybullet.error: Not connected, or the file is missing or cannot be used (what follows PyBullet's
-            text names file, line, element and reason). The world is then unchanged.
+        pybullet.error: Not connected, or the file is missing or cannot be used (after PyBullet's text the
+            message names file, line, element and reason). The world is then unchanged.
 
     Examples:
         >>> bodies = p.loadMJCF("mjcf/inverted_pendulum.xml")
@@ -120,7 +120,7 @@ def loadMJCF(
 def _load(
     client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
 ) -> tuple[int, ...]:
-    """Loads all robots of a file into the world of a client, or none."""
+    """Load all bodies of a file into the world of a client, or none if there is an error."""
     from carom.errors import CaromError
 
     try:

@@ -1,4 +1,4 @@
-"""Bodies made by scripts from shapes, masses and joints."""
+"""Bodies that scripts create from shapes, masses and joints."""
 
 from __future__ import annotations
 
@@ -124,9 +124,9 @@ def createMultiBody(
     """Makes a body: a base and, if there are link lists, links on joints.
 
     Links are named `link1`, `link2`... in the order of the lists, their joints `joint1`, `joint2`..., and the
-    base `link0`. As in a file, link indices are depth first, or with
-    `URDF_MAINTAIN_LINK_ORDER` in the order of the lists. Joints have no limits and, as always, a motor
-    that holds their velocity at 0. Moments of inertia are those of the collision shapes.
+    base `link0`. Link indices are depth first, as for files; with `URDF_MAINTAIN_LINK_ORDER` they follow the
+    order of the lists. Joints have no limits and, as always, a motor that holds their velocity at 0. Moments
+    of inertia are those of the collision shapes.
 
     Args:
         baseMass: [kg]; 0 fixes the base in the world.
@@ -139,13 +139,13 @@ def createMultiBody(
         linkMasses: Mass of each link [kg].
         linkCollisionShapeIndices: Its collision shape, or -1.
         linkVisualShapeIndices: Its visual shape, or -1.
-        linkPositions: Its joint in the link frame of its parent [m].
-        linkOrientations: Orientation of that.
+        linkPositions: Position of its joint frame in the link frame of its parent [m].
+        linkOrientations: Orientation of its joint frame there (x, y, z, w).
         linkInertialFramePositions: As for the base.
         linkInertialFrameOrientations: As for the base.
         linkParentIndices: Its parent: 0 for the base, k for the k-th link of the lists.
         linkJointTypes: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_SPHERICAL` or `JOINT_FIXED`.
-        linkJointAxis: Axis of its joint, in the frame of the joint.
+        linkJointAxis: Axis of its joint, in the joint frame.
         useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
         flags: `URDF_*` for self-collision, link order, inertia and sleeping, added up.
         batchPositions: Makes a body at each of these positions instead of `basePosition`.
@@ -217,7 +217,7 @@ def createMultiBody(
 
 
 def _link_lists(**lists: Any) -> dict[str, tuple[Any, ...]]:
-    """The link lists by name, all equally long."""
+    """The link lists by name, after a check that their lengths are equal."""
     items = {
         name: () if values is None else sequence(values, "expected a sequence", name)
         for name, values in lists.items()
@@ -278,12 +278,12 @@ def _rotation(values: Any, name: str) -> Quaternion:
 def _joint_type(value: Any, name: str) -> JointType:
     kind = integer(value, name)
     if kind not in JOINT_TYPES:
-        fail(_FAILED, f"{name} is {kind}, which is not a joint type that can be made here.")
+        fail(_FAILED, f"{name} is {kind}; a joint has to be revolute, prismatic, spherical or fixed.")
     return JOINT_TYPES[kind]
 
 
 def _check_tree(parents: list[int]) -> None:
-    """Checks that every link is connected to the base."""
+    """Check that every link is connected to the base."""
     for link, parent in enumerate(parents):
         if not 0 <= parent <= len(parents):
             fail(_FAILED, f"linkParentIndices[{link}] is {parent}; it has to be from 0 to {len(parents)}.")
@@ -292,7 +292,7 @@ def _check_tree(parents: list[int]) -> None:
         way = []
         while link not in hangs:
             if link in way:
-                fail(_FAILED, f"linkParentIndices: link {link} hangs on itself.")
+                fail(_FAILED, f"linkParentIndices: link {link} is its own ancestor.")
             way.append(link)
             link = parents[link - 1]
         hangs.update(way)
@@ -301,7 +301,7 @@ def _check_tree(parents: list[int]) -> None:
 def _link(client: Client, number: int, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Link:
     collision = _shape(client.shapes.collisions, collision_id, "collision")
     visuals = _shape(client.shapes.visuals, visual_id, "visual")
-    # With URDF_USE_INERTIA_FROM_FILE PyBullet takes these moments.
+    # PyBullet uses these moments of inertia if the flag URDF_USE_INERTIA_FROM_FILE is set.
     moment = mass if number else 0.0
     return Link(
         f"link{number}",

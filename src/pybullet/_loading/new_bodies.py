@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def warn_of_coordinates(function: str, use_maximal: int) -> None:
-    """Logs a warning if maximal coordinates are asked for, which Carom does not have."""
+    """Log a warning if a script asks for maximal coordinates, which Carom does not support."""
     if use_maximal > 0:
         logger.warning(
             "%s: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.", function
@@ -29,19 +29,19 @@ def add_bodies(
     problem: str,
     load: FileLoad | None = None,
 ) -> tuple[int, ...]:
-    """Adds bodies to a world.
+    """Add bodies to the world of a client.
 
     Args:
-        client: Whose world.
-        bodies: What they are, and the pose of the link frame of their base.
-        problem: PyBullet's error message if one cannot be made.
-        load: The call that loads them from a file, if one does.
+        client: The client.
+        bodies: The description of each body, and the world pose of its base's link frame.
+        problem: PyBullet's error message if a body cannot be created.
+        load: The call that loads the bodies, if they come from a file.
 
     Returns:
-        Their ids.
+        The ids of the bodies.
 
     Raises:
-        pybullet.error: The file of a mesh cannot be used; the world is as before.
+        pybullet.error: The file of a mesh cannot be used. The world is then unchanged.
     """
     from carom.errors import CaromError
 
@@ -62,9 +62,9 @@ def add_bodies(
 
 
 def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
-    """Reads visual shapes now if their files may be deleted before the first image.
+    """Read the files of visual shapes now if they may be deleted before the first image.
 
-    Otherwise they are read at the first image, because they are larger than the robot's other files.
+    Otherwise the first image reads them, because they are larger than a robot's other files.
     """
     from carom.description import Mesh
     from carom.formats.files import is_fresh

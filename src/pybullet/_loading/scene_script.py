@@ -36,8 +36,8 @@ def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
     """Writes a script that rebuilds the scene.
 
     The script connects, loads the files of the bodies, or creates bodies from shapes, and sets poses,
-    velocities and joint states. Then it sets constraints, gravity and the time step. `bodies` holds the new
-    ids by the present ones. Colours, friction and motors are not written; `saveBullet` keeps everything.
+    velocities and joint states. Then it sets constraints, gravity and the time step. Its dictionary `bodies`
+    maps present ids to new ids. Colours, friction and motors are not written; `saveBullet` keeps everything.
 
     Args:
         worldFileName: The script; an existing file is replaced.
@@ -82,7 +82,7 @@ def _bodies(client: Client) -> Iterator[str]:
 
 
 def _file(load: FileLoad, bodies: dict[int, Body]) -> Iterator[str]:
-    """The bodies of one file; those that were removed are removed again."""
+    """The lines that load one file and set its bodies' states; bodies removed since are removed again."""
     from pybullet._loading.shape_script import call
 
     first = next(iter(bodies.values()))

@@ -1,4 +1,4 @@
-"""Bodies as the calls that create them from shapes."""
+"""Python code of the calls that create bodies from shapes."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ from carom.description import (
 from carom.description.joint import JOINT_CODE
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import LinkSpec
+from pybullet._calls.errors import logger
 from pybullet._loading.multi_body import JOINT_TYPES
 
 if TYPE_CHECKING:
@@ -31,13 +32,13 @@ if TYPE_CHECKING:
 
 
 class Raw(str):
-    """An argument that is Python code already."""
+    """An argument that is already Python code."""
 
     __slots__ = ()
 
 
 def call(function: str, *arguments: Any, **keywords: Any) -> str:
-    """A call of a function of PyBullet, as Python."""
+    """A call of a function of PyBullet as Python code; keyword arguments of None are left out."""
     parts = [written(argument) for argument in arguments]
     parts += [f"{name}={written(value)}" for name, value in keywords.items() if value is not None]
     return f"p.{function}({', '.join(parts)})"
@@ -60,12 +61,12 @@ def _joint_type(kind: JointType) -> Raw:
 
 
 def multi_body(body: Body, position: Sequence[float], orientation: Sequence[float]) -> str:
-    """The call of `createMultiBody` that makes a body like this one, with its shapes.
+    """The call of `createMultiBody` that creates a copy of a body, with its shapes.
 
     Args:
         body: The body.
-        position: Of its base's link frame.
-        orientation: Of its base's link frame.
+        position: Position of the copy's base link frame in the world [m].
+        orientation: Its orientation (x, y, z, w).
     """
     spec = body.spec
     kept = spec.flags & ~LoadFlags.USE_IMPLICIT_CYLINDER | LoadFlags.MAINTAIN_LINK_ORDER
@@ -106,7 +107,7 @@ def _collision(shapes: tuple[Collision, ...]) -> Raw:
 
 
 def _visual(link: LinkSpec) -> Raw:
-    """The visual shape of a link; -1 if it is the collision shape, or cannot be made."""
+    """The call that creates a link's visual shape; -1 if its collision shape is drawn or no call can."""
     shapes = link.visuals
     touching = [(shape.geometry, shape.frame) for shape in link.collisions]
     plain = all(shape.material is None for shape in shapes)
@@ -120,7 +121,7 @@ def _visual(link: LinkSpec) -> Raw:
 
 
 def _shape(kind: str, parts: list[Any], colours: Sequence[Any] = ()) -> Raw:
-    """The call that makes a shape; -1 without a shape, or if no call makes it."""
+    """The call that creates a shape from its parts; -1 if there are no parts or no call can create it."""
     if not parts or any(not _arguments(geometry) for geometry, *_ in parts):
         return Raw("-1")
     frames = {"collision": "collisionFrame", "visual": "visualFrame"}[kind.lower()]
@@ -151,12 +152,17 @@ def _shape(kind: str, parts: list[Any], colours: Sequence[Any] = ()) -> Raw:
     if colours:
         arguments["rgbaColors"] = [colour or (1.0, 1.0, 1.0, 1.0) for colour in colours]
     if any("vertices" in column or "heightfieldData" in column for column in columns):
+        logger.warning(
+            "saveWorld: no call can create a %s shape of several parts, one of them made of vertices or "
+            "heights; it is left out. saveBullet keeps it.",
+            kind.lower(),
+        )
         return Raw("-1")
     return Raw(call(f"create{kind}ShapeArray", **arguments))
 
 
 def _arguments(geometry: Geometry) -> dict[str, Any]:
-    """The arguments of `createCollisionShape` for a shape; empty if it cannot make the shape."""
+    """The arguments of `createCollisionShape` for a shape; empty if it cannot create the shape."""
     match geometry:
         case Sphere(radius):
             return {"shapeType": Raw("p.GEOM_SPHERE"), "radius": radius}

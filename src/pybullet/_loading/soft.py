@@ -54,11 +54,11 @@ def loadSoftBody(
     surfaces become cloth that hardly stretches, and the parameters of springs have no effect.
 
     Args:
-        fileName: The file, `.obj` or `.vtk` (text, legacy format), found as that of `loadURDF` is.
+        fileName: The file, `.obj` or `.vtk` (text, legacy format); searched for as by `loadURDF`.
         basePosition: Position of the origin of its mesh [m].
         baseOrientation: Orientation of the mesh (x, y, z, w).
         scale: Factor on all lengths; 1 when not greater than 0.
-        mass: Total mass [kg], the same for each node; 1 if not greater than 0.
+        mass: Total mass [kg], distributed equally over the nodes; 1 when not greater than 0.
         collisionMargin: Distance at which nodes rest on other surfaces [m]; 0.02 when not greater than 0.
         useMassSpring: 1 for springs along all edges.
         useBendingSprings: 1 for bending springs between nodes with a common neighbour as well.
@@ -69,21 +69,21 @@ def loadSoftBody(
         springBendingStiffness: Of bending springs [N/m].
         NeoHookeanMu: [Pa]; for small strains the shear modulus is 3/4 of it.
         NeoHookeanLambda: [Pa]; for small strains Lamé's first parameter is this minus 5/8 of `NeoHookeanMu`.
-        NeoHookeanDamping: Viscosity as a share of these [s].
-        frictionCoeff: Coulomb coefficient, multiplied by that of what it touches.
+        NeoHookeanDamping: Viscosity divided by these moduli [s].
+        frictionCoeff: Coulomb coefficient, multiplied by that of the other body.
         useFaceContact: No effect, as in PyBullet: only nodes collide, not faces.
         useSelfCollision: 1: its nodes collide with its own faces.
-        repulsionStiffness: No effect: nodes are kept off faces with any force needed.
-        simFileName: A mesh to simulate; that of `fileName` is then only visible.
+        repulsionStiffness: No effect: the force that keeps nodes off faces has no limit.
+        simFileName: A separate mesh for the simulation; the mesh of `fileName` is then only drawn.
         physicsClientId: The connection.
 
     Returns:
         The id of the body; -1 if the name is empty.
 
     Raises:
-        pybullet.error: Not connected, the file is missing or cannot be used (what follows PyBullet's text
-            says why), a parameter is negative or not finite, or the pose is not three and four finite
-            numbers. The world is then unchanged.
+        pybullet.error: Not connected, the file is missing or cannot be used (the message gives the reason
+            after PyBullet's text), a parameter is negative or not finite, or the pose is not three and four
+            finite numbers. The world is then unchanged.
 
     Examples:
         >>> p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
@@ -184,7 +184,7 @@ def _spec(
     from carom.soft.older import older_cloth_from_file
 
     path = _found(client, name)
-    # As in PyBullet, the mesh for simulation may be in the folder of the visible one.
+    # As in PyBullet, the mesh for the simulation may be in the folder of the visible mesh.
     inside = _found(client, simulated, path.parent) if simulated else None
     try:
         if client.deformable:
@@ -205,7 +205,7 @@ def _spec(
 
 
 def _found(client: Client, name: str, beside: Path | None = None) -> Path:
-    """Finds a file; the folder of another file is searched last."""
+    """Find a file in the search path, or else in the folder `beside`."""
     path = client.search().find(name)
     if path is None and beside is not None and (beside / name).is_file():
         path = beside / name

@@ -2,7 +2,7 @@
 
 The calls are recorded by a detour that exists as long as the log; steps are recorded by an observer of the
 world, so those of a real-time simulation are included.
-docs/command-logs.md has the format. Reading a log runs no code from it, and no command writes files.
+docs/command-logs.md describes the format. Reading a log runs no code from it, and no command writes files.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ setJointMotorControlMultiDof setJointMotorControlMultiDofArray setPhysicsEngineP
 stepSimulation unloadPlugin unsupportedChangeScaling
 """
 COMMANDS = frozenset(_NAMES.split())
-"""Functions that a log takes down: those that change what later steps or questions about the world give."""
+"""Functions that a log records: those that change the results of later steps or queries."""
 
 _HEADER = struct.Struct("<8s2I")
 _MAGIC, _VERSION = b"\x89CALOG\r\n", 1
@@ -48,10 +48,10 @@ class Command(NamedTuple):
     """One call.
 
     Attributes:
-        name: Of the function, one of `COMMANDS`.
-        arguments: By position.
-        keywords: By name.
-        result: What it returned; None for steps.
+        name: Name of the function, one of `COMMANDS`.
+        arguments: Positional arguments.
+        keywords: Keyword arguments.
+        result: The result of the call; None for steps.
     """
 
     name: str
@@ -63,8 +63,8 @@ class Command(NamedTuple):
 class CommandLog:
     """Records the calls of a client until it is closed.
 
-    Each is written to the file when it returns, so the log of a killed process is complete. Calls that raise
-    an exception are not recorded: they change nothing.
+    Each call is written to the file when it returns, so the log of a killed process is complete. Calls that
+    raise an exception are not recorded: they change nothing.
 
     Args:
         number: Id of the client.
@@ -104,7 +104,7 @@ class CommandLog:
 
     def close(self) -> None:
         """Ends the log."""
-        # The detour of a closed client was removed with it.
+        # If the client was closed, its detour has been removed already.
         if detour_of(self._number) is self:
             if self._way is None:
                 remove_detour(self._number)
@@ -123,8 +123,8 @@ def replay(number: int, client: Client, path: Path) -> None:
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: It is not such a log, or damaged: then nothing is done. Or a command fails, or its result
-            differs from the recorded one: then the commands before it have been performed.
+        ValueError: The file is not such a log, or damaged; then nothing is done. Or a command fails, or its
+            result differs from the recorded one; then the commands before it have been performed.
     """
     content = memoryview(path.read_bytes())
     try:
@@ -145,14 +145,14 @@ def replay(number: int, client: Client, path: Path) -> None:
 
 def _perform(number: int, client: Client, command: Command) -> None:
     if command.name == _STEP:
-        # Not by the public function, which would wait while the simulation is paused.
+        # The public function would wait while the simulation is paused.
         with client.lock:
             client.world.step()
         return
     function = functions()[command.name]
     arguments, keywords = function.with_client(number, command.arguments, command.keywords)
     result = call_on(number, function, tuple(arguments), keywords)
-    # As bytes, because a tuple has become a list.
+    # The packed bytes are compared, because tuples of the recorded result have become lists.
     if pack(result) != pack(command.result):
         raise Malformed(
             f"it gives {result!r} and gave {command.result!r}; the world has to be as it was at the start of "

@@ -1,7 +1,7 @@
 """Log files in PyBullet's layouts.
 
 A binary log is a line of column names, a line of their `struct` types (`I` and `i` 32-bit integers, `f`
-32-bit floats), and then records, each after the bytes AA BB.
+32-bit floats), and then records, each preceded by the bytes AA BB.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ class BinaryLog:
         self._steps = 0
         self._time = 0.0
         self._start_of_step = (0, 0.0)
-        # Of the present step; they cannot be removed from the file again if it is a device.
+        # Records of the present step, written after it. If the step is repeated they are discarded; from a
+        # file that is a device they could not be removed.
         self._records: list[bytes] = []
 
     def before_step(self) -> None:
@@ -61,7 +62,7 @@ class BinaryLog:
         self._records.clear()
 
     def after_substep(self) -> None:
-        """Makes the records of a substep."""
+        """Adds the records of a substep."""
 
     def step_repeated(self) -> None:
         """Discards the records of the step."""
@@ -89,7 +90,7 @@ class BinaryLog:
 
 
 class RobotLog(BinaryLog):
-    """Bases and joints of bodies.
+    """A log of the bases and joints of bodies.
 
     For a body with more joints than columns, or with a spherical or planar joint, only the marker is written,
     as in PyBullet.
@@ -120,13 +121,13 @@ class RobotLog(BinaryLog):
         self._torque = self._applied = world.joint_torque.copy()
 
     def before_step(self) -> None:
-        """Keeps the torques that scripts apply: the step clears them."""
+        """Copies the torques that the script has applied, because the step clears them."""
         super().before_step()
         self._torque = self._world.joint_torque.copy()
         self._keep_torques()
 
     def _keep_torques(self) -> None:
-        """Keeps the torques of the next substep, damping included."""
+        """Computes the applied torques of the next substep, damping included, if they are logged."""
         if self._flags & STATE_LOG_JOINT_USER_TORQUES:
             damping = self._world.arrays.model.numpy["dof_damping"][0, : len(self._torque)]
             self._applied = self._torque - damping * self._world.velocity
@@ -158,19 +159,19 @@ class RobotLog(BinaryLog):
             values += [*torques, *rest]
         x, y, z, qx, qy, qz, qw = world.position[body.first_position :][:7]
         wx, wy, wz, vx, vy, vz = world.velocity[body.first_velocity :][:6]
-        # PyBullet stores the inverse rotation and inverts it: its zeros are negative.
+        # PyBullet stores the inverse rotation and inverts it again, so its zeros are negative.
         turn = (-(0.0 - qx), -(0.0 - qy), -(0.0 - qz), qw)
         self._record(body.id, x, y, z, *turn, vx, vy, vz, wx, wy, wz, len(joints), *values)
 
 
 class ContactLog(BinaryLog):
-    """Contacts after each step.
+    """A log of the contacts after each substep.
 
     Args:
         path: The file.
         client_id: The connection.
         world: Its world.
-        sides: Body, -1 for any, and link, -2 for any, of both sides.
+        sides: For each of the two sides, body (-1 for any) and link (-2 for any).
     """
 
     def __init__(
@@ -206,7 +207,7 @@ def _matches(side: tuple[int, int], place: tuple[int, int]) -> bool:
 
 
 class ControllerLog(BinaryLog):
-    """Virtual reality controllers, which are not supported: a log without records."""
+    """A log of virtual reality controllers. These are not supported, so it has no records."""
 
     def __init__(self, path: Path) -> None:
         columns = "controllerId,numMoveEvents,m_numButtonEvents,posX,posY,posZ,oriX,oriY,oriZ,oriW,analogAxis"
@@ -219,10 +220,10 @@ class ControllerLog(BinaryLog):
 
 
 class TimingLog:
-    """A timing profile for Chrome or Perfetto: steps, and zones named by scripts.
+    """A timing profile for Chrome or Perfetto, of steps and of zones named by scripts.
 
     Args:
-        path: The file; `_0.json` is added, as PyBullet adds the number of the thread.
+        path: The file; `_0.json` is appended, since PyBullet appends the number of the thread.
 
     Raises:
         OSError: The file cannot be written.
@@ -234,19 +235,19 @@ class TimingLog:
         self._start = perf_counter_ns()
 
     def before_step(self) -> None:
-        """A step begins."""
+        """Records the beginning of a step."""
         self.begin("stepSimulation")
 
     def after_step(self) -> None:
-        """It ends."""
+        """Records the end of a step."""
         self.end("stepSimulation")
 
     def begin(self, name: str) -> None:
-        """A zone begins."""
+        """Records the beginning of a zone."""
         self._add("B", name)
 
     def end(self, name: str) -> None:
-        """It ends."""
+        """Records the end of a zone."""
         self._add("E", name)
 
     def _add(self, phase: str, name: str) -> None:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
 _DEFAULT_ROOM = 12
-# More joints than any body that can be simulated at a useful speed.
+# A body with this many joints could not be simulated at a useful speed.
 _MOST_ROOM = 10_000
 
 
@@ -52,23 +52,23 @@ def startStateLogging(
     Args:
         loggingType: `STATE_LOGGING_GENERIC_ROBOT` for bases and joints, `STATE_LOGGING_CONTACT_POINTS`
             for contacts, `STATE_LOGGING_MINITAUR` for the motors of a Minitaur, all in PyBullet's binary
-            layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a trace
-            that Chrome shows, of steps and of the zones of `submitProfileTiming`, in `fileName` with
-            `_0.json` added; `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of
-            simulated time, from where the camera of the window is, which needs `pip install carom[video]`
-            and works in `DIRECT` too; `STATE_LOGGING_VR_CONTROLLERS` for an empty log.
+            layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a timing profile of steps and of the zones of
+            `submitProfileTiming`, which Chrome can show, in `fileName` with `_0.json` appended;
+            `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of simulated time, seen from
+            the camera of the window, which needs `pip install carom[video]` and works in `DIRECT` too;
+            `STATE_LOGGING_VR_CONTROLLERS` for an empty log.
 
             `STATE_LOGGING_ALL_COMMANDS` for all calls that change the world, one such log at a time;
             `STATE_REPLAY_ALL_COMMANDS` performs them before it returns, with the same results, bit for bit,
             in a world in the same state as at the start of the log. See docs/command-logs.md.
         fileName: The file; an existing one is replaced, or read by `STATE_REPLAY_ALL_COMMANDS`.
-        objectUniqueIds: Bodies to log; an empty list for all, but a Minitaur has to be given. Those with more
-            joints than columns, or with spherical or planar joints, are left out.
+        objectUniqueIds: Bodies to log; an empty list for all, but a Minitaur has to be given. Bodies with
+            more joints than columns, or with spherical or planar joints, are left out.
         maxLogDof: Number of joints that have columns, at most 10,000; 12 if negative.
-        bodyUniqueIdA: Of contacts: only those of this body; -1 for any.
-        bodyUniqueIdB: Of contacts: and of this one.
-        linkIndexA: Of contacts: only those of this link of `bodyUniqueIdA`; -2 for any.
-        linkIndexB: Of contacts: the same for `bodyUniqueIdB`.
+        bodyUniqueIdA: Body whose contacts are logged; -1 for any.
+        bodyUniqueIdB: The other body of these contacts; -1 for any.
+        linkIndexA: Link of `bodyUniqueIdA` whose contacts are logged; -2 for any.
+        linkIndexB: Link of `bodyUniqueIdB`; -2 for any.
         deviceTypeFilter: Not used: there are no devices.
         logFlags: `STATE_LOG_JOINT_MOTOR_TORQUES`, `STATE_LOG_JOINT_USER_TORQUES` or both, added up, for
             columns of torques.
@@ -79,7 +79,7 @@ def startStateLogging(
         first body is not a Minitaur, and if there is a log of commands already.
 
     Raises:
-        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is no sequence, a
+        pybullet.error: Not connected, the file cannot be written, `objectUniqueIds` is not a sequence, a
             video is asked for and PyAV is not installed, or a log cannot be replayed: its file is missing or
             damaged (then nothing is done), or one of its commands fails.
 

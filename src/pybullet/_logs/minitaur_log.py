@@ -28,7 +28,7 @@ _MODE = 6
 
 
 class MinitaurLog(BinaryLog):
-    """Roll, pitch and yaw of the base, position and torque of each motor, and the speed along x.
+    """A log of roll, pitch and yaw of the base, position and torque of each motor, and the speed along x.
 
     Args:
         path: The file.
@@ -62,7 +62,7 @@ class MinitaurLog(BinaryLog):
 
 
 def minitaur_motors(world: World, bodies: Sequence[int]) -> tuple[Body, list[int]] | None:
-    """The first of some bodies and the joints that a Minitaur's motors move; None if it is no Minitaur."""
+    """The first of the bodies and the joints of its motors; None if that body is not a Minitaur."""
     body = world.bodies.get(bodies[0]) if bodies else None
     if body is None:
         return None

@@ -35,7 +35,7 @@ def unit(v: Vector3) -> Vector3 | None:
 
 
 def look_at(eye: Vector3, target: Vector3, up: Vector3) -> Matrix16 | None:
-    """World to camera: x to the right, y up, z towards the viewer. None if no such frame exists."""
+    """View matrix: world to camera frame (x right, y up, z towards the viewer). None if it does not exist."""
     forward = unit(subtracted(target, eye))
     right = unit(cross(forward, up)) if forward else None
     if forward is None or right is None:
@@ -50,11 +50,11 @@ def look_at(eye: Vector3, target: Vector3, up: Vector3) -> Matrix16 | None:
 def orbit(
     target: Vector3, distance: float, yaw: float, pitch: float, roll: float, up_axis: int
 ) -> tuple[Vector3, Vector3]:
-    """Eye and up vector of a camera that circles a target.
+    """Eye and up vector of a camera that orbits a target.
 
     Args:
-        target: What the camera looks at [m].
-        distance: From the target [m].
+        target: Point that the camera looks at [m].
+        distance: Distance from the target [m].
         yaw: About the upward axis [degrees].
         pitch: Upwards [degrees].
         roll: About the viewing direction [degrees].
@@ -83,7 +83,7 @@ def frustum(left: float, right: float, bottom: float, top: float, near: float, f
 
 
 def _rotation_zyx(z: float, y: float, x: float) -> tuple[Vector3, Vector3, Vector3]:
-    """Rz(z) Ry(y) Rx(x)."""
+    """The rows of the rotation matrix Rz(z) Ry(y) Rx(x); angles in radians."""
     sz, cz, sy, cy, sx, cx = sin(z), cos(z), sin(y), cos(y), sin(x), cos(x)
     return (
         (cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx),
@@ -100,7 +100,7 @@ def computeViewMatrix(
 
     Args:
         cameraEyePosition: Position of the camera [m], world frame.
-        cameraTargetPosition: What it looks at [m], world frame.
+        cameraTargetPosition: Point that it looks at [m], world frame.
         cameraUpVector: Upward direction; need not have unit length or be perpendicular to the view.
         physicsClientId: Not used.
 
@@ -140,7 +140,7 @@ def computeViewMatrixFromYawPitchRoll(
     """View matrix of a camera that circles a target. Needs no connection.
 
     Args:
-        cameraTargetPosition: What the camera looks at [m], world frame.
+        cameraTargetPosition: Point that the camera looks at [m], world frame.
         distance: From the target to the camera [m].
         yaw: About the upward axis [degrees].
         pitch: Upwards; negative looks down from above [degrees].

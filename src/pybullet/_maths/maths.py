@@ -46,7 +46,7 @@ def getQuaternionFromEuler(eulerAngles: Vector, physicsClientId: int = 0) -> Qua
         (x, y, z, w), of unit length.
 
     Raises:
-        pybullet.error: It is not a sequence of three finite numbers.
+        pybullet.error: `eulerAngles` is not a sequence of three finite numbers.
 
     Examples:
         >>> [round(x, 4) for x in p.getQuaternionFromEuler([0, 0, 3.14159265 / 2])]
@@ -70,7 +70,7 @@ def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vect
         (roll, pitch, yaw) [rad].
 
     Raises:
-        pybullet.error: It is not a sequence of four finite numbers.
+        pybullet.error: The quaternion is not a sequence of four finite numbers.
 
     Examples:
         >>> [round(x, 4) + 0.0 for x in p.getEulerFromQuaternion([0, 0, 0.6, 0.8])]
@@ -92,7 +92,7 @@ def getMatrixFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tup
         Nine numbers, row after row.
 
     Raises:
-        pybullet.error: It is not a sequence of four finite numbers, or its length is 0.
+        pybullet.error: The quaternion is not a sequence of four finite numbers, or its length is 0.
 
     Examples:
         >>> [round(x, 2) + 0.0 for x in p.getMatrixFromQuaternion([0, 0, 0.6, 0.8])]
@@ -119,7 +119,8 @@ def multiplyTransforms(
         (position, orientation) of B.
 
     Raises:
-        pybullet.error: An argument has not three, or four, finite numbers, or a quaternion has length 0.
+        pybullet.error: An argument does not have three, or four, finite numbers, or a quaternion has length
+            0.
 
     Examples:
         >>> position, orientation = p.multiplyTransforms([1, 0, 0], [0, 0, 1, 0], [1, 0, 0], [0, 0, 0, 1])
@@ -142,18 +143,19 @@ def multiplyTransforms(
 def invertTransform(
     position: Vector, orientation: Vector, physicsClientId: int = 0
 ) -> tuple[Vector3, Quaternion]:
-    """The inverse of a pose: from frame B in A it computes A in B.
+    """The inverse of a pose: for frame B given in frame A, the pose of A in B.
 
     Args:
-        position: Origin [m].
-        orientation: Quaternion (x, y, z, w).
+        position: Origin of B in A [m].
+        orientation: Quaternion of B in A (x, y, z, w).
         physicsClientId: Not used.
 
     Returns:
-        (position, orientation).
+        (position, orientation) of A in B.
 
     Raises:
-        pybullet.error: An argument has not three, or four, finite numbers, or the quaternion has length 0.
+        pybullet.error: An argument does not have three, or four, finite numbers, or the quaternion has length
+            0.
 
     Examples:
         >>> position, orientation = p.invertTransform([1, 2, 3], [0, 0, 0, 1])
@@ -178,7 +180,7 @@ def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -
         The rotated vector.
 
     Raises:
-        pybullet.error: An argument has not three, or four, finite numbers.
+        pybullet.error: An argument does not have three, or four, finite numbers.
 
     Examples:
         >>> [round(x, 4) + 0.0 for x in p.rotateVector([0, 0, 1, 0], [1, 2, 3])]
@@ -227,7 +229,7 @@ def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> 
         (axis, angle): unit vector, and angle from 0 to 2π [rad].
 
     Raises:
-        pybullet.error: It is not a sequence of four finite numbers.
+        pybullet.error: The quaternion is not a sequence of four finite numbers.
 
     Examples:
         >>> axis, angle = p.getAxisAngleFromQuaternion([0, 0, 1, 0])
@@ -256,7 +258,8 @@ def getQuaternionSlerp(
         (x, y, z, w).
 
     Raises:
-        pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
+        pybullet.error: A quaternion does not have four finite numbers or has length 0, or the fraction is not
+            a finite number.
 
     Examples:
         >>> [round(x, 4) for x in p.getQuaternionSlerp([0, 0, 0, 1], [0, 0, 1, 0], 0.5)]
@@ -283,7 +286,7 @@ def getDifferenceQuaternion(
         (x, y, z, w).
 
     Raises:
-        pybullet.error: An argument has not four finite numbers.
+        pybullet.error: An argument does not have four finite numbers.
 
     Examples:
         >>> [round(x, 4) for x in p.getDifferenceQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8])]
@@ -309,7 +312,7 @@ def getAxisDifferenceQuaternion(
         Angles (a, b, c) [rad] with start⁻¹ · end = Rz(-c) Ry(-b) Rx(-a).
 
     Raises:
-        pybullet.error: An argument has not four finite numbers, or a quaternion has length 0.
+        pybullet.error: An argument does not have four finite numbers, or a quaternion has length 0.
 
     Examples:
         >>> [round(x, 4) + 0.0 for x in p.getAxisDifferenceQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8])]
@@ -329,14 +332,15 @@ def calculateVelocityQuaternion(
     Args:
         quaternionStart: (x, y, z, w), of unit length.
         quaternionEnd: (x, y, z, w), of unit length.
-        deltaTime: Time it takes [s].
+        deltaTime: Duration of the rotation [s].
         physicsClientId: Not used.
 
     Returns:
         Angular velocity in world axes [rad/s].
 
     Raises:
-        pybullet.error: An argument has not four finite numbers, or the time is 0 or not finite.
+        pybullet.error: A quaternion does not have four finite numbers, or the duration is not finite, 0, or
+            too small.
 
     Examples:
         >>> [round(x, 4) for x in p.calculateVelocityQuaternion([0, 0, 0, 1], [0, 0, 0.6, 0.8], 0.1)]
@@ -355,8 +359,8 @@ def calculateVelocityQuaternion(
 
 
 def _numbers(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...]:
-    """The result of a kernel that accepts all numbers."""
-    # From now on the native library is called directly, if possible.
+    """The results of a kernel that has results for all numbers."""
+    # From now on builtins call the native library directly, if possible.
     install()
     result = worked_out(kernel, numbers, count)
     assert result is not None

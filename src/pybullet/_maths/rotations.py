@@ -1,4 +1,4 @@
-"""Quaternions as PyBullet reports them."""
+"""Quaternions: PyBullet's sign convention, normalisation, and rotation of vectors."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from carom.description.pose import Quaternion, Vector3
 
 
 def canonical(quaternion: Quaternion) -> Quaternion:
-    """The sign of a rotation's quaternion as reported by PyBullet.
+    """A quaternion with the sign that PyBullet reports.
 
-    PyBullet derives it from a rotation matrix: w is positive if the trace is, otherwise the largest of x, y
-    and z is positive.
+    PyBullet computes quaternions from rotation matrices: w is positive if the trace is positive, otherwise
+    the largest of x, y and z is positive.
     """
     x, y, z, w = quaternion
     leading = w if w * w > 0.25 else max(x, y, z, key=abs)

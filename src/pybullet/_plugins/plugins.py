@@ -1,4 +1,4 @@
-"""Plugins: those that are part of PyBullet; only that for files has an effect here."""
+"""The plugins that are part of PyBullet; only `fileIOPlugin` has an effect here."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["executePluginCommand", "loadPlugin", "unloadPlugin"]
 
 _FAILED = -1
 _BAD_NUMBERS = "expected a sequence of numbers"
-# What scripts that load or use a plugin without effect should know.
+# Advice for scripts that load or use a plugin without effect.
 _INSTEAD = {
     "pdControlPlugin": "use setJointMotorControl2 with PD_CONTROL",
     "collisionFilterPlugin": "use setCollisionFilterPair",
@@ -38,7 +38,7 @@ def loadPlugin(pluginPath: str, postFix: str | None = None, physicsClientId: int
         physicsClientId: The connection.
 
     Returns:
-        Its id; -1, with a warning, for other plugins.
+        The id of the plugin; -1, with a warning, for other plugins.
 
     Raises:
         pybullet.error: Not connected.
@@ -101,19 +101,19 @@ def executePluginCommand(
     """Sends a command to a plugin.
 
     The commands of `fileIOPlugin` are `[AddFileIOAction, ZipFileIO]`, to look for files in the zip archive
-    `textArgument` as well, itself found like any file; `[AddFileIOAction, PosixFileIO]`, to look in the
-    folder `textArgument`; and `[RemoveFileIOAction, slot]`.
+    `textArgument` as well, which is itself found like any file; `[AddFileIOAction, PosixFileIO]`, to look in
+    the folder `textArgument`; and `[RemoveFileIOAction, slot]`, to look there no longer.
 
     Args:
         pluginUniqueId: The plugin.
-        textArgument: A text for it.
-        intArgs: Integers for it.
-        floatArgs: Numbers for it.
+        textArgument: Text argument of the command.
+        intArgs: Integers of the command.
+        floatArgs: Numbers of the command; not used.
         physicsClientId: The connection.
 
     Returns:
-        The slot of the place that was added or removed; -1, with a warning, if the command cannot be
-        executed.
+        The slot of the archive or folder that was added or removed; -1, with a warning, if the command cannot
+        be executed.
 
     Raises:
         pybullet.error: Not connected, or an argument is not a sequence of numbers.

@@ -1,4 +1,4 @@
-"""Collision shapes made by scripts."""
+"""Collision shapes that scripts create."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ __all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollision
 
 _FAILED = "createCollisionShape failed."
 
-# PyBullet's margin of meshes that are part of a compound [m].
+# PyBullet's collision margin of triangle meshes that are part of a compound [m].
 _MARGIN = 0.001
 
 
@@ -67,18 +67,18 @@ def createCollisionShape(
             `GEOM_HEIGHTFIELD`. Cylinders and capsules lie along z.
         radius: Of a sphere, capsule or cylinder [m].
         halfExtents: Half the size of a box along x, y and z [m]; boxes need it.
-        height: Of a cylinder, or of the part of a capsule between its two half balls [m].
+        height: Of a cylinder, or of the part of a capsule between its two hemispheres [m].
         fileName: OBJ, STL or DAE file of a mesh; text or image file of a heightfield.
         meshScale: Factor on a mesh along x, y and z; distance between the points of a heightfield along x
             and y, and factor on its heights.
-        planeNormal: Direction out of the half space; z if not given.
+        planeNormal: Outward normal of the half space; z if not given.
         flags: `GEOM_FORCE_CONCAVE_TRIMESH`. `GEOM_CONCAVE_INTERNAL_EDGE` has no effect.
         collisionFramePosition: Origin of the shape in the link frame [m]. A heightfield stays at the
             origin.
         collisionFrameOrientation: Orientation of the shape in the link frame (x, y, z, w).
         vertices: Points of a mesh, three numbers each, instead of a file.
         indices: Three vertices for each triangle, one after the other.
-        heightfieldTextureScaling: In a window: how often the texture repeats.
+        heightfieldTextureScaling: Number of repetitions of the texture in a window.
         heightfieldData: `numHeightfieldRows` * `numHeightfieldColumns` heights, x fastest. The mean of the
             minimum and the maximum is at the origin.
         numHeightfieldRows: Points along x.
@@ -92,7 +92,7 @@ def createCollisionShape(
 
     Raises:
         pybullet.error: Not connected, an unknown type, a size that is missing, negative or not finite, a
-            file that is missing or cannot be used, or heights of another number.
+            file that is missing or cannot be used, or a wrong number of heights.
 
     Examples:
         >>> shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.2, 0.3])
@@ -205,7 +205,7 @@ def createCollisionShapeArray(
             return _placed(columns.primitive(index), pose)
         file = columns.files.item(index)
         if kind != GEOM_MESH or file is None:
-            fail(problem, f"type {kind} cannot be made here.")
+            fail(problem, f"type {kind} is not supported here, or has no file name.")
         name, bits = text(file, "fileNames"), integer(columns.flags.item(index, 0), "flags")
         scale = columns.scales.item(index)
         shape = _mesh_from_file(client, name, scale, bits, pose, is_part=is_part, problem=problem)
@@ -244,7 +244,7 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
     if shape is None:
         logger.warning("removeCollisionShape: there is no shape %d.", number)
     elif shape.used:
-        logger.warning("removeCollisionShape: a body has been made of shape %d, so it stays.", number)
+        logger.warning("removeCollisionShape: shape %d stays, because a body has been made of it.", number)
     else:
         client.shapes.collisions.remove(number)
 
@@ -269,7 +269,7 @@ def _mesh_from_data(
 def _mesh_from_file(
     client: Client, name: str, mesh_scale: Any, flags: int, pose: Pose, *, is_part: bool, problem: str
 ) -> CollisionShape:
-    """A mesh file; `is_part` says whether PyBullet would make it part of a compound."""
+    """The shape of a mesh file; `is_part`: PyBullet would make it part of a compound."""
     from carom.errors import DescriptionError
     from carom.model.shape_pieces import mesh_geometries
 
@@ -300,7 +300,7 @@ def _heightfield(
     mesh_scale: Any,
     replaced: int,
 ) -> CollisionShape | None:
-    """A heightfield; None if its heights went into the shape `replaced`."""
+    """A heightfield; None if its heights replace those of the shape `replaced`."""
     from pybullet._shapes.heightfields import (
         heightfield,
         heights_from_data,
@@ -321,7 +321,7 @@ def _heightfield(
 
 
 def _check_pieces(shape: CollisionShape, problem: str) -> None:
-    """Prepares the shape for collision detection now, so that errors are raised now."""
+    """Prepare the shape for collision detection now, so that errors are raised here."""
     from carom.errors import DescriptionError
     from carom.model.shape_pieces import shape_pieces
 

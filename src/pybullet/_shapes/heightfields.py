@@ -21,16 +21,16 @@ _WRONG_SIZE = "Size of heightfieldData doesn't match numHeightfieldColumns*numHe
 
 
 def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDArray[np.float64]:
-    """Heights from a sequence of numbers, x fastest.
+    """Heights from a sequence of numbers, with x varying fastest.
 
     Args:
         values: rows * columns numbers.
-        rows: Points along x.
-        columns: Points along y.
-        problem: PyBullet's error message if they cannot be used.
+        rows: Number of points along x.
+        columns: Number of points along y.
+        problem: PyBullet's error message if the values cannot be used.
 
     Returns:
-        (columns, rows) heights, rounded to single precision as PyBullet's are.
+        (columns, rows) heights, rounded to single precision as in PyBullet.
     """
     import numpy as np
 
@@ -44,10 +44,10 @@ def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDA
 
 
 def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
-    """Heights from a text file of comma-separated numbers, or from the red of an image, from 0 to 1.
+    """Heights from a text file of comma-separated numbers, or from the red channel (0 to 1) of an image.
 
-    The lines of a text are rows along y, transposed as in PyBullet: the first number is first along y. An
-    image is a view from above, mirrored along x.
+    As in PyBullet, the numbers of a text are taken column by column and fill rows along x: if there are as
+    many lines as columns, each line is a row along y. An image is a view from above, mirrored along x.
 
     Returns:
         (points along y, points along x) heights.
@@ -70,10 +70,10 @@ def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
     except (OSError, ValueError) as reason:
         fail(problem, f"{path}: {reason}.")
     if len({len(row) for row in rows}) != 1:
-        fail(problem, f"{path}: the lines do not all hold equally many numbers.")
+        fail(problem, f"{path}: the lines do not all have the same number of values.")
     values = np.array(rows)
     height, width = values.shape
-    # PyBullet stores the numbers in another order than it reads them.
+    # As in PyBullet: column by column, but in an array of the shape of the text.
     return _checked(values.T.reshape(height, width), problem, rounded=False)
 
 
@@ -92,27 +92,27 @@ def _checked(heights: NDArray[np.float64], problem: str, *, rounded: bool = True
 
 
 def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> Heightfield:
-    """A heightfield whose mean of minimum and maximum height is at the origin."""
+    """A heightfield with the mean of its minimum and maximum height at the origin."""
     if 0.0 in scale[:2]:
-        fail(problem, f"meshScale is {list(scale)}, which leaves no area.")
+        fail(problem, f"meshScale is {list(scale)}; its x and y must not be 0.")
     return Heightfield(heights, scale, 0.5 * float(heights.min() + heights.max()))
 
 
 def replace_heights(client: Client, number: int, heights: NDArray[np.float64], problem: str) -> None:
-    """Replaces the heights of a heightfield, and of all bodies made of it; its position does not change.
+    """Replace the heights of a heightfield, and of all bodies made of it; its position does not change.
 
     Args:
         client: The connection.
         number: Id of the collision shape.
-        heights: As many as before.
-        problem: PyBullet's error message if that is not possible.
+        heights: (points along y, points along x) heights, as many as before.
+        problem: PyBullet's error message if this is not possible.
     """
     shape = client.shapes.collisions.get(number)
     if shape is None:
         fail(problem, f"replaceHeightfieldIndex: there is no shape {number}.")
     old = shape.collisions[0].geometry
     if not isinstance(old, Heightfield):
-        fail(problem, f"replaceHeightfieldIndex: shape {number} is no heightfield.")
+        fail(problem, f"replaceHeightfieldIndex: shape {number} is not a heightfield.")
     if heights.shape != old.heights.shape:
         (columns, rows), (new_columns, new_rows) = old.heights.shape, heights.shape
         fail(problem, f"The heightfield has {rows} x {columns} points, not {new_rows} x {new_columns}.")

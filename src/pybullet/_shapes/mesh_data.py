@@ -1,4 +1,4 @@
-"""The corners of convex hulls, for getMeshData."""
+"""Corners of convex hulls and of soft bodies, for `getMeshData`."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from pybullet._calls.constants import MESH_DATA_SIMULATION_MESH
 Corners = NDArray[np.float64]
 
 
-# Flags of `getMeshData` for soft bodies; the second has no name in PyBullet.
+# Flag of `getMeshData` for the node velocities of soft bodies; PyBullet has no name for it.
 _VELOCITIES = 8
 
 
 def soft_corners(body: Body, flags: int) -> tuple[int, tuple[Vector3, ...]]:
-    """What `getMeshData` returns of a soft body; negative flags are none."""
+    """The result of `getMeshData` for a soft body; negative flags count as 0."""
     assert isinstance(body, SoftBody)
     bits = max(flags, 0)
     values = body.node_velocities if bits & _VELOCITIES else body.nodes
@@ -37,12 +37,12 @@ def soft_corners(body: Body, flags: int) -> tuple[int, tuple[Vector3, ...]]:
 
 
 def hull_corners(body: Body, link: int, index: int) -> tuple[Vector3, ...]:
-    """Corners of a link's hulls in its inertial frame.
+    """Corners of a link's convex hulls in its inertial frame [m].
 
     Args:
         body: The body.
         link: The link; -1 is the base.
-        index: Which shape of a link with several, and which group of an OBJ file; negative for all.
+        index: Index of the shape, if the link has several, and of the group in an OBJ file; negative for all.
     """
     spec = body.link_spec(link)
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)

@@ -1,4 +1,4 @@
-"""Shapes from the arguments of createCollisionShape and createVisualShape."""
+"""Shapes from the arguments of `createCollisionShape` and `createVisualShape`."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def primitive(
 
     Args:
         kind: `GEOM_*`, one of `PRIMITIVES`.
-        problem: PyBullet's error message if it cannot be made.
-        radius: Of a sphere, cylinder or capsule.
-        length: Of a cylinder, or of the straight part of a capsule.
-        half_extents: Of a box; None is not enough.
-        normal: Of a plane; None for the z axis.
+        problem: PyBullet's error message if the shape cannot be created.
+        radius: Of a sphere, cylinder or capsule [m].
+        length: Of a cylinder, or of the part of a capsule between its two hemispheres [m].
+        half_extents: Half the size of a box along x, y and z [m]; required for a box.
+        normal: Normal of a plane; None for the z axis.
         length_name: Name of the argument `length`.
 
     Raises:
@@ -58,7 +58,7 @@ def primitive(
         return Plane((x / norm, y / norm, z / norm))
     size = real(radius, "radius", problem)
     if size == 0.0:
-        fail(problem, "radius is 0. Without one there is no shape.")
+        fail(problem, "radius is 0. It has to be greater than 0.")
     _check_size(size >= 0.0, size, problem, f"radius is {size}.")
     if kind == GEOM_SPHERE:
         return Sphere(size)
@@ -79,7 +79,7 @@ def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
         position: Three numbers or None.
         orientation: Four numbers or None.
         problem: PyBullet's error message for other values.
-        prefix: Of the names of both arguments.
+        prefix: First part of the names of both arguments, such as `visualFrame`.
     """
     if position is None and orientation is None:
         return IDENTITY
@@ -91,7 +91,7 @@ def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
 
 
 def scale_of(values: Any, problem: str) -> Vector3:
-    """`meshScale`; None for 1."""
+    """The checked `meshScale`; None stands for factors of 1."""
     scale = optional_vector3(values, problem, "meshScale") or (1.0, 1.0, 1.0)
     for factor in scale:
         moderate(factor, problem, "A factor of meshScale")
@@ -99,7 +99,7 @@ def scale_of(values: Any, problem: str) -> Vector3:
 
 
 def find_file(client: Client, name: str, problem: str) -> Path:
-    """A file named by a script; raises `pybullet.error` if there is none."""
+    """The path of a file named by a script; raises `pybullet.error` if it is not found."""
     search = client.search()
     path = search.find(name)
     if path is None:
@@ -109,7 +109,7 @@ def find_file(client: Client, name: str, problem: str) -> Path:
 
 
 def points(values: Any, problem: str, name: str, columns: int = 3) -> NDArray[np.float64]:
-    """Rows of finite numbers from any sequence of them; raises `pybullet.error` for anything else."""
+    """Rows of finite numbers from any sequence of rows; raises `pybullet.error` for other values."""
     import numpy as np
 
     try:
@@ -128,7 +128,7 @@ def points(values: Any, problem: str, name: str, columns: int = 3) -> NDArray[np
 
 
 def triangles(values: Any, vertex_count: int, problem: str) -> NDArray[np.int32]:
-    """`indices` as rows of three; raises `pybullet.error` if they do not fit the vertices."""
+    """`indices` as rows of three, one for each triangle; raises `pybullet.error` if they do not fit."""
     import numpy as np
 
     try:

@@ -1,4 +1,4 @@
-"""The lists of createCollisionShapeArray and createVisualShapeArray."""
+"""The list arguments of `createCollisionShapeArray` and `createVisualShapeArray`."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Made = TypeVar("Made")
 
 
 class Column:
-    """One of the lists.
+    """One list argument.
 
     Args:
         values: The list; None if it is not given.
-        name: Of the argument.
-        words: Name of its items, in PyBullet's error message for an argument that is not a sequence.
+        name: Name of the argument.
+        words: Name of its items in PyBullet's error message for an argument that is not a sequence.
     """
 
     def __init__(self, values: Any, name: str, words: str) -> None:
@@ -29,37 +29,37 @@ class Column:
         )
 
     def item(self, index: int, default: Any = None) -> Any:
-        """An entry; the default if the list is too short or not given."""
+        """An item of the list; the default if the list is too short or not given."""
         return self._items[index] if index < len(self._items) else default
 
 
 class ShapeColumns:
-    """The lists that both functions have.
+    """The list arguments that both functions have.
 
     Args:
         function: Name of the function.
         frame_of: `collision` or `visual`.
-        kinds: `shapeTypes`.
-        radii: The argument of that name, as the following.
-        half_extents: `halfExtents`.
-        lengths: The argument of that name.
-        file_names: `fileNames`.
-        mesh_scales: `meshScales`.
-        plane_normals: `planeNormals`.
-        flags: The argument of that name.
-        positions: `...FramePositions`.
-        orientations: `...FrameOrientations`.
+        kinds: The argument `shapeTypes`.
+        radii: The argument `radii`.
+        half_extents: The argument `halfExtents`.
+        lengths: The argument `lengths`.
+        file_names: The argument `fileNames`.
+        mesh_scales: The argument `meshScales`.
+        plane_normals: The argument `planeNormals`.
+        flags: The argument `flags`.
+        positions: The argument `collisionFramePositions` or `visualFramePositions`.
+        orientations: The argument `collisionFrameOrientations` or `visualFrameOrientations`.
 
     Attributes:
-        problem: PyBullet's error message if nothing can be made.
+        problem: PyBullet's error message if no shape can be created.
         kinds: `GEOM_*` of each shape.
-        files: Names of mesh files.
-        scales: Factors on meshes.
-        flags: Bits of each shape.
+        files: Name of the mesh file of each shape.
+        scales: Scale factors of the mesh of each shape.
+        flags: Flags of each shape.
 
     Raises:
-        pybullet.error: One of them is no sequence.
-        TypeError: A shape type is no integer.
+        pybullet.error: An argument is not a sequence.
+        TypeError: A shape type is not an integer.
     """
 
     def __init__(
@@ -99,15 +99,15 @@ class ShapeColumns:
 
     @property
     def is_framed(self) -> bool:
-        """Frames are given."""
+        """Whether the positions or the orientations of the shapes in the link frame are given."""
         return self._positions.is_given or self._orientations.is_given
 
     def frame(self, index: int) -> Pose:
-        """The frame of a shape in its link."""
+        """The frame of a shape in the link frame."""
         return frame(self._positions.item(index), self._orientations.item(index), self.problem, self._frame)
 
     def primitive(self, index: int) -> Geometry:
-        """A shape whose type is one of `PRIMITIVES`."""
+        """The geometry of a shape whose type is one of `PRIMITIVES`."""
         return primitive(
             self.kinds[index],
             self.problem,
@@ -119,13 +119,13 @@ class ShapeColumns:
         )
 
     def each(self, make: Callable[[int, int], Made]) -> list[Made]:
-        """Makes every shape; as in PyBullet those that cannot be made are left out, with a warning.
+        """Create all shapes; as in PyBullet, shapes that cannot be created are left out, with a warning.
 
         Args:
-            make: Makes a shape from its index and kind.
+            make: Creates a shape from its index and type.
 
         Raises:
-            pybullet.error: None can be made.
+            pybullet.error: No shape can be created.
         """
         made, reasons = [], []
         for index, kind in enumerate(self.kinds):

@@ -45,7 +45,7 @@ CollisionData = tuple[int, int, int, Vector3, bytes, Vector3, Quaternion]
 _NO_COLLISION_DATA = "Error receiving collision shape info"
 _NO_AABB = "getAABB failed."
 _NO_MESH = "getMeshData failed"
-# PyBullet's file name for meshes whose file it does not store, and their dimensions.
+# The file name and the dimensions that PyBullet reports for meshes whose file it does not store.
 _UNKNOWN_FILE = (b"unknown_file", (1.0, 1.0, 1.0))
 
 
@@ -64,8 +64,8 @@ def getCollisionShapeData(
         For each shape 7 fields: 0 body; 1 link; 2 type, `GEOM_*`; 3 dimensions: edges of a box, length and
         radius of a capsule or cylinder, radius of a sphere three times, normal of a plane, scale of a
         mesh; 4 file of a mesh, as bytes; 5 position [m] and 6 orientation (x, y, z, w) in the inertial
-        frame of the link. Meshes made by `createCollisionShape`, and cylinders of a file, which are hulls,
-        have the file `b"unknown_file"`. Heightfields are left out.
+        frame of the link. Meshes that `createCollisionShape` creates, and cylinders of a file, which are
+        convex hulls, have the file `b"unknown_file"`. Heightfields are left out.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or link.
@@ -278,9 +278,9 @@ def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
 
 
 _SIGNED_DISTANCE_FIELD = 8
-"""What PyBullet calls the type of a signed distance field; it has no name for it."""
+"""PyBullet's type of a signed distance field; PyBullet has no constant for it."""
 
 
 def _file_name(mesh: Mesh) -> bytes:
-    """The file of a mesh: as named by a script, or where a robot file's reference was found."""
+    """The file of a mesh: the name that a script gave, or the path of a file that a robot file names."""
     return (mesh.asked_for or str(mesh.path)).encode()

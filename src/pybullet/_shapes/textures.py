@@ -80,8 +80,8 @@ def changeTexture(
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected, there is no such texture, or the numbers are not 3 * width * height
-            whole numbers from 0 to 255.
+        pybullet.error: Not connected, there is no such texture, or `pixels` has fewer than 3 * width * height
+            numbers or a number that is not a whole number from 0 to 255.
 
     Examples:
         >>> texture = p.loadTexture("checker_blue.png")
@@ -188,7 +188,7 @@ def resetVisualShapeData(
     Args:
         objectUniqueId: The body.
         linkIndex: The link, from 0; -1 for the base.
-        shapeIndex: Which of the link's visual shapes, from 0; -1 for all.
+        shapeIndex: Index of the visual shape, from 0; -1 for all.
         textureUniqueId: From `loadTexture`; -1 removes the texture, -2: no change.
         rgbaColor: Red, green, blue, opacity, each from 0 to 1.
         specularColor: Red, green, blue of highlights, each from 0 to 1.

@@ -17,7 +17,7 @@ __all__ = ["vhacd"]
 
 _FAILED = "vhacd failed."
 
-# V-HACD's defaults, and the corresponding options of CoACD.
+# V-HACD's default options, and the CoACD options that correspond to them.
 _DEFAULT_CONCAVITY, _DEFAULT_THRESHOLD = 0.001, 0.05
 _DEFAULT_RESOLUTION, _DEFAULT_GRID = 1_000_000, 50
 _DEFAULT_VERTICES = 64
@@ -46,9 +46,9 @@ def vhacd(
 ) -> None:
     """Decomposes the mesh of an OBJ file into convex pieces, each a group of another OBJ file.
 
-    `createCollisionShape` then makes a hull of each. It needs no connection, but it needs the library CoACD:
-    `pip install carom[decompose]`. CoACD works differently from V-HACD, usually with fewer pieces; arguments
-    without a counterpart are checked, but have no effect.
+    `createCollisionShape` then creates a convex hull for each piece. `vhacd` needs no connection, but it does
+    need the library CoACD: `pip install carom[decompose]`. CoACD's method differs from V-HACD's and usually
+    yields fewer pieces. Arguments that CoACD has no option for are checked, but have no effect.
 
     Args:
         fileNameIn: The OBJ file.
@@ -95,7 +95,7 @@ def vhacd(
     integer(physicsClientId, "physicsClientId")
     named = [name for name, value in without_effect.items() if value >= 0]
     if named:
-        logger.warning("vhacd: %s: no effect here.", ", ".join(named))
+        logger.warning("vhacd: %s: no effect with CoACD.", ", ".join(named))
 
     from carom.errors import CaromError
     from carom.formats.mesh import read_mesh

@@ -1,4 +1,4 @@
-"""Visual shapes made by scripts."""
+"""Visual shapes that scripts create."""
 
 from __future__ import annotations
 
@@ -63,11 +63,11 @@ def createVisualShape(
             Cylinders and capsules lie along z.
         radius: Of a sphere, capsule or cylinder [m].
         halfExtents: Half the size of a box along x, y and z [m]; boxes need it.
-        length: Of a cylinder, or of the part of a capsule between its two half balls [m].
+        length: Of a cylinder, or of the part of a capsule between its two hemispheres [m].
         fileName: OBJ, STL or DAE file of a mesh. If it is missing or cannot be used, a warning is logged, and
             nothing is visible.
         meshScale: Factor on a mesh along x, y and z.
-        planeNormal: Direction out of the plane; z if not given.
+        planeNormal: Normal of the plane; z if not given.
         flags: No effect.
         rgbaColor: Red, green, blue and opacity from 0 to 1; white if not given.
         specularColor: Red, green and blue of its highlights.
@@ -75,7 +75,7 @@ def createVisualShape(
         visualFrameOrientation: Orientation of the shape in the link frame (x, y, z, w).
         vertices: Points of a mesh, three numbers each, instead of a file; with `indices`.
         indices: Three vertices for each triangle, one after the other.
-        normals: Direction of the surface at each vertex.
+        normals: Normal of the surface at each vertex.
         uvs: Texture coordinates of each vertex, two numbers each.
         physicsClientId: The connection.
 
@@ -193,7 +193,7 @@ def createVisualShapeArray(
         elif kind == GEOM_MESH and file is not None:
             geometry = _mesh_from_file(client, text(file, "fileNames"), columns.scales.item(index), problem)
         else:
-            fail(problem, f"type {kind} cannot be made here.")
+            fail(problem, f"type {kind} is not supported here, or has no file name.")
         return Visual(geometry, pose, material=material)
 
     parts = columns.each(part)
@@ -201,7 +201,7 @@ def createVisualShapeArray(
 
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
-    """A mesh file. If it cannot be used, nothing is visible, as in PyBullet, and no error is raised."""
+    """The mesh of a file. If the file cannot be used, an empty mesh, as in PyBullet, and a logged warning."""
     from carom.errors import DescriptionError
     from carom.formats.files import is_fresh
     from carom.formats.mesh import read_mesh
@@ -211,7 +211,7 @@ def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) ->
         mesh = Mesh(find_file(client, name, problem), scale, asked_for=name)
         read_mesh(mesh.path)
         if is_fresh(mesh.path):
-            # It may be deleted before it is drawn.
+            # The file may be deleted before the mesh is drawn.
             from carom.formats.visuals.reader import read_mesh_visual
 
             read_mesh_visual(mesh.path)

@@ -90,7 +90,7 @@ def addUserDebugText(
 
     Args:
         text: The text.
-        textPosition: Where [m].
+        textPosition: Position of the text [m].
         textColorRGB: Red, green and blue from 0 to 1; white by default.
         textSize: Height of the letters.
         lifeTime: Life time [s]; 0 for ever.
@@ -143,7 +143,7 @@ def addUserDebugPoints(
     """Draws a cloud of points.
 
     Args:
-        pointPositions: Where they are [m].
+        pointPositions: Positions of the points [m].
         pointColorsRGB: A colour for each: red, green and blue from 0 to 1.
         pointSize: In pixels.
         lifeTime: Life time [s]; 0 for ever.
@@ -245,7 +245,7 @@ def setDebugObjectColor(
     )
 
 
-# The parameter named `text`, which PyBullet's signature demands, hides the check.
+# In `addUserDebugText`, PyBullet's parameter `text` hides the function `text`.
 _text = text
 
 

@@ -74,7 +74,7 @@ def readUserDebugParameter(itemUniqueId: int, physicsClientId: int = 0) -> float
         Its value.
 
     Raises:
-        pybullet.error: Not connected, or there is no such slider; in `DIRECT` there never is.
+        pybullet.error: Not connected, or there is no such slider or button; in `DIRECT` there are none.
 
     Examples:
         >>> slider = p.addUserDebugParameter("speed", 0, 2, 1)
@@ -162,7 +162,7 @@ def configureDebugVisualizer(
     Args:
         flag: `COV_*`. `COV_ENABLE_SINGLE_STEP_RENDERING` makes the call return when the pages in view have
             drawn the present state, or after a tenth of a second; videos get a picture of it.
-        enable: 1 to switch that on, 0 to switch it off.
+        enable: 1 to switch the flag on, 0 to switch it off.
         lightPosition: Position of the light [m].
         shadowMapResolution: Width and height of the shadow map in pixels.
         shadowMapWorldSize: Width and height of the area with shadows [m].
@@ -197,7 +197,8 @@ def configureDebugVisualizer(
     client.window.configure(options)
     if options.flags.get(COV_ENABLE_SINGLE_STEP_RENDERING):
         client.window.draw_now()
-        client.logs.shoot()
+        with client.lock:
+            client.logs.shoot()
 
 
 @exported
@@ -216,7 +217,7 @@ def resetDebugVisualizerCamera(
         cameraDistance: From the target to the camera [m].
         cameraYaw: About the upward axis [degrees].
         cameraPitch: Upwards; negative looks down from above [degrees].
-        cameraTargetPosition: What the camera looks at [m].
+        cameraTargetPosition: Point that the camera looks at [m].
         physicsClientId: The connection.
 
     Raises:

@@ -25,7 +25,7 @@ _RAY_PLANE = 20000.0
 
 @dataclass(slots=True)
 class DebugCamera:
-    """The camera of the window: it circles a target; angles in degrees."""
+    """The camera of the window, which orbits a target [m]; angles in degrees, image size in pixels."""
 
     width: int = 0
     height: int = 0
@@ -68,7 +68,7 @@ class VisualizerOptions:
     """The options of `configureDebugVisualizer`; None if not set.
 
     Attributes:
-        flags: On or off by `COV_*` number.
+        flags: Whether a flag is on, by its `COV_*` number.
     """
 
     flags: dict[int, bool] = field(default_factory=dict)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description.pose import Vector3
 from carom.viewer.items import DebugItem, Slider
 from pybullet._calls.errors import fail
+from pybullet._calls.options import values_of
 from pybullet._window.options import DebugCamera, VisualizerOptions
 from pybullet._window.recording_window import RecordingWindow
 
@@ -32,7 +33,7 @@ _PAUSED = (
     "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
 )
 _GOES_ON = "The simulation continues."
-# A colour component that is not given, or is not a number.
+# Value of a colour component that is not given, or is not a number.
 _DEFAULT_SHADE = 0.8
 
 
@@ -61,7 +62,7 @@ class PageWindow(RecordingWindow):
 
     @property
     def viewer(self) -> Viewer:
-        """The viewer behind it."""
+        """The viewer that serves the page."""
         return self._viewer
 
     def is_open(self) -> bool:
@@ -179,7 +180,7 @@ class PageWindow(RecordingWindow):
 
 
 def open_window(client: Client, options: str) -> PageWindow:
-    """Shows the world of a client.
+    """Opens a window that shows the world of a client.
 
     Args:
         client: The connection.
@@ -191,11 +192,10 @@ def open_window(client: Client, options: str) -> PageWindow:
     from carom.viewer.display import tunnel_command
     from carom.viewer.viewer import Viewer
 
-    values: dict[str, str] = {}
-    for option in options.split():
-        name, _, value = option.lstrip("-").partition("=")
-        if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
-            values[name] = value
+    values = values_of(options)
+    for name, limit in _COUNTS.items():
+        if name in values and not (values[name].isdecimal() and int(values[name]) >= limit):
+            del values[name]
     arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
     arguments |= {name: values[name] for name in ("host", "token") if values.get(name)}
     if "names" in values:
@@ -220,7 +220,7 @@ def open_window(client: Client, options: str) -> PageWindow:
 
 
 def _title() -> str:
-    """The name of the script."""
+    """Title of the window: the name of the script."""
     from carom.viewer.notebook import in_notebook
 
     return "Carom" if in_notebook() else Path(sys.argv[0]).stem or "Carom"

@@ -26,7 +26,7 @@ class RecordingWindow(Window):
         items: Lines, texts and points by id.
         sliders: Sliders and buttons by id; ids are shared with `items`.
         colours: Wireframe colours by body and link.
-        options: What `configureDebugVisualizer` has set.
+        options: The options set by `configureDebugVisualizer`.
         camera: The camera.
     """
 
@@ -71,7 +71,7 @@ class RecordingWindow(Window):
 
     def remove_drawings(self) -> None:
         self.items.clear()
-        # Ids start again, except those of sliders.
+        # Ids start again after those of sliders, which are kept.
         self._next_item = max(self.sliders, default=-1) + 1
 
     def remove_sliders(self) -> None:
@@ -108,7 +108,7 @@ class RecordingWindow(Window):
         camera.distance, camera.yaw, camera.pitch, camera.target = distance, yaw, pitch, target
 
     def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        """Nobody would see it."""
+        """Does nothing."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         return self.camera.info()

@@ -21,15 +21,16 @@ if TYPE_CHECKING:
     from pybullet._window.options import VisualizerOptions
 
 NO_ITEM = -1
-"""The id of what is not shown."""
+"""Id of items that are not shown."""
 
 
 class Window(ABC):
     """A graphical interface.
 
     Attributes:
-        held: Steps have to call `wait_for_turn` or `has_turn` first; the window may be closed then.
-        background: The plain background the script has asked for; None for the sky.
+        held: Whether steps have to call `wait_for_turn` or `has_turn` first; the user may close the window
+            while they wait.
+        background: The plain background colour set by the script; None for the sky.
     """
 
     held = False
@@ -44,7 +45,7 @@ class Window(ABC):
     def wait_for_turn(self) -> bool:
         """Waits while the simulation is paused; returns whether a step may be made.
 
-        False means that there is user input that the script reads: it should read it, and call again.
+        False means that the script polls user input and there is some: it should read it, and call again.
         """
 
     @abstractmethod
@@ -109,11 +110,11 @@ class Window(ABC):
 
     @abstractmethod
     def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        """Shows what a camera image of the script shows.
+        """Shows a camera image that the script has rendered.
 
         Args:
             image: The image.
-            camera: (4, 4) what takes points of the world to it, as OpenGL has it.
+            camera: Projection matrix times view matrix of the image, as in OpenGL; shape (4, 4).
         """
 
     def show_rays(  # noqa: B027 (most windows do not show them)
@@ -151,13 +152,13 @@ class NoWindow(Window):
         return None
 
     def remove(self, item: int) -> None:
-        """Nothing was drawn."""
+        """Does nothing."""
 
     def remove_drawings(self) -> None:
-        """Nothing was drawn."""
+        """Does nothing."""
 
     def remove_sliders(self) -> None:
-        """There are none."""
+        """Does nothing."""
 
     def colour_link(self, body: int, link: int, colour: Vector3 | None) -> None:
         """Does nothing."""
@@ -175,10 +176,10 @@ class NoWindow(Window):
         """Does nothing."""
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
-        """There is no camera."""
+        """Does nothing."""
 
     def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        """Nobody would see it."""
+        """Does nothing."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         vector, matrix = (0.0,) * 3, (0.0,) * 16

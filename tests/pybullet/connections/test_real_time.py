@@ -1,6 +1,7 @@
 """Simulation by the wall clock."""
 
 import logging
+from collections.abc import Callable
 from threading import Event, Thread
 from time import sleep
 from typing import Any
@@ -63,6 +64,53 @@ def test_scripts_may_go_on_calling(monkeypatch: pytest.MonkeyPatch, arm_path: st
         p.removeBody(body)
     assert stepped.wait(PATIENCE)
     p.resetSimulation()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda cube, tie: p.rayTest([0, 0, 2], [0, 0, -2]),
+        lambda cube, tie: p.rayTestBatch([[0, 0, 2]], [[0, 0, -2]]),
+        lambda cube, tie: p.getClosestPoints(cube, cube + 1, 5.0),
+        lambda cube, tie: p.getOverlappingObjects([-1, -1, -1], [1, 1, 1]),
+        lambda cube, tie: p.getContactPoints(),
+        lambda cube, tie: p.setCollisionFilterGroupMask(cube, -1, 1, 1),
+        lambda cube, tie: p.setCollisionFilterPair(cube, cube + 1, -1, -1, 0),
+        lambda cube, tie: p.changeConstraint(tie, maxForce=5),
+        lambda cube, tie: p.performCollisionDetection(),
+        lambda cube, tie: p.removeConstraint(tie),
+    ],
+    ids=[
+        "ray",
+        "rays",
+        "closest",
+        "overlapping",
+        "contacts",
+        "mask",
+        "pair",
+        "constraint",
+        "detection",
+        "removal",
+    ],
+)
+def test_calls_that_need_the_arrays_wait_for_the_end_of_a_step(call: Callable[[int, int], object]) -> None:
+    p.connect(p.DIRECT)
+    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+    cube, other = p.createMultiBody(1, shape), p.createMultiBody(1, shape, basePosition=[0, 0, 0.5])
+    tie = p.createConstraint(cube, -1, other, -1, p.JOINT_POINT2POINT, [0, 0, 1], [0, 0, 0.25], [0, 0, -0.25])
+    done = Event()
+
+    def run() -> None:
+        call(cube, tie)
+        done.set()
+
+    with clients[0].lock:
+        thread = Thread(target=run)
+        thread.start()
+        assert not done.wait(0.05)
+    assert done.wait(PATIENCE)
+    thread.join()
+    p.disconnect()
 
 
 def test_disconnecting_stops_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -109,7 +109,7 @@ def one_link(**changes: Any) -> dict[str, Any]:
         (one_link(linkOrientations=[[0, 0, 0, 0]]), r"linkOrientations\[0\]"),
         (one_link(linkParentIndices=[2]), r"linkParentIndices\[0\]"),
         (one_link(linkParentIndices=[-1]), r"linkParentIndices\[0\]"),
-        (one_link(linkParentIndices=[1]), "hangs on itself"),
+        (one_link(linkParentIndices=[1]), "its own ancestor"),
         (one_link(linkJointTypes=[p.JOINT_PLANAR]), r"linkJointTypes\[0\]"),
         (one_link(linkJointTypes=[p.JOINT_POINT2POINT]), r"linkJointTypes\[0\]"),
         (one_link(linkJointAxis=[[0, 0, 0]]), r"linkJointAxis\[0\]"),

@@ -1,7 +1,7 @@
 """COLLADA (DAE): the triangles of the scene, one part per geometry shown.
 
-Lengths are brought to metres by the file's unit. The file's up axis is not applied: PyBullet does not apply
-it either, and robot files account for that.
+Lengths are converted to metres with the file's unit. The file's up axis is not applied: PyBullet does not
+apply it either, and robot files account for that.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from carom.formats.xml_tree import parse_root
 from carom.native.products import length, product
 from carom.native.trigonometry import cos, sin
 
-# Numbers that sources hold for each vertex, and primitives for each corner.
+# Most numbers for each vertex in a source, and most indices for each corner in a primitive.
 _MOST_COLUMNS = 1000
 MAX_PARTS = 4096
 """Most geometries a scene may show."""
@@ -46,7 +46,7 @@ def collada_reader(data: bytes, file: Path) -> ColladaReader:
 
 
 class ColladaReader:
-    """The parts of a COLLADA document that make up its scene.
+    """Reads the geometries in the scene of a COLLADA document.
 
     Args:
         root: The `<COLLADA>` element.
@@ -68,7 +68,7 @@ class ColladaReader:
         return DescriptionError(reason, file=self.file, line=element.line, element=f"<{element.tag}>")
 
     def scene(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
-        """Geometry id and 4x4 placement, unit included, of everything the scene shows."""
+        """Id and 4x4 transform of each geometry in the scene, conversion to metres included."""
         scene = self.root.first("scene")
         instance = None if scene is None else scene.first("instance_visual_scene")
         wanted = "" if instance is None else _target(instance, "url")
@@ -143,7 +143,7 @@ class ColladaReader:
         return np.concatenate(positions), np.concatenate(corners)
 
     def position_input(self, mesh: Element, primitive: Element) -> tuple[NDArray[np.float64], int, int]:
-        """Positions (k, 3), the place of their index among those of a corner, and how many those are."""
+        """Positions (k, 3), the offset of their index in each corner, and the number of indices in each."""
         stride = max((self.offset(entry) + 1 for entry in primitive.all("input")), default=1)
         shared = self.shared_input(mesh, primitive)
         if shared is None:
@@ -156,13 +156,13 @@ class ColladaReader:
         raise self.error(vertices, "it has no POSITION input with a source in this mesh")
 
     def shared_input(self, mesh: Element, primitive: Element) -> tuple[Element, int] | None:
-        """The input that the corners of one vertex share, `<vertices>`, and the position of its index."""
+        """The `<vertices>` that a primitive refers to and the offset of its index; None without them."""
         entries = list(inputs(primitive, "VERTEX"))
         vertices = referenced(mesh, "vertices", entries[-1]) if entries else None
         return None if vertices is None else (vertices, self.offset(entries[-1]))
 
     def offset(self, entry: Element) -> int:
-        """The place of an input's index among those of a corner."""
+        """The offset of an input's index among the indices of a corner."""
         return self._count(entry, "offset", "0", 0)
 
     def source_rows(self, source: Element, width: int) -> NDArray[np.float64]:
@@ -179,7 +179,7 @@ class ColladaReader:
         return values.reshape(-1, stride)[:, :width]
 
     def corner_indices(self, primitive: Element, offset: int, stride: int) -> NDArray[np.int64]:
-        """(m, 3) entries at one offset of each corner; polygons are cut into fans."""
+        """(m, 3) the index at one offset of each corner; polygons are cut into fans."""
         fans: list[NDArray[np.int64]] = []
         counts = primitive.first("vcount")
         for run in primitive.all("p"):
@@ -194,7 +194,7 @@ class ColladaReader:
             else:
                 sizes = np.empty(0, dtype=np.int64) if counts is None else self._integers(counts)
             if sizes.sum() != len(corners) or (sizes < 0).any():
-                raise self.error(run, f"{len(corners)} corners do not fit the polygons announced")
+                raise self.error(run, f"{len(corners)} corners do not fit the sizes of the polygons")
             fans.append(cut_into_fans(corners, sizes))
         return np.concatenate(fans) if fans else np.empty((0, 3), dtype=np.int64)
 
@@ -218,7 +218,7 @@ class ColladaReader:
         except ValueError:
             raise self.error(element, "it must hold numbers") from None
         if count is not None and len(values) != count:
-            raise self.error(element, f"{len(values)} numbers instead of {count} are due")
+            raise self.error(element, f"expected {count} numbers, not {len(values)}")
         if not np.isfinite(values).all():
             raise self.error(element, "it must hold finite numbers")
         return values
@@ -233,7 +233,7 @@ def primitives(geometry: Element) -> Iterator[tuple[Element, Element]]:
 
 
 def inputs(owner: Element, semantic: str) -> Iterator[Element]:
-    """The inputs of an element that mean this."""
+    """The inputs of an element that have this semantic."""
     return (entry for entry in owner.all("input") if entry.attributes.get("semantic") == semantic)
 
 
@@ -249,7 +249,7 @@ def _target(element: Element, attribute: str) -> str:
 
 
 def _rotation(axis: NDArray[np.float64], angle: float) -> NDArray[np.float64]:
-    """4x4 rotation; none for an axis without length."""
+    """4x4 rotation matrix; the identity for an axis without length."""
     total = np.eye(4)
     size = length(axis)
     if size > 0.0:

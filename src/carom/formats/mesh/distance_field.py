@@ -13,10 +13,10 @@ _DOMAIN = struct.Struct("<6d")
 
 
 def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
-    """Lowest and highest corner of the grid [m], which open the file.
+    """Lowest and highest corner of the grid [m], read from the start of the file.
 
     Raises:
-        DescriptionError: The file is missing or too short, or the corners make no box.
+        DescriptionError: The file is missing or too short, or the corners are not finite or not in order.
     """
     try:
         with open(path, "rb") as stream:
@@ -28,5 +28,5 @@ def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
     x0, y0, z0, x1, y1, z1 = _DOMAIN.unpack(header)
     sides = ((x0, x1), (y0, y1), (z0, z1))
     if not all(isfinite(low) and isfinite(high) and low <= high for low, high in sides):
-        raise DescriptionError("the bounds of the grid make no box", file=path)
+        raise DescriptionError("the bounds of the grid are not finite, or not in order", file=path)
     return (x0, y0, z0), (x1, y1, z1)

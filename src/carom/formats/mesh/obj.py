@@ -22,7 +22,7 @@ class _Group:
     """Face lines between two `o` or `g` lines.
 
     Attributes:
-        faces: What follows the `f` of each line.
+        faces: Text after the `f` of each line.
         lines: Line number of each face.
         vertex_counts: Number of vertices known at each face: negative indices count back from there.
     """

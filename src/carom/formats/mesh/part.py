@@ -1,4 +1,4 @@
-"""What every mesh reader returns."""
+"""Parts of meshes, which all mesh readers return."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def make_part(
 
 
 def cut_into_fans(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Polygons as triangles that all share the first corner; polygons of fewer than three corners vanish.
+    """Polygons cut into triangle fans from the first corner; those with fewer than three corners vanish.
 
     Args:
         corners: Corner indices of all polygons, one after the other.

@@ -1,4 +1,4 @@
-"""Any mesh file becomes a list of parts."""
+"""Reading a mesh file of any supported format into parts."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _READERS = {".obj": read_obj, ".stl": read_stl, ".dae": read_collada}
 def read_mesh(path: Path) -> list[MeshPart]:
     """Reads the triangles of an OBJ, STL or DAE file.
 
-    Unchanged files are served from a cache, which never answers with stale data.
+    Unchanged files are served from a cache; changed files are read again.
 
     Returns:
         The parts of the file, in file order: at least one with at least one triangle.

@@ -1,9 +1,9 @@
 """Legacy VTK files in text form: tetrahedra of an unstructured grid.
 
 The format is that of "VTK File Formats", simple legacy formats: a header line with the version, a title,
-`ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Cells that are no
-tetrahedra, and data of points and cells, are left out. Some of Bullet's own files have no space in the first
-line, a wrong sum of the lengths of cells, or no types of cells after the word for them; they are read, too.
+`ASCII`, `DATASET UNSTRUCTURED_GRID`, and sections that each begin with a keyword. Cells that are not
+tetrahedra, and data of points and cells, are ignored. Some of Bullet's own files have no space in the first
+line, a wrong total size after `CELLS`, or nothing after `CELL_TYPES`; they are read, too.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from carom.formats.files import read_bounded
 MAX_FILE_BYTES = 256 << 20
 """Largest file that is read."""
 MOST_CELLS = 20_000_000
-"""Most points or cells that a file may claim to have."""
+"""Most points or cells that a file may declare."""
 TETRAHEDRON = 10
-"""VTK's number for the kind of cell."""
-# VTK's largest cell of a fixed kind has 27; polyhedra have more.
+"""VTK's cell type of tetrahedra."""
+# VTK's largest cell with a fixed number of corners has 27; polyhedra may have more.
 _MOST_CORNERS = 10_000
 
 
@@ -54,7 +54,7 @@ def read_vtk(path: Path) -> TetraMesh:
 
 
 class _Sections:
-    """The words of a file, section by section."""
+    """Reads the sections of a file word by word."""
 
     def __init__(self, data: bytes, file: Path) -> None:
         self._file = file
@@ -100,7 +100,7 @@ class _Sections:
         self, points: NDArray[np.float64], cells: list[NDArray[np.int64]], kinds: NDArray[np.int64] | None
     ) -> TetraMesh:
         if kinds is not None and len(kinds) != len(cells):
-            raise self._wrong(f"there are {len(cells)} cells, and the types of {len(kinds)}")
+            raise self._wrong(f"there are {len(cells)} cells, but {len(kinds)} cell types")
         is_tetra = [len(cell) == 4 for cell in cells] if kinds is None else (kinds == TETRAHEDRON).tolist()
         chosen = [cell for cell, wanted in zip(cells, is_tetra, strict=True) if wanted]
         if any(len(cell) != 4 for cell in chosen):

@@ -1,4 +1,4 @@
-"""MJCF files, as MuJoCo has them."""
+"""MJCF, the file format of MuJoCo."""
 
 from carom.formats.mjcf.reader import read_mjcf
 

@@ -1,8 +1,8 @@
-"""`<body>`: the links and joints PyBullet makes of it.
+"""`<body>`: the links and joints that PyBullet makes from it.
 
-Every joint of a body gets a link without mass of its own, one after the other, and the last of them carries
-the body on a fixed joint. A body with joints at the root of a model hangs on a further link without mass,
-which is fixed in the world; one without floats.
+The joints of a body form a chain: the child of each is a massless link of its own, and a fixed joint connects
+the last of these to the body. For a root body with joints, the chain begins at one more massless link, which
+is fixed in the world; a root body without joints floats.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from carom.formats.robot.link import MASSLESS
 from carom.formats.xml_element import Element
 
 _DENSITY = 1000.0
-"""Of every geom [kg/m³], as in PyBullet."""
+"""Density of every geom [kg/m³], as in PyBullet."""
 
 _NOTHING = ContactParameters()
 _UNNAMED_GEOM = "anonymous"
@@ -43,11 +43,12 @@ _LEFT_OUT = ("light", "camera", "site", "freejoint", "composite", "flexcomp", "p
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """The context of an element.
+    """Settings that an element takes from the elements that enclose it.
 
     Attributes:
-        child_class: Class of defaults that the bodies around it name.
-        into: Pose of the frames around it in the body, or of the body in the world where poses are global.
+        child_class: Class of defaults that the enclosing bodies set for it.
+        into: Pose, in the enclosing body, of the frame in which its own pose is given: that of enclosing
+            `<frame>` elements, or of the world where poses are global.
     """
 
     child_class: str | None = None
@@ -56,7 +57,7 @@ class Scope:
 
 @dataclass(slots=True)
 class _Content:
-    """The contents of a body, as far as they are read."""
+    """The contents of a body that have been read so far."""
 
     frame: Pose = IDENTITY
     mass: float | None = None
@@ -68,7 +69,7 @@ class _Content:
 
 
 class ModelReader:
-    """Makes one robot of a body or geom of the world.
+    """Makes one robot from a body or geom of the world.
 
     Args:
         context: The reading it belongs to.
@@ -85,15 +86,15 @@ class ModelReader:
         self.lines: dict[str, int] = {}
 
     def read_body(self, element: Element, scope: Scope) -> PlacedRobot:
-        """A `<body>` that hangs on nothing."""
+        """The robot whose root is this `<body>` of the world."""
         pose = self._read_body(element, scope, None)
         root = next(index for index in range(len(self.links)) if all(j.child != index for j in self.joints))
-        # PyBullet puts the centre of mass where the file has the frame.
+        # PyBullet puts the inertial frame at the pose that the file gives for the body's frame.
         place = compose(pose, inverse(self.links[root].inertial.frame)) if root == 0 else IDENTITY
         return PlacedRobot(self._robot(root), place)
 
     def read_world_geom(self, element: Element, scope: Scope) -> PlacedRobot:
-        """A `<geom>` of the world itself."""
+        """The robot made from a `<geom>` of the world itself."""
         context = self.context
         defaults = class_defaults(context, element, scope.child_class)
         geom = read_geom(context, element, {**defaults, **element.attributes}, scope.into)
@@ -105,7 +106,7 @@ class ModelReader:
         return PlacedRobot(self._robot(0))
 
     def _read_body(self, element: Element, scope: Scope, parent: int | None) -> Pose:
-        """Reads a body and those in it, and returns where it is in its parent."""
+        """Read a body and the bodies in it, and return its pose in its parent."""
         context = self.context
         body = self._add_link(element, element.attributes.get("name"))
         if "name" not in element.attributes:
@@ -113,7 +114,7 @@ class ModelReader:
         child_class = element.attributes.get("childclass", scope.child_class)
         defaults = class_defaults(context, element, scope.child_class)
         pose = read_pose(context, element, self._placing({**defaults, **element.attributes}, element))
-        # Its contents are given in the body's frame, or like everything in that of the world.
+        # Poses of its contents are given in the body's frame, or in the world frame if all poses are.
         inner = Scope(child_class, inverse(pose) if context.compiler.global_frames else IDENTITY)
         own = compose(scope.into, pose)
         frame, carrier = own, parent
@@ -144,7 +145,7 @@ class ModelReader:
                 )
                 self._add_joint(child, joint, child.attributes.get("name"), moving)
                 if first_joint is None:
-                    # As in PyBullet the body is placed by its first joint alone.
+                    # As in PyBullet, only the first joint determines where the body is.
                     first_joint = place
                     frame = inverse(place)
                 carrier = moving
@@ -170,14 +171,14 @@ class ModelReader:
         return own
 
     def _placing(self, attributes: Attributes, element: Element) -> Attributes:
-        """The attributes of a body that say where it is."""
+        """The attributes that determine the pose of a body."""
         if self.context.as_mujoco or "axisangle" not in attributes:
             return attributes
         self.context.warn(element, "axisangle does not turn bodies in PyBullet; left out")
         return {name: text for name, text in attributes.items() if name != "axisangle"}
 
     def _add_link(self, element: Element, name: str | None) -> int:
-        """A link, its name made up where it has none."""
+        """Add a link, with a generated name if it has none, and return its index."""
         index = len(self.links)
         name = name or f"link{self.number}_{index}"
         self.context.refuse_duplicate(element, name, self.lines)
@@ -196,7 +197,7 @@ class ModelReader:
     def _add_geom(self, element: Element, defaults: Attributes, scope: Scope, content: _Content) -> None:
         content.contact = _with_earlier(read_contact(self.context, element, defaults), content.contact)
         geom = read_geom(self.context, element, {**defaults, **element.attributes}, scope.into)
-        # The last geom says where the centre of mass is, unless an inertial came before it.
+        # The last geom determines the centre of mass, unless an `<inertial>` came before it.
         if content.mass is None:
             middle = (0.0, 0.0, 0.0) if geom is None or geom.middle is None else geom.middle
             content.frame = replace(content.frame, position=middle)
@@ -244,7 +245,7 @@ class ModelReader:
 
 
 def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> ContactParameters:
-    """Contact parameters of a body's last geom, with kinds of friction that only earlier ones have."""
+    """Contact parameters of a body's last geom, plus kinds of friction that only earlier geoms state."""
     return replace(
         contact,
         spinning_friction=earlier.spinning_friction
@@ -257,7 +258,7 @@ def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> Con
 
 
 def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
-    """The elements of a body or of the world, those in `<frame>` included, and their contexts."""
+    """The elements of a body or of the world, those in `<frame>` included, and their scopes."""
     for child in parent.children:
         if child.tag == "frame":
             child_class = child.attributes.get("childclass", scope.child_class)
@@ -268,7 +269,7 @@ def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iter
 
 
 def world_elements(context: MjcfContext, world: Element) -> Iterator[tuple[Element, Scope]]:
-    """The bodies, geoms and so on of a `<worldbody>`, and their contexts."""
+    """The bodies, geoms and so on of a `<worldbody>`, and their scopes."""
     return _without_frames(context, world, Scope())
 
 

@@ -1,4 +1,4 @@
-"""What every part of the MJCF reader needs at hand: numbers, defaults, compiler options, assets."""
+"""State that all parts of the MJCF reader share: numbers, defaults, compiler options, assets."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from carom.formats.xml_element import Element
 
 _FLOAT = struct.Struct("f")
 SINGLE_PI = 3.1415927410125732
-"""π as PyBullet has it where it converts degrees of joint ranges."""
+"""Value of π with which PyBullet converts joint ranges from degrees to radians."""
 
 
 @dataclass
 class CompilerOptions:
-    """What `<compiler>` says.
+    """The options in `<compiler>`.
 
     Attributes:
-        degrees: Angles are in degrees. As in PyBullet only if there is a `<compiler>`.
+        degrees: Angles are in degrees; as in PyBullet, only if there is a `<compiler>`.
         global_frames: Positions and orientations are in world axes.
-        euler_sequence: Axes of Euler angles; capitals turn about fixed axes.
-        mesh_directory: Put before the file names of meshes.
+        euler_sequence: Axes of Euler angles; upper case means fixed axes, lower case rotated axes.
+        mesh_directory: Prefix of the file names of meshes.
         auto_limits: Joints with a range are limited.
-        inertia_from_geoms: Tensors in the file do not count.
+        inertia_from_geoms: Inertia tensors in the file are ignored.
     """
 
     degrees: bool = False
@@ -53,12 +53,12 @@ class MjcfContext(FileContext):
     Attributes:
         compiler: Compiler options.
         assets: Meshes and materials.
-        classes: Attributes that each class of defaults gives to each kind of element.
-        origins: The file of an element that was included, by the identity of the element.
-        unnamed: Number of names made up so far.
-        colours: Colours of geoms count.
+        classes: Default attributes, by class of defaults and name of the element.
+        origins: The file of each included element, by the `id` of the element.
+        unnamed: Number of names generated so far.
+        colours: Geoms have the colours that the file states.
         implicit: Capsules given by their ends are capsules, not PyBullet's swept spheres.
-        as_mujoco: `axisangle` turns bodies, and classes limit joints; PyBullet leaves both out.
+        as_mujoco: `axisangle` turns bodies, and classes limit joints; PyBullet ignores both.
     """
 
     def __init__(self, file: Path, root: Element, search: AssetSearch) -> None:
@@ -73,7 +73,7 @@ class MjcfContext(FileContext):
         self.as_mujoco = True
 
     def error(self, element: Element, reason: str) -> DescriptionError:
-        """An error at an element, with the file it stands in, its line and its place in the document."""
+        """An error at an element, with the file that contains it, its line and its path in the document."""
         error = super().error(element, reason)
         for step in reversed(self.root.path_to(element)):
             if id(step) in self.origins:
@@ -82,7 +82,7 @@ class MjcfContext(FileContext):
         return error
 
     def next_number(self) -> int:
-        """A number for a name that has to be made up."""
+        """The next number for a generated name."""
         self.unnamed += 1
         return self.unnamed - 1
 
@@ -98,7 +98,7 @@ class MjcfContext(FileContext):
         return (numbers[0], numbers[1], numbers[2])
 
     def angle(self, value: float) -> float:
-        """An angle of the file in radians."""
+        """An angle in the file, converted to radians."""
         return value * pi / 180.0 if self.compiler.degrees else value
 
 

@@ -1,4 +1,4 @@
-"""`<default>`: attributes that elements have unless they say otherwise."""
+"""`<default>`: default attributes of elements."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ Attributes = dict[str, str]
 
 
 def read_defaults(context: MjcfContext, element: Element, parent: str | None = None) -> None:
-    """A `<default>` with the classes inside of it, each of which begins with what its parent has.
+    """Read a `<default>` and the classes nested in it; each class inherits the defaults of its parent.
 
-    The outermost is the main class, whatever its name; several of them add up.
+    The outermost is the main class, whatever its name; several outermost ones add up.
     """
     name = element.attributes.get("class", MAIN if parent is None else "")
     if not name:
@@ -44,9 +44,10 @@ def class_defaults(context: MjcfContext, element: Element, child_class: str | No
 def limits_left_out(
     context: MjcfContext, element: Element, child_class: str | None, defaults: Attributes
 ) -> Attributes:
-    """The defaults of a joint without the limits that a named class gives it, unless these count.
+    """The defaults of a joint, without limits from a named class if these are to be ignored as in PyBullet.
 
-    They do also where a joint that says it is limited has no other: PyBullet ends the process there.
+    Joints that state `limited="true"` keep them, since they may have no others: for a joint without any,
+    PyBullet ends the process.
     """
     in_main = (element.attributes.get("class") or child_class or MAIN) == MAIN
     if context.as_mujoco or in_main or element.attributes.get("limited") == "true":

@@ -1,4 +1,4 @@
-"""Positions and the many ways to write an orientation."""
+"""Positions, and orientations in all forms that MJCF allows."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 def read_pose(
     context: MjcfContext, element: Element, attributes: Attributes, *, radians: bool = False
 ) -> Pose:
-    """Where an element is.
+    """The pose of an element, in the frame in which the file gives it.
 
     Args:
         context: The reading it belongs to.
@@ -88,7 +88,7 @@ def _euler(context: MjcfContext, element: Element, angles: list[float]) -> Quate
     turn: Quaternion = _NO_TURN
     for letter, angle in zip(context.compiler.euler_sequence, angles, strict=True):
         step = _turn(context, element, _AXES[letter.lower()], context.angle(angle))
-        # Small letters turn about axes that turn along, capitals about those of the parent.
+        # Lower case: about the rotated (intrinsic) axes; upper case: about the fixed axes of the parent.
         turn = multiplied(turn, step) if letter.islower() else multiplied(step, turn)
     return turn
 

@@ -43,11 +43,11 @@ class Geom:
     """One shape of a body.
 
     Attributes:
-        collision: As it touches.
-        visual: As it is seen.
+        collision: Its collision shape.
+        visual: Its visual shape.
         volume: [m³]; 0 for meshes and planes, as in PyBullet.
-        middle: Middle of the ends it is given by, which is where PyBullet puts the centre of mass;
-            None where it is not given by ends.
+        middle: Midpoint of the ends given by `fromto`, where PyBullet puts the centre of mass; None without
+            `fromto`.
     """
 
     collision: Collision
@@ -57,16 +57,16 @@ class Geom:
 
 
 def read_geom(context: MjcfContext, element: Element, attributes: Attributes, into: Pose) -> Geom | None:
-    """A `<geom>`; None, with a warning, where PyBullet too leaves it out.
+    """The shape of a `<geom>`; None, with a warning, where PyBullet too ignores the geom.
 
     Args:
         context: The reading it belongs to.
         element: The element.
         attributes: Its attributes, defaults included.
-        into: Pose in the link frame of what its own pose is given in.
+        into: Pose, in the link frame, of the frame in which its own pose is given.
 
     Raises:
-        DescriptionError: Something in it is wrong.
+        DescriptionError: An attribute is missing or invalid.
     """
     kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
     pose = compose(into, read_pose(context, element, attributes, radians=True))
@@ -96,10 +96,10 @@ def read_geom(context: MjcfContext, element: Element, attributes: Attributes, in
 
 
 def read_contact(context: MjcfContext, element: Element, defaults: Attributes) -> ContactParameters:
-    """How a link with this geom touches.
+    """Contact parameters of a link with this geom.
 
-    As in PyBullet the geom's own friction along the surface counts, but rolling and spinning have that of
-    its defaults.
+    As in PyBullet, lateral friction is that of the geom itself, but rolling and spinning friction are those
+    of its defaults.
     """
     attributes = {**defaults, **element.attributes}
     own = context.singles(element, "friction", attributes.get("friction", ""))
@@ -190,7 +190,7 @@ def _middle(ends: tuple[Vector3, Vector3]) -> Vector3:
 
 
 def _between(ends: tuple[Vector3, Vector3]) -> Pose:
-    """A frame in the middle, its z axis along the way from the first end to the second."""
+    """A frame midway between two ends, its z axis pointing from the first to the second."""
     x, y, z = (b - a for a, b in zip(*ends, strict=True))
     length = hypot(x, y, z)
     if length * length <= 2.220446049250313e-16:
@@ -248,7 +248,7 @@ def _mesh_file(context: MjcfContext, asset: Element) -> Path | None:
 
 
 def _material(context: MjcfContext, element: Element, attributes: Attributes) -> Material:
-    """White, unless colours count."""
+    """The material of a geom: white, unless colours are read from the file."""
     white = Material(rgba=(1.0, 1.0, 1.0, 1.0), specular=(1.0, 1.0, 1.0))
     if not context.colours:
         return white

@@ -1,4 +1,4 @@
-"""`<joint>`: type, place, axis and range."""
+"""`<joint>`: type, position, axis and range."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ def read_joint(
     frame: Pose,
     into: Pose,
 ) -> Joint:
-    """A `<joint>` of a body.
+    """The joint that a `<joint>` element of a body describes.
 
     Args:
         context: The reading it belongs to.
         element: The element.
         attributes: Its attributes, defaults included.
-        parent: Index of the link it hangs on.
-        child: Index of the link it carries.
-        frame: Where it is in the link it hangs on.
-        into: Pose in the body's frame of what its axis is given in.
+        parent: Index of its parent link.
+        child: Index of its child link.
+        frame: Joint frame in the parent link.
+        into: Pose, in the body's frame, of the frame in which its axis is given.
 
     Raises:
-        DescriptionError: Something in it is wrong.
+        DescriptionError: An attribute is missing or invalid.
     """
     kind = attributes.get("type", _HINGE)
     if kind not in (_HINGE, _SLIDE, _BALL, _FIXED):
@@ -66,7 +66,7 @@ def read_joint(
 
 
 def joint_position(context: MjcfContext, element: Element, attributes: Attributes) -> Vector3:
-    """Where a joint is."""
+    """Position of a joint, in the frame in which the file gives it."""
     text = attributes.get("pos")
     return (0.0, 0.0, 0.0) if text is None else context.triple(element, "pos", text)
 
@@ -86,7 +86,7 @@ def _axis(
 
 
 def _range(context: MjcfContext, element: Element, attributes: Attributes, kind: str) -> tuple[float, float]:
-    """Limits [rad or m]; the first above the second where there are none."""
+    """Lower and upper limit [rad or m]; lower > upper if there are none."""
     limited = attributes.get("limited", "auto")
     text = attributes.get("range")
     if limited == "auto" and context.compiler.auto_limits and text is not None:
@@ -105,5 +105,5 @@ def _range(context: MjcfContext, element: Element, attributes: Attributes, kind:
 
 
 def _radians(degrees: float) -> float:
-    """Degrees in radians, as single precision gives them."""
+    """Degrees converted to radians in single precision."""
     return single(single(degrees * SINGLE_PI) / 180.0)

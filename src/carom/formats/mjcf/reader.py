@@ -1,4 +1,4 @@
-"""An MJCF file becomes robots, each with its place in the world."""
+"""Reading an MJCF file into robots and their world poses."""
 
 from __future__ import annotations
 
@@ -34,18 +34,18 @@ def read_mjcf(
 ) -> list[PlacedRobot]:
     """Reads and checks an MJCF file.
 
-    What PyBullet reads is read its way: numbers in single precision, 1000 kg/m³ for every geom, links
-    without mass for joints. What it does not know is read as MuJoCo means it: classes of defaults for all
+    Features that PyBullet supports are read as PyBullet reads them: numbers in single precision, 1000 kg/m³
+    for every geom, massless links for joints. Others have MuJoCo's meaning: classes of defaults for all
     attributes, ball joints, ellipsoids, all kinds of orientations, `<frame>`, `<include>`, global
-    coordinates. Actuators, sensors, tendons, damping, armature and the like are left out.
+    coordinates. Actuators, sensors, tendons, damping, armature and the like are ignored.
 
     Args:
         path: The file; looked up with `AssetSearch.find`.
-        colours: The colours of geoms count; otherwise they are white.
+        colours: Geoms have the colours that the file states; otherwise they are white.
         implicit: Capsules given by their ends are capsules; otherwise they have the inertia that
             PyBullet gives to swept spheres.
-        as_mujoco: `axisangle` turns bodies, and named classes limit joints. Otherwise both are left out, as
-            PyBullet leaves them out.
+        as_mujoco: `axisangle` turns bodies, and named classes limit joints. Otherwise both are ignored, as in
+            PyBullet.
         search: Folders in which the file and files it refers to are searched.
 
     Returns:
@@ -89,7 +89,7 @@ def _read_root(file: Path) -> Element:
 
 
 class _Inclusion:
-    """Puts the content of other files where they are included."""
+    """Replaces `<include>` elements by the content of the files they include."""
 
     def __init__(self, context: MjcfContext) -> None:
         self.context = context
@@ -101,7 +101,7 @@ class _Inclusion:
 
         Args:
             parent: The element.
-            file: The file it stands in.
+            file: The file that contains it.
             including: That file and those by which it is included.
         """
         children: list[Element] = []
@@ -117,7 +117,7 @@ class _Inclusion:
                 self.context.origins.setdefault(id(element), other)
             self.elements += _count(root)
             if self.elements > MAX_ELEMENTS:
-                raise self.context.error(child, f"it makes more than {MAX_ELEMENTS} elements of all includes")
+                raise self.context.error(child, f"all includes have more than {MAX_ELEMENTS} elements")
             children += root.children
         parent.children = children
 

@@ -1,4 +1,4 @@
-"""What every part of a reader needs at hand: file, scale, and numbers read with good errors."""
+"""State that all parts of a reader share: file, scale, and methods that parse and check numbers."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ MAX_MAGNITUDE = 1e30
 
 
 class FileContext:
-    """State of one reading. Values stand in the attributes of elements.
+    """State of one reading, for formats that keep values in the attributes of elements.
 
     Attributes:
         file: The file being read.
         root: The element that holds all others.
         scale: Factor on every length.
-        search: Where meshes and textures are looked for.
-        references: What each file name in the file was resolved to.
+        search: The search for meshes and textures.
+        references: The path that each file name in the file was resolved to; None if there is no such file.
         links_without_inertial: Names of links that got the default mass.
     """
 
@@ -46,23 +46,23 @@ class FileContext:
         self.links_without_inertial: list[str] = []
 
     def error(self, element: Element, reason: str) -> DescriptionError:
-        """An error at an element, with its line and its place in the document."""
+        """An error at an element, with its line and its path in the document."""
         names = (_label(step) for step in self.root.path_to(element) or [element])
         return DescriptionError(reason, file=self.file, line=element.line, element=" > ".join(names))
 
     def warn(self, element: Element, message: str) -> None:
-        """Logs something that is read otherwise than its author may have meant."""
+        """Log a warning about something that the author of the file may have meant differently."""
         _log.warning("%s:%d: %s: %s", self.file, element.line, _label(element), message)
 
     def required(self, element: Element, attribute: str) -> str:
-        """An attribute that must be there."""
+        """The text of a required attribute."""
         try:
             return element.attributes[attribute]
         except KeyError:
             raise self.error(element, f"attribute {attribute!r} is missing") from None
 
     def find_file(self, name: str) -> Path | None:
-        """The file that a name in this one refers to, remembered."""
+        """The file that a name in this file refers to; the result is kept in `references`."""
         if name not in self.references:
             self.references[name] = self.search.find_referenced(name, self.file)
         return self.references[name]
@@ -72,7 +72,7 @@ class FileContext:
         return key in element.attributes
 
     def value(self, element: Element, key: str, default: float | None = None) -> float:
-        """A finite number that an element states; without a default it must."""
+        """A finite number that an element states; an error if it is missing and has no default."""
         text = element.attributes.get(key)
         if text is None:
             if default is None:
@@ -81,7 +81,7 @@ class FileContext:
         return self.parse_number(element, key, text)
 
     def non_negative(self, element: Element, key: str) -> float:
-        """A required number that may not be below zero."""
+        """A required number that must not be negative."""
         value = self.value(element, key)
         if value < 0.0:
             raise self.error(element, f"{key}={value:g} must not be negative")
@@ -95,8 +95,8 @@ class FileContext:
     def parse_bits(self, element: Element, attribute: str, text: str) -> int:
         """32 bits, as a signed number.
 
-        As in PyBullet a text that is not a number, such as the name of a group, sets no bit, and a number
-        that is too large only the highest.
+        As in PyBullet, a text that is not a number (such as the name of a group) sets no bit, and a number
+        that is too large sets only the highest.
         """
         match = _LEADING_BITS.match(text.strip())
         if match is None:
@@ -110,7 +110,7 @@ class FileContext:
         return value if value < 1 << 31 else value - (1 << 32)
 
     def parse_number(self, element: Element, attribute: str, text: str) -> float:
-        """A finite number; anything after it is left out with a warning, as PyBullet leaves it out."""
+        """A finite number; any text after it is ignored with a warning, as in PyBullet."""
         try:
             value = float(text)
         except ValueError:
@@ -122,7 +122,7 @@ class FileContext:
     def parse_components(
         self, element: Element, name: str, text: str, counts: tuple[int, ...]
     ) -> list[float] | None:
-        """The components of a colour; None, with a warning, if they cannot be read, which is not an error."""
+        """The components of a colour; None, with a warning but no error, if they cannot be read."""
         try:
             components = [self.parse_number(element, name, word) for word in text.split()]
         except DescriptionError as error:
@@ -158,7 +158,7 @@ class FileContext:
         return vector
 
     def _component(self, element: Element, attribute: str, word: str) -> float:
-        """One number of a vector. Robot files in use hold unexpanded xacro, which PyBullet reads as zeros."""
+        """One number of a vector. Some robot files hold unexpanded xacro, which PyBullet reads as zeros."""
         if "$" in element.attributes[attribute] and _LEADING_NUMBER.match(word) is None:
             self.warn(element, f"{attribute}: {shown(word)} is read as 0 (unexpanded xacro?)")
             return 0.0
@@ -189,17 +189,17 @@ class FileContext:
         return Pose(position, quaternion_from_rpy(roll, pitch, yaw))
 
     def refuse_duplicate(self, element: Element, name: str, lines: dict[str, int]) -> None:
-        """Remembers the line of a name in `lines`.
+        """Record the line of a name in `lines`.
 
         Raises:
-            DescriptionError: It is there already.
+            DescriptionError: The name is in `lines` already.
         """
         if name in lines:
             raise self.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
         lines[name] = element.line
 
     def not_found(self, element: Element, name: str) -> DescriptionError:
-        """The error about a file that is nowhere."""
+        """The error for a file that was not found."""
         return self.error(
             element, f"{shown(name)} was found neither beside the file nor in a directory above it"
         )
@@ -214,12 +214,12 @@ class FileContext:
 
 
 def _whole(value: float) -> int:
-    """A number without its fraction; infinity is beyond all 32-bit numbers."""
+    """A number without its fraction; for infinity, one that does not fit into 32 bits."""
     return int(value) if isfinite(value) else 1 << 32
 
 
 def shown(text: str) -> str:
-    """Text from a file as it stands in a message: quoted, and cut where it is long."""
+    """Text from a file for use in a message: quoted, and shortened if it is long."""
     return repr(_cut(text))
 
 

@@ -1,4 +1,4 @@
-"""Robot files: where they are and how large they may be."""
+"""Locating robot files, and checks that all readers share."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def locate(path: Path, search: AssetSearch) -> Path:
 
 
 def check_scale(scale: float) -> None:
-    """Raises `ValueError` for a factor on lengths that is not a positive number of sensible size."""
+    """Raise `ValueError` unless a factor on lengths is positive and at most `MAX_MAGNITUDE`."""
     if not 0.0 < scale <= MAX_MAGNITUDE:
         raise ValueError(f"scale must be positive and finite, not {scale}")
 
 
 def warn_of_assumed_masses(context: FileContext) -> None:
-    """Logs the links that state no inertia."""
+    """Log a warning that lists the links without `<inertial>`."""
     if context.links_without_inertial:
         names = ", ".join(context.links_without_inertial)
         _log.warning("%s: no <inertial>, so 1 kg is assumed, for %s", context.file, names)

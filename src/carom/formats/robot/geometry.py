@@ -26,7 +26,7 @@ def read_geometry(
     Args:
         context: The reading it belongs to.
         owner: The `<visual>` or `<collision>`.
-        readers: By the name of the element of a shape, what reads it.
+        readers: The function that reads each shape, by the name of its element.
 
     Raises:
         DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
@@ -44,7 +44,7 @@ def read_geometry(
 
 
 def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:
-    """The plane with a normal of any length but none."""
+    """The plane with a normal of any length except zero."""
     x, y, z = normal
     length = hypot(x, y, z)
     if length == 0.0:
@@ -58,12 +58,12 @@ def shape_file(context: FileContext, shape: Element, key: str, name: str, suffix
     Args:
         context: The reading it belongs to.
         shape: The element that names it.
-        key: Where in the element it does.
-        name: The name.
-        suffixes: How it may end.
+        key: Attribute or child element that contains the file name.
+        name: The file name.
+        suffixes: Accepted suffixes of file names.
 
     Raises:
-        DescriptionError: It ends otherwise, or there is no such file.
+        DescriptionError: The suffix is not accepted, or there is no such file.
     """
     check_suffix(context, shape, key, name, suffixes)
     path = context.find_file(name)
@@ -75,6 +75,6 @@ def shape_file(context: FileContext, shape: Element, key: str, name: str, suffix
 def check_suffix(
     context: FileContext, shape: Element, key: str, name: str, suffixes: tuple[str, ...]
 ) -> None:
-    """Raises `DescriptionError` for a file that does not end in one of these."""
+    """Raise `DescriptionError` unless a file name has one of these suffixes."""
     if not name.lower().endswith(suffixes):
         raise context.error(shape, f"{key}={shown(name)} must end in {' or '.join(suffixes)}")

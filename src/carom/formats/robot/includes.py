@@ -1,4 +1,4 @@
-"""Files that include others, in bounds."""
+"""Limits on the files that a file includes."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ class Includes:
         Args:
             context: The reading it belongs to.
             element: The `<include>` element.
-            name: What it names.
-            found: The file of that name.
-            including: The files by which it is included.
+            name: The file name that it states.
+            found: The file of that name; None if it was not found.
+            including: The files by which it is included, outermost first.
 
         Raises:
             DescriptionError: There is no such file, it includes itself, or there are too many.

@@ -1,4 +1,4 @@
-"""`<joint>`: type, ends, limits and dynamics."""
+"""`<joint>`: type, links, limits and dynamics."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ def read_limit(context: FileContext, owner: Element, kind: JointType, scale: flo
         scale: Factor on lower and upper limit.
 
     Raises:
-        DescriptionError: A joint of this type needs one, or something in it is no number.
+        DescriptionError: A joint of this type needs a limit, or a value is not a number.
     """
     element = owner.first("limit")
     if element is None:
         if kind in NEEDS_LIMIT:
             raise context.error(owner, f"a {kind.value} joint needs a <limit>")
         return JointLimit()
-    # Limits left out are scaled like stated ones: it shows in what getJointInfo reports.
+    # Missing limits are scaled like given ones, which is visible in PyBullet's getJointInfo.
     return JointLimit(
         lower=context.value(element, "lower", 0.0) * scale,
         upper=context.value(element, "upper", -1.0) * scale,

@@ -10,10 +10,10 @@ from carom.formats.robot.context import FileContext
 from carom.formats.xml_element import Element
 
 MASSLESS = Inertial(mass=0.0)
-"""Of the link that is the world."""
+"""Inertial of a link that stands for the world."""
 
 _NO_INERTIAL = Inertial(mass=1.0, tensor=(1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
-"""Of a link that states none."""
+"""Inertial of a link that states none."""
 
 _DEFAULT_STIFFNESS = 1e4
 """Contact stiffness [N/m] where a link states only a damping."""
@@ -32,11 +32,11 @@ def read_inertial(
     Args:
         context: The reading it belongs to.
         link: The `<link>` element.
-        name: Of the link; one called `world` has no mass where nothing is said.
-        read_mass: Takes the mass from the `<inertial>` element.
+        name: Name of the link; a link called `world` without `<inertial>` has no mass.
+        read_mass: Reads the mass from the `<inertial>` element.
 
     Raises:
-        DescriptionError: Mass or moments are missing or are no numbers.
+        DescriptionError: Mass or moments are missing or are not numbers.
     """
     element = link.first("inertial")
     if element is None:
@@ -59,8 +59,8 @@ def read_inertial(
 
 
 def read_collision(context: FileContext, element: Element, geometry: Geometry) -> Collision:
-    """A `<collision>` of this shape."""
-    # The attribute counts if it is present, with any value.
+    """The collision shape that a `<collision>` with this geometry describes."""
+    # Only the presence of the attribute matters, not its value.
     if "concave" in element.attributes and isinstance(geometry, Mesh):
         geometry = replace(geometry, concave=True)
     return Collision(
@@ -73,11 +73,11 @@ def read_collision(context: FileContext, element: Element, geometry: Geometry) -
 
 
 def read_contact(element: Element | None, value: Callable[[Element], float]) -> ContactParameters:
-    """The `<contact>` of a link; None stands for a link without.
+    """The contact parameters of a link.
 
     Args:
-        element: The element.
-        value: Takes the number from a child of it.
+        element: Its `<contact>` element; None if it has none.
+        value: Reads the number from a child of that element.
     """
     if element is None:
         return _DEFAULT_CONTACT

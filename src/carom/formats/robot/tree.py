@@ -17,7 +17,7 @@ def find_root(
     """Index of the root link.
 
     Raises:
-        DescriptionError: A link hangs on two joints, there are several roots, or links form a loop.
+        DescriptionError: A link is the child of two joints, there are several roots, or links form a loop.
     """
     carrier: list[int | None] = [None] * len(links)
     for index, joint in enumerate(joints):

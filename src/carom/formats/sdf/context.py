@@ -1,4 +1,4 @@
-"""What every part of the SDF reader needs at hand: values stand in the text of elements."""
+"""State that all parts of the SDF reader share, and methods that read values from the text of elements."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from carom.formats.xml_element import Element
 
 
 class SdfContext(FileContext):
-    """State of one reading; its root is the `<sdf>` element, and values stand in the text of children."""
+    """State of one reading; its root is the `<sdf>` element, and values are the text of child elements."""
 
     def text(self, parent: Element, tag: str) -> str | None:
-        """The text of a child without surrounding blanks; None without such a child."""
+        """The text of a child without surrounding white space; None if there is no such child."""
         child = parent.first(tag)
         return None if child is None else child.text.strip()
 
@@ -22,7 +22,7 @@ class SdfContext(FileContext):
         return element.first(key) is not None
 
     def value(self, element: Element, key: str, default: float | None = None) -> float:
-        """A finite number from the text of a child; without a default the child must be there."""
+        """A finite number from the text of a child; an error if there is neither a child nor a default."""
         child = element.first(key)
         if child is None:
             if default is None:
@@ -53,10 +53,10 @@ class SdfContext(FileContext):
         return (numbers[0], numbers[1], numbers[2])
 
     def pose(self, parent: Element) -> Pose:
-        """The `<pose>` of an element, or its `<origin>` as URDF has it; scaled.
+        """The `<pose>` of an element, or its `<origin>` as in URDF; scaled.
 
-        As in PyBullet angles are the last three numbers, which are the position itself where there
-        are no more.
+        As in PyBullet, the first three numbers are the position and the last three the angles, even if there
+        are only three.
         """
         if parent.first("origin") is not None:
             return super().pose(parent)

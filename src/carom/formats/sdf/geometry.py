@@ -10,7 +10,7 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
 _CYLINDER_SIZE, _CAPSULE_SIZE = 0.1, 1.0
-"""Radius and length of those that state none [m]; not scaled in PyBullet, and so not here."""
+"""Default radius and length [m]; not scaled, as in PyBullet."""
 
 
 def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:
@@ -23,7 +23,7 @@ def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:
 
 
 def _sphere(context: SdfContext, shape: Element) -> Sphere:
-    # Not scaled in PyBullet, and so not here.
+    # Not scaled, as in PyBullet.
     return Sphere(context.non_negative(shape, "radius"))
 
 

@@ -21,7 +21,7 @@ _Z: Vector3 = (0.0, 0.0, 1.0)
 def read_sdf_joint(
     context: SdfContext, element: Element, link_indices: dict[str, int], poses: list[Pose]
 ) -> Joint:
-    """A `<joint>` with everything in it. Its frame is that of the child.
+    """The joint that a `<joint>` element describes; its frame is that of the child link.
 
     Args:
         context: The reading it belongs to.

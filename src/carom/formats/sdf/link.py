@@ -10,7 +10,7 @@ from carom.formats.xml_element import Element
 
 
 def read_sdf_link(context: SdfContext, element: Element) -> Link:
-    """A `<link>` with everything in it but its pose.
+    """The link that a `<link>` element describes, without its pose.
 
     Raises:
         DescriptionError: The name is missing, or something inside is wrong.

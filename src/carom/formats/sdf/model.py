@@ -1,4 +1,4 @@
-"""`<model>`: links and joints become robots, one for each tree of links."""
+"""`<model>`: robots made from its links and joints, one for each tree of links."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plug
 
 
 def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
-    """The robots of a `<model>`: one, or as many as it has links that hang on nothing.
+    """The robots of a `<model>`: one for each link that has no parent.
 
     Raises:
         DescriptionError: Name or links are missing, or something inside is wrong.
@@ -34,7 +34,7 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     joint_elements = list(element.all("joint"))
     indices = {link.name: index for index, link in enumerate(links)}
     if WORLD not in indices and any(context.text(joint, "parent") == WORLD for joint in joint_elements):
-        # The world itself carries a joint.
+        # The parent of a joint is the world itself.
         indices[WORLD] = len(links)
         links.append(Link(WORLD, inertial=MASSLESS))
         poses.append(IDENTITY)
@@ -45,7 +45,7 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     roots = [index for index in range(len(links)) if index not in carried]
     if len(roots) <= 1:
         root = find_root(context, links, joints, joint_elements)
-        # As in PyBullet the model's pose is that of its root, whose own pose in the model is lost.
+        # As in PyBullet, the model's pose becomes that of its root link; the link's own pose is ignored.
         return [PlacedRobot(_robot(context, name, links, joints, root), place, static)]
     return [
         PlacedRobot(
@@ -76,7 +76,7 @@ def _refuse_duplicates(context: SdfContext, joints: list[Element]) -> None:
 
 
 def _is_static(context: SdfContext, model: Element) -> bool:
-    """Whether a model does not move: as in PyBullet only if it says 1."""
+    """Whether a model is fixed in the world: as in PyBullet, only if `<static>` is 1."""
     element = model.first("static")
     if element is None:
         return False
@@ -95,7 +95,7 @@ def _part(
     root: int,
     joint_elements: list[Element],
 ) -> Robot:
-    """The tree of links that one root carries."""
+    """The robot made from a root link and its descendants."""
     kept = {root}
     # Each round adds the links one joint farther out.
     while True:

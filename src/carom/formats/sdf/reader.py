@@ -1,4 +1,4 @@
-"""An SDF file becomes robots, each with its place in the world."""
+"""Reading an SDF file into robots and their world poses."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _MODEL_FILE = "model.sdf"
 def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> list[PlacedRobot]:
     """Reads and checks an SDF file.
 
-    Only the first `<world>` counts, and where there is one, no model outside it. Lights, physics settings
-    and plugins are left out.
+    Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
+    and plugins are ignored.
 
     Args:
         path: The file; looked up with `AssetSearch.find`.
@@ -45,7 +45,7 @@ def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = Non
 
 
 class _Reading:
-    """One file and all that it includes."""
+    """The reading of one file and of all files that it includes."""
 
     def __init__(self, scale: float, search: AssetSearch) -> None:
         self.scale = scale
@@ -77,7 +77,7 @@ class _Reading:
         uri = context.text(element, "uri") or ""
         found = _included_file(context, uri)
         if found is None:
-            # Worlds made for Gazebo include models of its own collection. PyBullet leaves all includes out.
+            # Worlds for Gazebo include models from Gazebo's own collection. PyBullet ignores all includes.
             context.warn(element, f"{shown(uri)} was not found; it is left out, as in PyBullet")
             return []
         file = self.includes.admit(context, element, uri, found, including)
@@ -87,7 +87,7 @@ class _Reading:
             robots = [replace(placed, robot=replace(placed.robot, name=name)) for placed in robots]
         if element.first("pose") is not None:
             pose = context.pose(element)
-            # It takes the place of the model's own pose; several models keep their places to each other.
+            # It replaces the pose of a single model; several models keep their poses relative to each other.
             robots = [
                 replace(placed, pose=pose if len(robots) == 1 else compose(pose, placed.pose))
                 for placed in robots
@@ -96,7 +96,7 @@ class _Reading:
 
 
 def _included_file(context: SdfContext, uri: str) -> Path | None:
-    """A file, or the model in a directory."""
+    """The file at a URI, or the model file in the directory at that URI."""
     for name in (uri, f"{uri.rstrip('/')}/{_MODEL_FILE}"):
         file = context.search.find_included(name, context.file)
         if file is not None:

@@ -1,4 +1,4 @@
-"""What every part of the URDF reader needs at hand."""
+"""State that all parts of the URDF reader share."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class UrdfContext(FileContext):
     """State of one reading; its root is the `<robot>` element.
 
     Attributes:
-        materials: Materials by name, as far as they are known.
+        materials: The materials read so far, by name.
     """
 
     def __init__(self, file: Path, root: Element, scale: float, search: AssetSearch) -> None:

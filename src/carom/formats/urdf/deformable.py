@@ -13,18 +13,18 @@ _SUFFIXES = (".obj", ".vtk")
 _DEFAULT_MARGIN = 0.02
 _DEFAULT_FRICTION, _REDUCED_FRICTION = 1.0, 0.0
 _REDUCED_MASS, _REDUCED_STIFFNESS = 1.0, 100.0
-# Springs that bend reach this many edges far.
+# Bending springs connect nodes that are this many edges apart.
 _STRIDE = 2.0
 
 
 def read_deformable(context: UrdfContext, element: Element) -> Deformable:
-    """A soft body with everything in it.
+    """The soft body that a `<deformable>` or `<reduced_deformable>` describes.
 
-    Lengths are not scaled: the meshes are still to be read.
+    Lengths are not scaled: the meshes are read later.
 
     Raises:
-        DescriptionError: The name, the mass or the mesh is missing, there is no such file, or a value is no
-            number.
+        DescriptionError: The name, the mass or the mesh is missing, there is no such file, or a value is not
+            a number.
     """
     context.required(element, "name")
     reduced = element.tag == "reduced_deformable"
@@ -70,7 +70,7 @@ def _springs(context: UrdfContext, element: Element) -> SpringCoefficients:
     bending = context.value(element, "bending_stiffness", 0.0)
     if bending and context.value(element, "bending_stride", _STRIDE) != _STRIDE:
         context.warn(
-            element, "springs that bend join nodes that have a neighbour in common, as bending_stride=2"
+            element, "bending springs connect nodes with a neighbour in common, as with bending_stride=2"
         )
     return SpringCoefficients(
         context.value(element, "elastic_stiffness"), context.value(element, "damping_stiffness"), bending

@@ -17,7 +17,7 @@ _TYPES = {kind.value: kind for kind in JointType}
 
 
 def read_joint(context: UrdfContext, element: Element, link_indices: dict[str, int]) -> Joint:
-    """A `<joint>` with everything in it.
+    """The joint that a `<joint>` element describes.
 
     Args:
         context: The reading it belongs to.
@@ -90,7 +90,7 @@ def _read_mimic(context: UrdfContext, joint: Element, kind: JointType) -> Mimic 
             offset=context.value(element, "offset", 0.0) * scale,
         )
     except DescriptionError as error:
-        # PyBullet never looks at it, so a file with a bad one still has to load.
+        # PyBullet ignores `<mimic>`, so a file with an invalid one still has to load.
         context.warn(element, f"ignored: {error.reason}")
         return None
 

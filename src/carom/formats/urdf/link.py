@@ -11,7 +11,7 @@ from carom.formats.xml_element import Element
 
 
 def read_link(context: UrdfContext, element: Element) -> Link:
-    """A `<link>` with everything in it.
+    """The link that a `<link>` element describes.
 
     Raises:
         DescriptionError: The name is missing, or something inside is wrong.

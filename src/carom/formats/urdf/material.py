@@ -11,19 +11,19 @@ from carom.formats.xml_element import Element
 
 
 def read_global_materials(context: UrdfContext) -> None:
-    """The materials that stand directly below `<robot>`; the first of a name counts."""
+    """Read the materials directly below `<robot>`; of several with the same name the first counts."""
     for element in context.root.all("material"):
         material = _read_material(context, element, element.attributes.get("name", ""))
         context.materials.setdefault(material.name, material)
 
 
 def read_visual_material(context: UrdfContext, visual: Element) -> Material | None:
-    """The material of a visual: defined in place, or named.
+    """The material of a visual: defined in place, or referred to by its name.
 
-    A definition in place also serves later visuals that name it.
+    Later visuals can refer to a definition in place.
 
     Returns:
-        The material; a bare name where nothing of that name is known yet; None where there is none.
+        The material; one with only a name if that name is not defined yet; None if there is none.
     """
     element = visual.first("material")
     if element is None:
@@ -63,5 +63,5 @@ def _texture(context: UrdfContext, texture: Element) -> Path | None:
         return None
     path = context.find_file(name)
     if path is None:
-        context.warn(texture, f"texture {shown(name)} was not found; the material goes without")
+        context.warn(texture, f"texture {shown(name)} was not found; the material has no texture")
     return path

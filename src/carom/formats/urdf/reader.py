@@ -1,4 +1,4 @@
-"""A URDF file becomes a `Robot`."""
+"""Reading a URDF file into a `Robot`."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from carom.formats.urdf.material import read_global_materials
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
-# The elements that make a robot a soft body; the first of them counts.
+# The elements that make a robot a soft body, in order of precedence.
 _SOFT = ("reduced_deformable", "deformable")
 
 
 def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
     """Reads and checks a URDF file.
 
-    Unchanged files are served from a cache, which never answers with stale data.
+    Unchanged files are served from a cache; changed files are read again.
 
     Args:
         path: The file; looked up with `AssetSearch.find`.
         scale: Factor on every length (positions, shapes, limits of prismatic joints). Masses and
             inertia tensors stay as they are.
-        search: Where the file, its meshes and its textures are looked for.
+        search: Folders in which the file, its meshes and its textures are searched.
 
     Returns:
         The robot, its links and joints in file order.
@@ -57,7 +57,7 @@ def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = No
 def parse_urdf(
     data: bytes, file: Path, *, scale: float, search: AssetSearch
 ) -> tuple[Robot, dict[str, Path | None]]:
-    """A robot from the content of a file, and what every file name in it was resolved to."""
+    """A robot from the content of a file, and the path that each file name in it was resolved to."""
     element = parse_root(data, file, "robot")
     context = UrdfContext(file, element, scale, search)
     name = context.required(element, "name")
@@ -82,7 +82,7 @@ def parse_urdf(
 
 
 def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
-    """A robot that is a soft body; as in PyBullet its links and joints do not count."""
+    """A robot that is a soft body; as in PyBullet its links and joints are ignored."""
     from carom.formats.urdf.deformable import read_deformable
 
     deformable = read_deformable(context, element)
@@ -120,7 +120,7 @@ def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
 
 
 def _with_late_materials(context: UrdfContext, link: Link) -> Link:
-    """Materials named before they are defined, filled in."""
+    """The link with its materials, including those that were referred to before their definition."""
     if all(_is_settled(visual.material) for visual in link.visuals):
         return link
     return replace(link, visuals=tuple(_with_late_material(context, visual) for visual in link.visuals))

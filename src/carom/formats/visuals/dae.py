@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 @record(eq=False)
 class _Corners:
-    """Triangles corner by corner.
+    """Values at the corners of triangles.
 
     Attributes:
         positions: (3 m, 3).
@@ -61,7 +61,7 @@ def read_dae_visual(file: Path) -> RenderMesh:
 
 def _placed(corners: _Corners, placement: Floats) -> _Corners:
     linear = placement[:3, :3]
-    # Rows of cofactors turn normals as the inverse transpose does, and need no inverse.
+    # Up to length, the cofactor matrix transforms normals like the inverse transpose, without an inverse.
     cofactors = np.stack([np.cross(linear[i - 2], linear[i - 1]) for i in range(3)])
     return _Corners(
         product(corners.positions, linear.T) + placement[:3, 3],

@@ -31,11 +31,11 @@ class ObjMaterial:
 
 
 def read_materials(path: Path) -> dict[str, ObjMaterial]:
-    """The materials of an MTL file by name; empty if it cannot be read, which is harmless."""
+    """The materials of an MTL file by name; empty if it cannot be read, which is not an error."""
     try:
         data, _ = read_bounded(path, MAX_FILE_BYTES)
     except DescriptionError as error:
-        _log.info("%s; the mesh goes without its materials", error)
+        _log.info("%s; the mesh has no materials", error)
         return {}
     materials: dict[str, ObjMaterial] = {}
     material = ObjMaterial()
@@ -55,7 +55,7 @@ def read_materials(path: Path) -> dict[str, ObjMaterial]:
             elif keyword == "map_Kd" and rest:
                 material.texture = _texture(path, rest)
         except ValueError:
-            _log.warning("%s:%d: %s needs other numbers than %r; ignored", path, number, keyword, rest)
+            _log.warning("%s:%d: %s has invalid numbers %r; ignored", path, number, keyword, rest)
     return materials
 
 

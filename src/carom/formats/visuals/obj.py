@@ -19,19 +19,19 @@ from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_no
 from carom.record import record
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
-# Pictures are drawn in single precision.
+# Images are rendered in single precision.
 _GREATEST = float(np.finfo(np.float32).max)
-# Keyword: what it states, and how many numbers are used and needed; colours or weights may follow.
+# Keyword: kind of value, and how many numbers are used and required; colours or weights may follow.
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
 
 @record(frozen=False)
 class _Lines:
-    """An OBJ file taken apart.
+    """The lines of an OBJ file, by keyword.
 
     Attributes:
-        values: Positions, texture coordinates and normals: line numbers and what follows the keyword.
-        faces: What follows the `f` of each face.
+        values: Positions, texture coordinates and normals: line numbers and the text after the keyword.
+        faces: Text after the `f` of each face.
         face_lines: Line number of each face.
         known: How many positions, texture coordinates and normals were known at each face.
         libraries: Names of the material files.
@@ -102,7 +102,7 @@ def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path)
         except ValueError:
             values = []
         if len(values) < least:
-            raise DescriptionError(f"at least {least} numbers are due", file=file, line=number)
+            raise DescriptionError(f"at least {least} numbers are needed", file=file, line=number)
         rows[index, : len(values)] = values
         if not all(abs(value) <= _GREATEST for value in values):
             raise DescriptionError("a number is too large, or not finite", file=file, line=number)
@@ -118,7 +118,7 @@ def _corners(lines: _Lines, counts: tuple[int, int, int], file: Path) -> NDArray
     except (ValueError, OverflowError):
         raise DescriptionError("a face needs whole numbers", file=file, line=_bad_face(lines)) from None
     known = np.repeat(np.array(lines.known, dtype=np.int64).reshape(-1, 3), sizes, axis=0)
-    # From 1; negative ones count back from those known at the face; 0 is none.
+    # Indices start at 1; negative ones count back from the values known at the face; 0 means none.
     indices = np.where(indices < 0, indices + known, indices - 1)
     for kind, (count, name) in enumerate(
         zip(counts, ("vertex", "texture coordinate", "normal"), strict=True)
@@ -133,7 +133,7 @@ def _corners(lines: _Lines, counts: tuple[int, int, int], file: Path) -> NDArray
 
 
 def _indices(words: list[bytes]) -> NDArray[np.int64]:
-    """(k, 3) numbers as the file has them: position, texture coordinate, normal; 0 where there is none."""
+    """(k, 3) indices as in the file: position, texture coordinate, normal; 0 where there is none."""
     result = np.zeros((len(words), 3), dtype=np.int64)
     text = b" ".join(words)
     slashes, double = text.count(b"/"), text.count(b"//")
@@ -176,7 +176,7 @@ def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
 def _distinct(
     corners: NDArray[np.int64], counts: tuple[int, int]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The distinct corners, sorted, and the place of each corner among them.
+    """The distinct corners, sorted, and the index of each corner among them.
 
     Args:
         corners: (n, 3) position, texture coordinate and normal; -1 for none.
@@ -198,7 +198,7 @@ def _mesh(
     corners: NDArray[np.int64],
     material: ObjMaterial | None,
 ) -> RenderMesh:
-    # Corners without a normal get that of their face, as a further normal.
+    # Corners without a normal get that of their face, which is appended to the normals.
     flat = (corners[:, :, _NORMAL] < 0).any(axis=1)
     if flat.any():
         corners = corners.copy()

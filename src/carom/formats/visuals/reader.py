@@ -1,4 +1,4 @@
-"""Mesh files as they look: with normals, texture coordinates and the texture of their material."""
+"""Reading mesh files for drawing: with normals, texture coordinates and the texture of the material."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from carom.formats.visuals.render_mesh import RenderMesh, flat_mesh
 def read_mesh_visual(path: Path) -> RenderMesh:
     """Reads an OBJ, STL or DAE file for drawing.
 
-    Unchanged files are served from a cache, and so are files that have gone since they were read.
+    Unchanged files are served from a cache, and so are files that were deleted after they were read.
 
     Raises:
         DescriptionError: The file is missing, cut off or broken, its kind is unknown, or it has no triangles.
@@ -25,7 +25,7 @@ def read_mesh_visual(path: Path) -> RenderMesh:
     cached = _cache.get(file, file)
     if cached is not None:
         return cached
-    # All the checks of the reader that physics uses hold here as well.
+    # This makes all checks of the reader that physics uses.
     parts = read_mesh(file)
     stamp = FileStamp.of(file)
     kind = file.suffix.lower()

@@ -1,4 +1,4 @@
-"""Triangles as they are drawn: positions, normals and texture coordinates of vertices."""
+"""Triangle meshes for rendering: positions, normals and texture coordinates of vertices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Floats = NDArray[np.float32]
 Indices = NDArray[np.int32]
 
 NO_TEXTURE_UV = 0.5
-"""Texture coordinate, both ways, of vertices that have none."""
+"""Value of both texture coordinates of vertices that have none."""
 
 
 @record(eq=False)

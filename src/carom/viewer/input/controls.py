@@ -12,7 +12,7 @@ class Controls:
     """Sliders and buttons by number, on the board. Safe to use from all threads.
 
     Attributes:
-        sliders: What is shown now, by number.
+        sliders: The sliders and buttons shown now, by number.
     """
 
     def __init__(self, board: Board) -> None:
@@ -25,12 +25,12 @@ class Controls:
         self._show(number, slider)
 
     def remove(self, number: int) -> None:
-        """Removes one; unknown numbers are ignored."""
+        """Removes a slider or a button; unknown numbers are ignored."""
         self.sliders.pop(number, None)
         self._board.take_down(("slider", number), {"type": "no slider", "slider": number})
 
     def move(self, number: int, value: float) -> None:
-        """The user has moved a slider; the value is clipped to its range."""
+        """Sets the value of a slider that the user has moved, clipped to its range."""
         slider = self.sliders.get(number)
         if slider is not None and not slider.is_button and isfinite(value):
             within = min(max(value, slider.lower), slider.upper)
@@ -38,7 +38,7 @@ class Controls:
             self._show(number, slider)
 
     def press(self, number: int) -> None:
-        """The user has clicked a button."""
+        """Counts a click of the user on a button."""
         slider = self.sliders.get(number)
         if slider is not None and slider.is_button:
             slider.value += 1.0

@@ -13,19 +13,19 @@ if TYPE_CHECKING:
 _GAIN, _VELOCITY_GAIN = 0.1, 1.0
 # Maximum force of the drive if the file has no effort limit [N m or N].
 _FORCE = 500.0
-# Maximum speed of a driven joint [rad/s or m/s]: a slider is moved faster than a robot should.
+# Maximum speed of a driven joint [rad/s or m/s]: users move sliders faster than a robot should move.
 _SPEED = 2.0
 
 
 def drive(world: World, body_id: int, joint: int, target: float, *, place: bool) -> None:
-    """Moves a joint to the value of a page's slider; other joints are ignored.
+    """Moves a joint to the value of a page's slider; joints without exactly one dof are ignored.
 
     Args:
         world: The world.
         body_id: Number of the body.
         joint: Index of the joint.
-        target: Its position [rad or m].
-        place: Set the position at once, for a paused world; otherwise its motor moves it.
+        target: Target position of the joint [rad or m].
+        place: Also set the position at once, for a paused world; otherwise only the joint's motor moves it.
     """
     body = world.bodies.get(body_id)
     if body is None or not 0 <= joint < body.joint_count or not isfinite(target):

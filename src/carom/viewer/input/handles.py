@@ -23,13 +23,13 @@ class Handles:
         self._show(number, handle)
 
     def move(self, number: int, position: Vector3, orientation: Quaternion) -> None:
-        """The user has moved a handle; unknown handles and invalid poses are ignored."""
+        """Sets the pose of a handle, moved by the user; unknown handles and invalid poses are ignored."""
         handle = self._handles.get(number)
         length = hypot(*orientation)
         if handle is None or not all(map(isfinite, (*position, *orientation))) or length < 1e-6:
             return
         x, y, z, w = (part / length for part in orientation)
-        # Both at once, because other threads may read them.
+        # Position and orientation are replaced together, because other threads may read them.
         handle.pose = (position, (x, y, z, w))
         self._show(number, handle)
 

@@ -7,7 +7,7 @@ from threading import Lock
 from time import monotonic
 
 DOWN, TRIGGERED, RELEASED = 1, 2, 4
-# A script that has asked for keys within this time will ask again [s].
+# A script that has read the keys within this time is expected to read them again [s].
 _ATTENTION = 1.0
 
 # Keys without a character, by their names in browser events.
@@ -37,11 +37,12 @@ _NAMED = {
 def key_code(key: str, place: str) -> int | None:
     """PyBullet's code of a key; None for keys without a code.
 
-    Letters have their lower-case character, whatever Shift and Caps Lock say, and digits stay digits.
+    Letters have the code of the lower-case character, and digits that of the digit, regardless of Shift and
+    Caps Lock.
 
     Args:
         key: `key` of the browser's event: a name or a character.
-        place: `code` of the event: which key of the keyboard it is.
+        place: `code` of the event: the physical key of the keyboard.
     """
     if key in _NAMED:
         return _NAMED[key]
@@ -65,11 +66,11 @@ class Keyboard:
 
     @property
     def is_asked(self) -> bool:
-        """Whether a script asks for keys regularly."""
+        """Whether a script reads the keys regularly."""
         return monotonic() - self._asked < _ATTENTION
 
     def press(self, page: int, key: str, place: str) -> None:
-        """A key goes down on a page. Repeats of a held key are ignored."""
+        """Records a key press on a page; repeats of a held key are ignored."""
         code = key_code(key, place)
         if code is None:
             return
@@ -79,14 +80,14 @@ class Keyboard:
             self._held[page][place or key] = code
 
     def release(self, page: int, key: str, place: str) -> None:
-        """A key goes up on a page."""
+        """Records a key release on a page."""
         with self._lock:
             code = self._held[page].pop(place or key, None)
             if code is not None:
                 self._let_go(code)
 
     def release_all(self, page: int) -> None:
-        """A page has lost the focus or was closed: it will not report released keys."""
+        """Releases all keys of a page that has lost the focus or was closed: it reports no more releases."""
         with self._lock:
             for code in self._held.pop(page, {}).values():
                 self._let_go(code)
@@ -94,7 +95,7 @@ class Keyboard:
     def events(self) -> dict[int, int]:
         """Events since the last call, by key: the sum of `DOWN`, `TRIGGERED` and `RELEASED`.
 
-        A key that went down and up in between is triggered and released.
+        A key that was pressed and released between two calls is triggered and released.
         """
         self._asked = monotonic()
         with self._lock:

@@ -6,18 +6,18 @@ from collections.abc import Callable
 from threading import Timer
 
 ESCAPE = 27
-# How long a script that asks for keys may take to see ESC before the window closes anyway [s].
+# Maximum time for a script that reads keys to see ESC; then the simulation ends anyway [s].
 _PATIENCE = 1.0
 
 
 class Leaving:
     """Ends a simulation when the user presses ESC. Safe to use from all threads.
 
-    PyBullet closes its window within a frame of ESC, and a loop that asks for keys may see the key before.
-    Here a script that asks for keys always gets the key first.
+    PyBullet closes its window within a frame of ESC, and a loop that reads keys may see the key before.
+    Here a script that reads keys always gets the key first.
 
     Args:
-        close: Ends the simulation; called once or more.
+        close: Ends the simulation; may be called more than once.
     """
 
     def __init__(self, close: Callable[[], None]) -> None:
@@ -30,10 +30,10 @@ class Leaving:
         return self._timer is not None
 
     def escape(self, *, listening: bool) -> None:
-        """The user has pressed ESC.
+        """Ends the simulation after the user has pressed ESC.
 
         Args:
-            listening: The script asks for keys.
+            listening: Whether the script reads keys, and so has to see the key first.
         """
         if not listening:
             self._close()
@@ -43,12 +43,12 @@ class Leaving:
             self._timer.start()
 
     def told(self, events: dict[int, int]) -> None:
-        """The script has read these keys."""
+        """Ends the simulation if ESC is among the key events that the script has read."""
         if self._timer is not None and ESCAPE in events:
             self._timer.cancel()
             self._close()
 
     def cancel(self) -> None:
-        """The simulation has ended in another way."""
+        """Stops waiting for the script, because the simulation has ended in another way."""
         if self._timer is not None:
             self._timer.cancel()

@@ -8,7 +8,7 @@ from carom.viewer.input.keys import DOWN, RELEASED, TRIGGERED
 
 MOVED, CLICKED = 1, 2
 _NO_BUTTON = -1
-# Limit for scripts that never ask for events; others ask many times a second.
+# Limit for scripts that never read the events; others read them many times a second.
 _MOST_EVENTS = 1000
 
 MouseEvent = tuple[int, float, float, int, int]
@@ -21,11 +21,11 @@ class Mouse:
         self._events: deque[MouseEvent] = deque(maxlen=_MOST_EVENTS)
 
     def move(self, x: float, y: float) -> None:
-        """The mouse is now at a pixel, counted from the upper left corner."""
+        """Records a motion of the mouse to a pixel, counted from the upper left corner."""
         self._events.append((MOVED, x, y, _NO_BUTTON, 0))
 
     def button(self, x: float, y: float, button: int, *, down: bool) -> None:
-        """A button, 0 left, 1 in the middle, 2 right, goes down or up."""
+        """Records the press or release of a button: 0 left, 1 middle, 2 right."""
         self._events.append((CLICKED, x, y, button, DOWN | TRIGGERED if down else RELEASED))
 
     def events(self) -> list[MouseEvent]:

@@ -31,10 +31,10 @@ class _Hand:
     Attributes:
         body: Number of the body.
         link: Index of the link; -1 is the base.
-        point: The point of the link, in its inertial frame [m].
-        target: The point of the mouse, in the world [m].
-        tie: The constraint, after it was made.
-        moved: The target has changed since the constraint was updated.
+        point: The pulled point of the link, in the link's inertial frame [m].
+        target: The position of the mouse pointer, in the world [m].
+        tie: The constraint; None until it is made.
+        moved: Whether the target has changed since the constraint was updated.
     """
 
     body: int
@@ -60,20 +60,20 @@ class Picking:
         self._released: list[UserConstraint] = []
 
     def take(self, page: int, body: int, link: int, point: Vector3, target: Vector3) -> None:
-        """A page starts to pull at a point of a link, given in its inertial frame."""
+        """Starts the pull of a page at a point of a link, given in the link's inertial frame."""
         self.release(page)
         if all(map(isfinite, (*point, *target))):
             self._picking[page] = _Hand(body, link, point, target)
 
     def move(self, page: int, target: Vector3) -> None:
-        """The mouse of a page has moved."""
+        """Moves the target of a page's pull, in the world [m]."""
         hand = self._picking.get(page)
         if hand is not None and all(map(isfinite, target)):
             hand.target = target
             hand.moved = True
 
     def release(self, page: int) -> None:
-        """A page stops pulling."""
+        """Ends the pull of a page."""
         hand = self._picking.pop(page, None)
         if hand is not None and hand.tie is not None:
             self._released.append(hand.tie)
@@ -99,7 +99,7 @@ class Picking:
     def _remove_released(self) -> None:
         constraints = self._world.user_constraints
         for tie in self._released:
-            # Its body may have been removed in the meantime.
+            # The constraint is gone if its body has been removed in the meantime.
             if constraints.get(tie.id) is tie:
                 self._world.untie(tie)
         self._released.clear()

@@ -1,4 +1,4 @@
-// The page at work: brings messages to what they are for, and draws.
+// The page: passes each message to the part of the page that shows it, and draws.
 
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
@@ -25,12 +25,12 @@ import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
 
-/** Simulated time after which the view is no longer moved to bodies that come [s]. */
+/** Simulated time after which the camera is no longer moved to show added bodies [s]. */
 const SETTLED = 1;
 
 export class App {
   /**
-   * @param {(message: object) => void} send tells the simulation
+   * @param {(message: object) => void} send sends a message to the simulation
    * @param {(text: ?string) => void} say shows a notice
    */
   constructor(send, say) {
@@ -70,7 +70,7 @@ export class App {
     this.answers = this.makeAnswers();
     this.stale = true;
     this.cameraToTell = false;
-    /** Number of the picture that the script waits for, once it is to be drawn, and the last one asked for. */
+    /** Number of the picture that the script waits for, null if none; and of the last picture asked for. */
     this.awaited = null;
     this.told = 0;
     document.addEventListener("visibilitychange", () => this.tellVisibility());
@@ -140,7 +140,7 @@ export class App {
     };
   }
 
-  /** A simulation begins to tell everything from the beginning. */
+  /** Clears the page at the start of a connection: the simulation sends the whole scene again. */
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
     for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player]) part.clear();
@@ -154,7 +154,7 @@ export class App {
     this.changed();
   }
 
-  /** A message has come: it is remembered, and shown unless the past is. */
+  /** Adds a message to the history and, unless a past moment is shown, shows it. */
   receive(header, payload) {
     this.history.take(header, payload);
     if (header.type === "frame") this.plotFrame(header, payload);
@@ -221,7 +221,7 @@ export class App {
     this.changed();
   }
 
-  /** Tells the simulation what has to come with frames for what is shown. */
+  /** Tells the simulation which data this page needs besides poses. */
   tellWants() {
     if (!this.bodies) return;
     const { wants } = this.options;
@@ -241,7 +241,7 @@ export class App {
     this.send({ type: "visible", visible: !document.hidden });
   }
 
-  /** What a saved replay is told beside what was recorded. */
+  /** Data for a saved replay that are not in the recorded messages: camera and options. */
   facts() {
     return { camera: this.camera.state(), options: this.scriptOptions };
   }

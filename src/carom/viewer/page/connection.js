@@ -1,10 +1,10 @@
-// The connection to the simulation: a socket or, where a proxy passes none, one request after the other. It comes
-// back by itself when the simulation does.
+// The connection to the simulation: a WebSocket or, behind a proxy that does not support WebSockets, polling.
+// It reconnects by itself when the next simulation starts.
 
 const RETRY_MS = 700;
-/** How long a socket may take to open before requests are tried [ms]. */
+/** How long a socket may take to open before polling is tried [ms]. */
 const PATIENCE_MS = 4000;
-/** Most characters of what is told in one request; servers take no longer lines than 8,192. */
+/** Maximum number of characters of the messages in one request; servers limit request lines to 8,192. */
 const MOST_TOLD = 6000;
 
 export class Connection {
@@ -24,7 +24,7 @@ export class Connection {
 
   open() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
-    // The address may hold a token, by which the page may come through a proxy or from another machine.
+    // The address may have a token, which allows access through a proxy or from another machine.
     const socket = new WebSocket(`${scheme}://${location.host}${this.folder}socket${location.search}`);
     const tooLong = setTimeout(() => socket.close(), PATIENCE_MS);
     let opened = false;
@@ -44,7 +44,7 @@ export class Connection {
     this.socket = socket;
   }
 
-  /** Asks again and again, until that does not work. */
+  /** Polls the server until a request fails. */
   async poll() {
     if (this.hadSocket || !new URLSearchParams(location.search).has("token")) return;
     const name = Math.random().toString(36).slice(2);
@@ -66,14 +66,14 @@ export class Connection {
         }
       }
     } catch (problem) {
-      // The simulation has ended, or was never there.
+      // A request fails when the simulation has ended or was never there.
       if (!(problem instanceof TypeError)) throw problem;
     } finally {
       this.untold = null;
     }
   }
 
-  /** What is to be told, as part of an address: as much as fits. */
+  /** Takes as many waiting messages as fit into one request, as part of its query. */
   takeUntold() {
     let text = "";
     while (this.untold.length > 0) {
@@ -91,7 +91,7 @@ export class Connection {
   }
 }
 
-/** Header and payload of a message; src/carom/viewer/messages.py has the layout. */
+/** Header and payload of a message; src/carom/viewer/messages.py documents the format. */
 function decoded(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));

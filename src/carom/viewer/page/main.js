@@ -1,4 +1,4 @@
-// Where the page begins: live beside a simulation, or alone with a recording inside it.
+// Starts the page: connected to a running simulation, or with a recording that is inside the page.
 
 import { App } from "./app.js";
 import { Connection } from "./connection.js";
@@ -12,8 +12,8 @@ function say(text) {
 }
 
 /**
- * Browsers drop the WebGL context of a page when the machine sleeps, the driver is restarted, or a notebook has many
- * views. What comes back is empty, so the page begins again.
+ * Reloads the page after a lost WebGL context, because the restored context is empty. Browsers drop the
+ * context when the machine sleeps, the driver is restarted, or a notebook has many views.
  */
 function surviveLostGraphics() {
   const canvas = document.getElementById("view");

@@ -1,6 +1,6 @@
-// Runs in a notebook, below the cell that shows the page: finds where the browser can reach the server of the
-// kernel's machine. It takes the first place that answers: a name of this machine, the proxy of the editor that has
-// started the kernel, Jupyter's, that of Colab.
+// Runs in a notebook, below the cell that shows the page: finds an address at which the browser can reach the
+// server on the kernel's machine. The first address that answers is used: the local machine, the proxy of the
+// editor that has started the kernel, the proxy of Jupyter, the proxy of Colab.
 
 (async ({ id, port, token, proxy, unreachable }) => {
   const frame = document.getElementById(id);

@@ -1,4 +1,4 @@
-// A page that plays a recording it carries itself.
+// Plays a recording that is inside the page.
 
 import { decoded } from "./time/recording.js";
 

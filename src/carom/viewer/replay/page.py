@@ -1,7 +1,7 @@
 """The page as one file that plays a recording, without a server and without a network.
 
-Browsers load no modules from files if the page itself is a file. So the modules are packed into the page,
-under names (`carom/view/scene.js`) in an import map, and a short script unpacks them.
+Browsers do not let a page that is a local file load modules from other files. So the modules are packed into
+the page, under names (`carom/view/scene.js`) in an import map, and a short script unpacks them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from zlib import compress
 from carom.viewer.page_files import page_files
 
 _PLACE = "RECORDING"
-# What a module imports, by a path relative to itself.
+# Matches an import by a path relative to the importing module.
 _IMPORT = re.compile(r'(\bfrom ")(\.[^"]+)(")')
 _STYLE = re.compile(r'<link rel="stylesheet"[^>]*>')
 _ICON = re.compile(r'<link rel="icon"[^>]*>')

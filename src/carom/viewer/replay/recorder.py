@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _PAGE = 1
-# Tolerance for rounding of times, which are sums of time steps [of the time between two frames].
+# Tolerance for rounding errors in sums of time steps, as a fraction of the interval between two frames.
 _EARLY = 1e-6
-# Messages that belong to a moment; the others are options of a live page.
+# Types of messages that are recorded; the others are only for live pages.
 _OF_BODIES = frozenset({"body", "mesh", "texture", "layout", "dynamics", "constraints"})
 _OF_SCRIPTS = frozenset({"line", "text", "points", "item", "slider"})
 
 
 class ReplayRecorder:
-    """Records a world into an HTML file; get one from `World.record`. One of `World.observers`.
+    """Records a world into an HTML file; `World.record` makes one. One of `World.observers`.
 
-    It is a context manager, and writes the file when the context is left.
+    It is a context manager: the file is written when the context is left.
 
     Args:
         world: The world.
@@ -59,7 +59,7 @@ class ReplayRecorder:
         self._title = self._path.stem if title is None else title
         self._interval = 1.0 / float(positive(fps, "fps"))
         self._board = Board()
-        # Revisions of its own board, and of a viewer's, which has the drawings of scripts.
+        # Last recorded revisions: of this recorder's board, and of the viewer's, which has scripts' drawings.
         self._told = [0, 0]
         lock = RLock()
         self._feed = SceneFeed(world, lock, self._board)
@@ -88,10 +88,10 @@ class ReplayRecorder:
         """Sets the initial view; by default it shows everything.
 
         Args:
-            distance: To the target [m].
-            yaw: About the upward axis [degrees].
-            pitch: Upwards; negative looks down from above [degrees].
-            target: What it looks at [m].
+            distance: Distance from the camera to the target [m].
+            yaw: Angle about the upward axis [degrees].
+            pitch: Upward angle; a camera with a negative pitch looks down from above [degrees].
+            target: The point that the camera looks at [m].
         """
         self._facts["camera"] = {"distance": distance, "yaw": yaw, "pitch": pitch, "target": target}
 
@@ -139,7 +139,7 @@ class ReplayRecorder:
 
     @property
     def frame_count(self) -> int:
-        """How many frames have been recorded."""
+        """Number of recorded frames."""
         return self._recording.frame_count
 
     def _repr_html_(self) -> str:
@@ -150,7 +150,7 @@ class ReplayRecorder:
         return replay_of(self._recording.packed(title=self._title, **self._facts))
 
     def _take_news(self) -> None:
-        """Records the news of the boards."""
+        """Records the new messages on the boards."""
         self._take_from(0, self._board, _OF_BODIES)
         viewer_board = boards.get(self._world)
         if viewer_board is not None:

@@ -1,13 +1,13 @@
 """Recordings: the messages of a page, packed into bytes.
 
-A recording is compressed by zlib. Inside are the length of an index as a little-endian integer of four bytes,
-the index in JSON, and the numbers of its records one after the other. A record is a *message* about the scene
-(its header, and the number of bytes that follow), or a run of *frames* that differ only in their times and
-numbers. The numbers of a run are floats of four bytes, each frame as the differences in bits from the one
-before it, sorted by byte, then by column, then by frame: small changes become zeros,
-which are compressed well.
+A recording is compressed with zlib. It contains the length of an index as a little-endian integer of four
+bytes, the index in JSON, and the binary data of its records, one after the other. A record is a *message*
+about the scene (its header, and the number of bytes of its data), or a run of *frames* that differ only in
+their times and numbers. The numbers of a run are floats of four bytes. Each frame is stored as its bitwise
+XOR with the frame before it, sorted by byte, then by column, then by frame: small changes give zeros, which
+are compressed well.
 
-`page/time/recording.js` reads and writes the same.
+`page/time/recording.js` reads and writes the same format.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def unpacked(recording: bytes) -> tuple[dict[str, Any], list[tuple[dict[str, Any
     """The further data of a recording, and its messages in order, as headers and payloads.
 
     Raises:
-        ValueError: It has another format.
+        ValueError: The recording has another format.
     """
     plain = decompress(recording)
     (length,) = struct.unpack_from("<I", plain)

@@ -1,4 +1,4 @@
-"""Tasks of pages, done between two steps of a world."""
+"""Tasks requested by pages, run between two steps of a world."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 _log = logging.getLogger("carom")
-# How long to wait for a step to end, before the chores are left to the next frame [s].
+# Maximum time to wait for a step to end; the queue is then left to the next frame [s].
 _PATIENCE = 0.02
 
 
@@ -24,7 +24,7 @@ class Chores:
         self._waiting: deque[Callable[[], None]] = deque()
 
     def add(self, chore: Callable[[], None]) -> None:
-        """Queues a function for the time between steps; errors are logged."""
+        """Queues a function to be run between steps; its errors are logged."""
         self._waiting.append(chore)
 
     def do(self) -> None:

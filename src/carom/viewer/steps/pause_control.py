@@ -5,9 +5,9 @@ from __future__ import annotations
 from threading import Condition
 from time import monotonic, sleep
 
-# On Windows a Ctrl-C is noticed only between two waits [s].
+# Maximum length of one wait [s]: on Windows, Ctrl-C is handled only between two waits.
 _LOOK = 0.1
-# A simulation that is slower than its speed catches up at most this delay [s].
+# Maximum delay that a simulation slower than its set speed catches up [s].
 _GREATEST_LAG = 0.1
 
 
@@ -15,7 +15,7 @@ class PauseControl:
     """A gate for steps while a simulation is paused or slowed down. Safe to use from all threads.
 
     Attributes:
-        closed: Steps have to wait. Read without a lock, so that it costs nothing while not paused.
+        closed: Whether steps have to wait. Read without a lock, so that it costs nothing while not paused.
         speed: Maximum speed, simulated time / real time; None for any.
         listeners: Number of waits that end at `call_back`.
     """
@@ -27,24 +27,24 @@ class PauseControl:
         self._steps = 0
         self._calls = 0
         self._changed = Condition()
-        # Simulated and real time from which the speed is counted.
+        # Simulated and real time at which the speed limit started [s].
         self._origin: tuple[float, float] | None = None
 
     def close(self) -> None:
-        """Pauses."""
+        """Pauses the simulation."""
         with self._changed:
             self.closed = True
             self._steps = 0
 
     def open(self) -> None:
-        """Continues."""
+        """Continues the simulation."""
         with self._changed:
             self.closed = False
             self._origin = None
             self._changed.notify_all()
 
     def let_through(self, steps: int = 1) -> None:
-        """Lets some steps pass, and stays paused after them."""
+        """Allows some steps, and stays paused after them."""
         with self._changed:
             self._steps += steps
             self._changed.notify_all()

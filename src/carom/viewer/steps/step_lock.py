@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
 
 class StepLock:
-    """One of `World.observers`: a step waits for the viewer and holds its lock.
+    """Makes each step wait for the viewer and hold its lock; one of `World.observers`.
 
-    With it pages can pause, pull bodies and go back in time while a script calls `World.step`.
+    So pages can pause, pull bodies and go back in time while a script calls `World.step`.
 
     Args:
         viewer: The viewer.
@@ -26,7 +26,7 @@ class StepLock:
         """Waits while the simulation is paused, then takes the lock."""
         if self._viewer.held:
             self._viewer.wait_for_turn()
-        # A step that failed has not released it.
+        # A step that failed has not released the lock.
         if not self._held:
             self._lock.acquire()
             self._held = True

@@ -1,9 +1,9 @@
-// The list of bodies, and what there is to know of the selected one; sliders drive its joints.
+// The list of bodies, and the data of the selected body, with sliders that drive its joints.
 
 import { makeSlider } from "./slider.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
-/** Reach of the slider of a joint without limits [rad or m]. */
+/** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
 const FULL_TURN = Math.PI;
 const SLIDE = 1;
 
@@ -21,13 +21,13 @@ export class Bodies {
     this.link = null;
     this.sliders = new Map();
     this.known = "";
-    /** Called with body and link (or null) once another one is selected. */
+    /** Called with body and link (or null) when the selection changes. */
     this.selectionChanged = () => {};
-    /** Called once a body has been hidden or shown. */
+    /** Called when a body has been hidden or shown. */
     this.changed = () => {};
   }
 
-  /** Lists the bodies there are. */
+  /** Updates the list of bodies. */
   offer() {
     const bodies = [...this.scene.bodies.values()];
     const known = JSON.stringify(bodies.map(({ body, name, links }) => [body, name, links.length]));
@@ -48,7 +48,7 @@ export class Bodies {
     else this.mark();
   }
 
-  /** The switch that hides a body. */
+  /** The checkbox that shows or hides a body. */
   eye(body, name) {
     const eye = Object.assign(document.createElement("input"), { type: "checkbox", title: `Show ${name} (body ${body})` });
     eye.checked = !this.scene.hidden.has(body);
@@ -102,7 +102,7 @@ export class Bodies {
     return control.element;
   }
 
-  /** Brings the numbers of the selected body up to date. */
+  /** Updates the numbers of the selected body. */
   show() {
     const body = this.scene.bodies.get(this.selected);
     if (!body) return;
@@ -137,7 +137,7 @@ export class Bodies {
     for (const [key, slider] of this.sliders) this.showJoint(slider, this.readings.joints.get(key));
   }
 
-  /** Copies the state of the selected body as calls that bring it back. */
+  /** Copies the state of the selected body as calls that restore it. */
   copy() {
     const body = this.selected;
     const pose = this.scene.inertialPose(body, 0);
@@ -161,7 +161,7 @@ export class Bodies {
   }
 }
 
-/** More than this are too many to look through. */
+/** Maximum number of bodies in the list. */
 const MOST_LISTED = 500;
 
 function numbers(values, digits) {

@@ -1,10 +1,10 @@
-// One chart: several lines over time, which can be zoomed.
+// A chart of several values over time, which can be zoomed.
 
 const COLOURS = ["#1f6fb2", "#c2452d", "#3a8f4d", "#7a4fb0", "#a07a10", "#287f86"];
 const TARGET = "#e08a1e";
 const INK = "#5b6b7a";
 const CURSOR = "#d0342c";
-/** Time that is shown at first [s], and the least that can be. */
+/** Initial and minimum time span of a chart [s]. */
 const SECONDS = 10;
 const LEAST_SECONDS = 0.05;
 
@@ -17,7 +17,7 @@ export class Chart {
     this.name = name;
     this.traces = traces;
     this.span = SECONDS;
-    /** The latest time that is shown; null for that of the newest sample. */
+    /** The latest time that is shown [s]; null for the time of the newest sample. */
     this.end = null;
     this.canvas = Object.assign(document.createElement("canvas"), { title: name });
     this.canvas.addEventListener("wheel", (event) => this.zoom(event), { passive: false });
@@ -53,8 +53,8 @@ export class Chart {
 
   /**
    * @param {{time: number, values: (number|null)[][]}[]} samples in the order of time
-   * @param {number} number which of their values are this chart's
-   * @param {?number} cursor a moment to point out [s]
+   * @param {number} number index of this chart's values in a sample
+   * @param {?number} cursor a time to mark by a vertical line [s]
    */
   draw(samples, number, cursor) {
     const { canvas } = this;

@@ -1,4 +1,4 @@
-// What keys and the mouse do, over the view.
+// The list of keys and mouse actions, shown over the view.
 
 const SECTIONS = {
   Mouse: {

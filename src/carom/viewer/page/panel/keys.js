@@ -1,6 +1,6 @@
-// Keys go to the script, and some change the view as they do in PyBullet's window.
+// Key events: they are sent to the script, and some change the view, as in PyBullet's window.
 
-/** Keys that show or hide something. */
+/** Keys that switch an option. */
 const SHORTCUTS = {
   a: "bounds",
   c: "contacts",
@@ -12,7 +12,7 @@ const SHORTCUTS = {
   v: "visuals",
   w: "wireframe",
 };
-/** Keys that would make the browser do something else than the script wants. */
+/** Keys whose default action in the browser is suppressed, because scripts use them. */
 const KEPT_FROM_THE_BROWSER = /^(Arrow.*|Page.*|Home|End|Tab|Backspace| |F([1-46-9]|1[03-5]))$/;
 const TYPING = "input:not([type=range]):not([type=checkbox]), textarea, select";
 
@@ -30,7 +30,7 @@ export class Keys {
     };
     window.addEventListener("keydown", (event) => this.down(event));
     window.addEventListener("keyup", (event) => this.up(event));
-    // Whoever takes the keyboard away will not tell when keys go up.
+    // A page without the focus gets no key releases.
     window.addEventListener("blur", () => this.leave());
   }
 
@@ -42,14 +42,14 @@ export class Keys {
     const onControl = element?.matches("input, button, summary");
     if (KEPT_FROM_THE_BROWSER.test(key) && !command && !onControl) event.preventDefault();
     if (event.repeat) return;
-    // Whoever reads the list closes that, and not the simulation.
+    // While the help is open, ESC closes the help and not the simulation.
     if (key === "Escape" && this.app.help.open) return this.app.help.toggle();
     this.app.send({ type: "key", key, code: event.code, down: true });
     if (!this.app.options.shortcuts || command || event.altKey) return;
     const name = SHORTCUTS[key];
     if (name) {
       this.app.options[name] = !this.app.options[name];
-      // In PyBullet's window the grid goes and comes with the rest.
+      // As in PyBullet's window, the grid is hidden and shown with the panel.
       if (name === "panel") this.app.options.grid = this.app.options.panel;
       this.app.optionsChanged();
     } else this.acts[key]?.();

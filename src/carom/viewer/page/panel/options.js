@@ -1,4 +1,4 @@
-// What is shown and how: set by scripts (configureDebugVisualizer), by the panel and by keys.
+// The display options, set by scripts (configureDebugVisualizer), by the panel and by keys.
 
 /** Numbers of PyBullet's COV_ENABLE_* flags. */
 const FLAG = {
@@ -58,21 +58,21 @@ export class Options {
     this.shadowResolution = 2048;
     this.shadowWorldSize = null;
     this.told = {};
-    /** Grows when the script changes something. */
+    /** Increases when the script sets options. */
     this.version = 0;
   }
 
-  /** Whether shapes are drawn: those that collide, or those that are there to be seen. */
+  /** Whether collision shapes are drawn, or visual shapes if `collision` is false. */
   shows(collision) {
     return collision === this.collisions && (collision || this.visuals);
   }
 
-  /** Whether surfaces have plain colours that mean something, and no light. */
+  /** Whether surfaces are drawn without light, in colours that show links or depth. */
   get flat() {
     return !this.wireframe && (this.linkColours || this.depth);
   }
 
-  /** What frames have to tell for what is shown. */
+  /** The data besides poses that the options need. */
   get wants() {
     return {
       collisions: this.collisions,
@@ -84,12 +84,12 @@ export class Options {
     };
   }
 
-  /** The colour a script has given to a link in wireframe, if any. */
+  /** The colour that a script has given to a link in wireframe, if any. */
   wireColour(body, link) {
     return this.colours.get(`${body},${link}`);
   }
 
-  /** Takes over what the script has changed, and leaves what the user has. */
+  /** Sets the options that the script has changed; flags changed only by the user stay. */
   take(message) {
     this.version += 1;
     for (const [name, flag] of Object.entries(FLAG)) {

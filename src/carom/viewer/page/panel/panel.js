@@ -25,7 +25,7 @@ export class Panel {
     this.showOptions();
   }
 
-  /** Shows the title alone, or all of it. */
+  /** Collapses the panel to its title, or expands it. */
   fold(folded) {
     this.folded = folded;
     this.root.classList.toggle("folded", folded);
@@ -34,7 +34,7 @@ export class Panel {
     button.title = folded ? "Expand the panel" : "Collapse the panel";
   }
 
-  /** Shown at once, so that who presses twice before an answer comes pauses and continues. */
+  /** Pauses or continues. It is shown at once, so that a second press before the answer undoes the first. */
   togglePause() {
     const paused = !this.paused;
     this.send({ type: "pause", paused });
@@ -104,7 +104,7 @@ export class Panel {
     return this.labelled("check", box, message, ({ value }) => (box.checked = value !== 0));
   }
 
-  /** A control with its name around it. */
+  /** A control with its name. */
   labelled(className, control, message, show) {
     const label = Object.assign(document.createElement("label"), { className });
     label.append(...(className === "check" ? [control, message.name] : [message.name, control]));

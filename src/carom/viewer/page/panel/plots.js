@@ -1,4 +1,4 @@
-// Charts of what joints, bodies, contacts, sensors and scripts do over time.
+// Charts of joints, bodies, contacts, sensors and values of scripts over time.
 
 import { Chart } from "./chart.js";
 import { download } from "../time/download.js";
@@ -6,11 +6,11 @@ import { sourcesOf } from "./sources.js";
 import { POSE_FLOATS } from "../view/scene.js";
 import { Readings } from "../view/readings.js";
 
-/** More samples than these of one plot are thinned out no further but forgotten. */
+/** Maximum number of samples of a plot; beyond it the oldest tenth is dropped. */
 const MOST_SAMPLES = 20000;
 
 export class Plots {
-  /** @param {() => void} wantsChanged called once other numbers are needed from the simulation */
+  /** @param {() => void} wantsChanged called when the plots need other data from the simulation */
   constructor(scene, history, player, wantsChanged) {
     Object.assign(this, { scene, history, player, wantsChanged });
     this.select = document.getElementById("joint");
@@ -25,7 +25,7 @@ export class Plots {
     });
   }
 
-  /** Offers what there is. */
+  /** Updates the list of quantities that can be plotted. */
   offer() {
     const groups = sourcesOf(this.scene, this.valueNames);
     const known = JSON.stringify(Object.values(groups).map((group) => group.map(({ key, title }) => [key, title])));
@@ -42,7 +42,7 @@ export class Plots {
     for (const key of [...this.plotted.keys()]) if (!this.sources.has(key)) this.remove(key);
   }
 
-  /** What the plots need to be told of. */
+  /** The data that the plots need from the simulation. */
   get wants() {
     const wants = { joints: [], links: [], contacts: false };
     for (const { source } of this.plotted.values()) {
@@ -80,7 +80,7 @@ export class Plots {
     this.wantsChanged();
   }
 
-  /** Takes what the past knows of a new plot. */
+  /** Fills a new plot with samples of the history. */
   refill(plot) {
     const readings = new Readings();
     for (const { header, payload } of this.history.frames.slice(-MOST_SAMPLES)) {
@@ -101,13 +101,13 @@ export class Plots {
     this.valueNames.clear();
   }
 
-  /** Takes over what a frame tells. */
+  /** Adds a sample of a frame to each plot. */
   take(header, payload, readings) {
     for (const name of Object.keys(header.values ?? {})) this.takeName(name);
     for (const plot of this.plotted.values()) this.sample(plot, header, payload, readings);
   }
 
-  /** What a script plots is shown without being asked for. */
+  /** Adds a plot for a value that a script has begun to plot. */
   takeName(name) {
     if (this.valueNames.has(name)) return;
     this.valueNames.add(name);
@@ -143,7 +143,7 @@ export class Plots {
     }
   }
 
-  /** Saves a plot as a table: time and a column for each line. */
+  /** Saves a plot as a CSV table: a column for the time and one for each line. */
   save(key) {
     const { source, samples } = this.plotted.get(key);
     const columns = source.charts.flatMap(({ name, traces }) => traces.map((trace) => `${name} ${trace.name}`.trim()));

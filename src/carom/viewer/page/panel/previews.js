@@ -1,4 +1,4 @@
-// What the last camera image of the script shows: colours, depth, segmentation.
+// Previews of the script's last camera image: colours, depth and segmentation.
 
 const KINDS = ["rgbPreview", "depthPreview", "segmentationPreview"];
 const TITLES = ["colour", "depth", "segmentation"];

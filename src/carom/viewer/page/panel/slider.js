@@ -1,9 +1,9 @@
-// A slider with its value beside it, which can be typed, and a button that sets it back.
+// A slider with a number field for its value, and a button that resets it to its first value.
 
 /**
  * @param {string} id of the slider's element
  * @param {string} name
- * @param {(value: number) => void} moved called with where the user has put it
+ * @param {(value: number) => void} moved called with the value that the user has set
  * @returns {{element: HTMLElement, show: (facts: {lower: number, upper: number, value: number}) => void}}
  */
 export function makeSlider(id, name, moved) {
@@ -35,7 +35,7 @@ export function makeSlider(id, name, moved) {
   typed.addEventListener("blur", read);
   reset.addEventListener("click", () => set(start));
   const show = ({ lower, upper, value }) => {
-    // While the user moves it, what comes back is where it was.
+    // While the user moves the slider, the value that the simulation sends back is out of date.
     if (held) return;
     start ??= value;
     digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(upper - lower || 1))));

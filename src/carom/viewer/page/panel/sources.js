@@ -1,11 +1,11 @@
-// What can be plotted, and how its numbers are read from a frame.
+// The quantities that can be plotted, and how their numbers are read from a frame.
 
 import { composed } from "../view/maths.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
 const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
 
-/** Everything there is to plot now: groups of sources by title. */
+/** All quantities that can be plotted now: groups of sources by title. */
 export function sourcesOf(scene, valueNames) {
   const groups = { Joints: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
   for (const body of scene.bodies.values()) {

@@ -1,4 +1,4 @@
-// The switches: what is shown on this page.
+// The switches of the display options of this page.
 
 const GROUPS = [
   [
@@ -71,7 +71,7 @@ export class Toggles {
     for (const [name, box] of this.boxes) box.checked = this.options[name];
   }
 
-  /** Says what the length of arrows stands for. */
+  /** Shows the scales of arrows: force and torque per metre of length. */
   showScales({ force, torque }) {
     const parts = [];
     if ((this.options.forces || this.options.cones) && force) parts.push(`force: 1 m = ${force} N`);

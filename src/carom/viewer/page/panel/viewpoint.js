@@ -1,6 +1,5 @@
-// Where the camera is: presets, following, and the numbers for resetDebugVisualizerCamera.
+// The camera's controls: presets, following, and the arguments of resetDebugVisualizerCamera.
 
-import { add, turned } from "../view/maths.js";
 import { boundsOfBody, boundsOfScene } from "../view/bounds.js";
 import { PRESETS } from "../view/camera.js";
 
@@ -9,14 +8,14 @@ export class Viewpoint {
    * @param {Camera} camera
    * @param {Scene} scene
    * @param {Options} options
-   * @param {() => void} moved called once the user has moved the camera
+   * @param {() => void} moved called when the user has moved the camera
    */
   constructor(camera, scene, options, moved) {
     Object.assign(this, { camera, scene, options, moved });
     this.numbers = document.getElementById("camera-numbers");
     this.following = document.getElementById("follow");
     this.selection = null;
-    /** Whether the scene is still to be brought into view, because nobody has said where to look from. */
+    /** Whether the page fits the scene into view, because neither script nor user has set the camera. */
     this.undecided = true;
     const presets = document.getElementById("presets");
     for (const name of Object.keys(PRESETS)) {
@@ -35,7 +34,7 @@ export class Viewpoint {
     this.moved();
   }
 
-  /** Brings the selected body, or everything, into view. */
+  /** Fits the selected body, or the whole scene, into view. */
   fit() {
     const body = this.selection && this.scene.bodies.get(this.selection.body);
     const collisions = this.options.collisions;
@@ -44,25 +43,25 @@ export class Viewpoint {
     return bounds !== null;
   }
 
-  /** Looks at the scene once it is there, unless the script or the user has said where to look from. */
+  /** Fits the scene into view as its bodies arrive, unless the script or the user has set the camera. */
   lookAtFirst() {
     if (!this.undecided || this.scene.bodies.size === 0 || this.scene.poses.length === 0) return false;
     const bounds = boundsOfScene(this.scene, false);
     if (!bounds) return false;
     const key = JSON.stringify([...this.scene.bodies.keys()]);
-    // While bodies are loaded one after the other the view follows.
+    // The view is fitted again whenever bodies have been added or removed.
     if (key === this.fitted) return false;
     this.fitted = key;
     this.camera.fit(bounds);
     return true;
   }
 
-  /** Moves the camera along with what is followed. */
+  /** Moves the camera along with the selected body or link, if following is on. */
   follow() {
     if (!this.following.checked) return;
     const { body, link } = this.selection ?? {};
     const pose = body === undefined ? null : this.scene.inertialPose(body, link ?? 0);
-    this.camera.follow(pose && add(pose.position, turned(pose.orientation, [0, 0, 0])));
+    this.camera.follow(pose && pose.position);
   }
 
   show() {

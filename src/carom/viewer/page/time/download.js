@@ -1,6 +1,6 @@
-// Files that the user gets from the page.
+// Downloads of files that the page has made.
 
-/** Gives the user a file. */
+/** Downloads a file in the browser. */
 export function download(blob, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);

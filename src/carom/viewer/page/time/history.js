@@ -1,16 +1,16 @@
-// The last frames of a simulation, and everything that was shown beside them.
+// The last frames of a simulation, and the other messages shown with them.
 
 import { Ledger } from "./ledger.js";
 
-/** Memory that frames and the scene may take. */
+/** Maximum memory for frames and other messages [bytes]. */
 export const BUDGET_BYTES = 128 * 2 ** 20;
-/** What a frame takes beside its numbers. */
+/** Memory of a frame besides its numbers [bytes]. */
 const FRAME_BYTES = 200;
-/** Time between frames where simulated time stands still or goes back [s]. */
+/** Step of the history's clock between frames if simulated time stands still or goes back [s]. */
 const LEAST_INTERVAL = 1 / 60;
-/** How many frames pass between two looks at the memory. */
+/** Number of frames between two checks of the memory. */
 const TIDY_EVERY = 64;
-/** Kinds of messages that belong to a moment; others say how things are now. */
+/** Types of messages that the history keeps besides frames; all others are only for the live view. */
 const SINGLE = new Set(["layout", "constraints", "rays", "pyramid"]);
 const NUMBERED = { body: "body", mesh: "mesh", texture: "texture", slider: "slider", dynamics: "dynamics", line: "item", text: "item", points: "item" };
 
@@ -23,7 +23,7 @@ export class History {
   clear() {
     this.ledger = new Ledger();
     this.frames = [];
-    /** How many frames have been forgotten: the number of the first that is kept. */
+    /** Number of the first frame that is kept: the number of dropped frames. */
     this.first = 0;
     this.bytes = 0;
     this.version = (this.version ?? 0) + 1;
@@ -33,7 +33,7 @@ export class History {
     return this.frames.length;
   }
 
-  /** Seconds from the first frame that was ever kept, at the first and at the last there is. */
+  /** Clock of the first and of the last kept frame: time since the first frame that was ever kept [s]. */
   get start() {
     return this.frames[0]?.clock ?? 0;
   }
@@ -42,7 +42,7 @@ export class History {
     return this.frames.at(-1)?.clock ?? 0;
   }
 
-  /** Takes note of a message. */
+  /** Adds a message. */
   take(header, payload) {
     if (header.type === "frame") return this.takeFrame(header, payload);
     const name = nameOf(header);
@@ -62,7 +62,7 @@ export class History {
     if (this.frames.length % TIDY_EVERY === 0) this.tidy();
   }
 
-  /** Forgets the oldest frames as far as the budget asks for it. */
+  /** Drops the oldest frames until the budget is met. */
   tidy() {
     let drop = 0;
     while (this.bytes + this.ledger.bytes > this.budget && drop < this.frames.length - 1) {
@@ -75,7 +75,7 @@ export class History {
     this.ledger.forget(this.first);
   }
 
-  /** Index of the last frame that is not later than a time of the clock. */
+  /** Index of the last frame that is not later than a time on the clock [s]. */
   indexAt(clock) {
     let [low, high] = [0, this.frames.length - 1];
     while (low < high) {
@@ -86,13 +86,13 @@ export class History {
     return low;
   }
 
-  /** What was shown beside a frame: versions by name. */
+  /** The messages shown with a frame: versions by name. */
   sceneAt(index) {
     return this.ledger.at(this.first + index);
   }
 }
 
-/** The name under which a message is kept; null if it is not. */
+/** The name under which a message is kept; null if the message is not kept. */
 export function nameOf(header) {
   const type = header.type.replace(/^no /, "");
   if (SINGLE.has(type)) return type;
@@ -100,7 +100,7 @@ export function nameOf(header) {
   return kind === undefined ? null : `${kind} ${header[kind]}`;
 }
 
-/** The message that takes back what a name stands for. */
+/** The message that removes the object of a name. */
 export function removalOf(name) {
   const [kind, number] = name.split(" ");
   return number === undefined ? { type: `no ${kind}` } : { type: `no ${kind}`, [kind]: Number(number) };

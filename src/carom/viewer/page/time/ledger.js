@@ -1,13 +1,13 @@
-// What was true when: of everything that has a name, its versions and how long each was shown.
+// The messages over time: the versions of each named message, and in which frames each version was shown.
 
 export class Ledger {
   constructor() {
-    /** Versions by name, the oldest first: from when on, until when (Infinity: now), and the message. */
+    /** Versions by name, the oldest first: shown from a frame on until another (Infinity: now), message. */
     this.versions = new Map();
     this.bytes = 0;
   }
 
-  /** A message takes the place of the one of the same name, from a moment on. */
+  /** Adds a message, which replaces that of the same name from a moment (a frame number) on. */
   put(name, message, moment) {
     const list = this.versions.get(name) ?? [];
     this.close(list, moment);
@@ -16,7 +16,7 @@ export class Ledger {
     this.versions.set(name, list);
   }
 
-  /** What a name stands for is gone, from a moment on. */
+  /** Removes the message of a name, from a moment on. */
   remove(name, moment) {
     this.close(this.versions.get(name) ?? [], moment);
   }
@@ -25,17 +25,17 @@ export class Ledger {
     const last = list.at(-1);
     if (last?.to !== Infinity) return;
     last.to = moment;
-    // Nobody can have seen what lasted for no frame.
+    // A version that was shown in no frame is dropped.
     if (last.from === moment) this.bytes -= sizeOf(list.pop().message);
   }
 
-  /** The message that a name stands for now; null if it is gone. */
+  /** The present message of a name; null if it has been removed. */
   newest(name) {
     const last = this.versions.get(name)?.at(-1);
     return last?.to === Infinity ? last.message : null;
   }
 
-  /** What there was at a moment: versions by name. */
+  /** The versions at a moment, by name. */
   at(moment) {
     const found = new Map();
     for (const [name, list] of this.versions) {
@@ -45,7 +45,7 @@ export class Ledger {
     return found;
   }
 
-  /** Drops what was gone before a moment. */
+  /** Drops the versions that ended before a moment. */
   forget(moment) {
     for (const [name, list] of this.versions) {
       while (list.length && list[0].to <= moment) this.bytes -= sizeOf(list.shift().message);

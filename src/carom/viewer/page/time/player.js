@@ -1,4 +1,4 @@
-// Which moment is shown: the newest, or one of the past, standing or running.
+// The player: shows the newest moment of the history, or a past one, paused or playing.
 
 import { removalOf } from "./history.js";
 
@@ -7,19 +7,19 @@ const NOTHING = new ArrayBuffer(0);
 export class Player {
   /**
    * @param {History} history
-   * @param {(header: object, payload: ArrayBuffer) => void} show brings a message to what it is for
+   * @param {(header: object, payload: ArrayBuffer) => void} show shows a message
    */
   constructor(history, show) {
     this.history = history;
     this.show = show;
-    /** The newest moment is shown, and whatever comes. */
+    /** Whether the newest moment is shown, and new messages as they arrive. */
     this.live = true;
     this.running = false;
     this.speed = 1;
     this.looping = false;
-    /** The moment that is shown, as a time of the history's clock [s]. */
+    /** The shown moment, as a time on the history's clock [s]. */
     this.clock = 0;
-    /** Versions that are on the stage, by name. */
+    /** The messages that are shown, by name. */
     this.staged = new Map();
     this.changed = () => {};
   }
@@ -31,12 +31,12 @@ export class Player {
     this.changed();
   }
 
-  /** Number of the frame that is shown. */
+  /** Index of the shown frame in the history. */
   get index() {
     return this.live ? this.history.count - 1 : this.history.indexAt(this.clock);
   }
 
-  /** Shows a moment of the past, and stays there. */
+  /** Shows a past moment, at a time on the history's clock [s]. */
   seek(clock) {
     if (this.history.count === 0) return;
     this.live = false;
@@ -45,7 +45,7 @@ export class Player {
     this.changed();
   }
 
-  /** Goes some frames forwards or back, and stays there. */
+  /** Goes some frames forwards or back, and pauses there. */
   step(frames) {
     const { history } = this;
     if (history.count === 0) return;
@@ -54,7 +54,7 @@ export class Player {
     this.seek(history.frames[index].clock);
   }
 
-  /** Plays from the shown moment on; from the beginning if that is the last one. */
+  /** Plays from the shown moment on; from the beginning if the shown moment is the last one. */
   play() {
     if (this.history.count === 0) return;
     const from = this.live || this.clock >= this.history.end ? this.history.start : this.clock;
@@ -67,7 +67,7 @@ export class Player {
     this.changed();
   }
 
-  /** Goes on with what happens now. */
+  /** Returns to the live simulation. */
   goLive() {
     this.running = false;
     this.live = true;
@@ -78,7 +78,7 @@ export class Player {
     this.changed();
   }
 
-  /** Lets time pass [s]; returns whether another moment is shown. */
+  /** Advances the playback by a time [s]; returns whether another moment is shown. */
   tick(seconds) {
     if (this.live || !this.running) return false;
     const { start, end } = this.history;
@@ -91,11 +91,11 @@ export class Player {
     return true;
   }
 
-  /** Brings the stage to the shown moment. */
+  /** Shows the messages and the frame of the shown moment. */
   stage() {
     const { history } = this;
     const index = this.index;
-    // What has come since the last frame is shown, too.
+    // The live view includes messages that have arrived since the last frame.
     this.setScene(history.sceneAt(this.live ? history.count : index));
     const { header, payload, clock } = history.frames[index];
     const next = this.live ? undefined : history.frames[index + 1];
@@ -115,14 +115,14 @@ export class Player {
     this.staged = new Map([...versions].map(([name, { message }]) => [name, message]));
   }
 
-  /** A message is shown as it arrives. */
+  /** Records a message that is shown as it arrives; null removes it. */
   stageNow(name, message) {
     if (message === null) this.staged.delete(name);
     else this.staged.set(name, message);
   }
 }
 
-/** Poses between two frames; what follows the poses is that of the first. */
+/** Payload with poses interpolated between two frames; the numbers after the poses are those of frame `a`. */
 function blended(a, b, share, poses) {
   const result = new Float32Array(a.slice(0));
   const other = new Float32Array(b);

@@ -1,8 +1,8 @@
-// A history as bytes, and back; src/carom/viewer/replay/recording.py has the format.
+// Packs a history into bytes and unpacks it; src/carom/viewer/replay/recording.py documents the format.
 
 const FORMAT = 1;
 
-/** The messages of a history, each frame after the scene it was shown with. */
+/** The scene messages of a history and their removals, in order of the frames they were first shown with. */
 export function messagesOf(history) {
   const events = [];
   for (const [name, list] of history.ledger.versions) {
@@ -14,7 +14,7 @@ export function messagesOf(history) {
   return events.sort((a, b) => a.moment - b.moment || a.order - b.order);
 }
 
-/** A file: what to tell of it, then the bytes of scene messages and runs of frames. */
+/** Packs a history: an index with further data (`facts`), then the bytes of messages and runs of frames. */
 export async function encoded(history, facts, removal) {
   const events = messagesOf(history);
   const records = [];
@@ -49,7 +49,7 @@ export async function encoded(history, facts, removal) {
   return through(new Blob([length, index, ...parts]), new CompressionStream("deflate"));
 }
 
-/** What is told of a recording, and its messages in order, as pairs of header and payload. */
+/** The further data of a recording, and its messages in order, as pairs of header and payload. */
 export async function decoded(bytes) {
   const plain = await through(new Blob([bytes]), new DecompressionStream("deflate"));
   const length = new DataView(plain).getUint32(0, true);
@@ -77,7 +77,7 @@ function sameRun(a, b) {
   return facts(a.header) === facts(b.header);
 }
 
-/** Frames as differences in bits, byte by byte: what hardly changes becomes zeros, which pack well. */
+/** Frames as bitwise XOR with the frame before, sorted by byte: small changes give zeros, which pack well. */
 function planes(frames, floats) {
   const [count, size] = [frames.length, frames.length * floats];
   const result = new Uint8Array(4 * size);

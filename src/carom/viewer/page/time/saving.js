@@ -1,4 +1,4 @@
-// Saving what is seen: a picture, a film, or a page that replays it all.
+// Saving the view as a picture or a video, and the history as a page that replays it.
 
 import { download } from "./download.js";
 import { removalOf } from "./history.js";
@@ -7,16 +7,16 @@ import { encoded } from "./recording.js";
 const FILM_FPS = 30;
 const FILM_BITS = 8_000_000;
 const FILM_KINDS = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"];
-/** Where the page that plays a recording expects it. */
+/** Placeholder of the recording in the page that plays it. */
 const PLACE = "RECORDING";
 
 export class Saving {
   /**
    * @param {HTMLCanvasElement} canvas
    * @param {History} history
-   * @param {() => string} title names the files
-   * @param {() => object} facts what a replay is told beside what was recorded
-   * @param {(text: ?string) => void} say
+   * @param {() => string} title returns the name of the files
+   * @param {() => object} facts returns the further data of a replay: camera and options
+   * @param {(text: ?string) => void} say shows a notice
    */
   constructor(canvas, history, title, facts, say) {
     Object.assign(this, { canvas, history, title, facts, say });
@@ -27,7 +27,7 @@ export class Saving {
     this.filmButton.addEventListener("click", () => this.toggleFilm());
     document.getElementById("save").addEventListener("click", () => this.saveReplay());
     this.changed = () => {};
-    /** Called with whether a film is made. */
+    /** Called with true when a video is started, and with false when it ends. */
     this.filming = () => {};
   }
 
@@ -36,7 +36,7 @@ export class Saving {
     this.changed();
   }
 
-  /** Called right after a picture has been drawn, as long as it is there. */
+  /** Saves a picture if asked for. Called right after drawing, while the canvas still has its pixels. */
   drawn() {
     if (!this.pictureWanted) return;
     this.pictureWanted = false;
@@ -48,7 +48,7 @@ export class Saving {
     picture.toBlob((blob) => download(blob, `${this.title()}.png`));
   }
 
-  /** Writes the texts over the view into a picture. */
+  /** Draws the texts that are over the view into a picture. */
   write(context, ratio) {
     for (const span of document.querySelectorAll("#labels span:not([hidden])")) {
       const { left, bottom } = span.getBoundingClientRect();
@@ -82,7 +82,7 @@ export class Saving {
     this.changed();
   }
 
-  /** Saves a page that replays what is remembered, without a network. */
+  /** Saves a page that replays the history, without a network. */
   async saveReplay() {
     if (this.history.count === 0) return;
     this.say("Saving…");

@@ -1,11 +1,11 @@
-// The bar below the view: scrub, play back, loop, mark, and go on live.
+// The time bar below the view: scrubbing, playback, loops, marks, and the return to the live simulation.
 
 const NEAR = 8;
 
 export class Timeline {
   /**
    * @param {Player} player
-   * @param {(message: object) => void} send tells the simulation; does nothing in a replay
+   * @param {(message: object) => void} send sends a message to the simulation; does nothing in a replay
    */
   constructor(player, send) {
     this.player = player;
@@ -17,7 +17,7 @@ export class Timeline {
     this.live = document.getElementById("live");
     this.loop = document.getElementById("loop");
     this.ticks = document.getElementById("ticks");
-    /** Marks by number: where they are on the clock, and whether the simulation can go back to them. */
+    /** Marks by number: their times on the history's clock [s], and their buttons. */
     this.marks = new Map();
     this.bind();
     player.changed = () => this.show();
@@ -69,7 +69,7 @@ export class Timeline {
     this.marks.delete(mark);
   }
 
-  /** Brings the bar up to date. */
+  /** Updates the bar. */
   show() {
     const { player } = this;
     const { history } = player;
@@ -87,7 +87,7 @@ export class Timeline {
     const span = Math.max(history.end - history.start, 1e-6);
     for (const { clock: at, button } of this.marks.values()) {
       button.hidden = at < history.start;
-      // The handle of a slider does not reach its ends.
+      // The thumb of a slider does not reach the ends of its track.
       button.style.left = `calc(${NEAR}px + ${(at - history.start) / span} * (100% - ${2 * NEAR}px))`;
     }
   }

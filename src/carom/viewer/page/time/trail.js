@@ -1,13 +1,13 @@
-// Where something has been.
+// The trail of a link: its recent positions.
 
 import { POSE_FLOATS } from "../view/scene.js";
 
-/** How long a trail is, as a time of the history's clock [s], and of how many pieces at most. */
+/** Duration of a trail on the history's clock [s], and its maximum number of segments. */
 const SECONDS = 5;
 const MOST_PIECES = 600;
 
 /**
- * Places of a link in the frames up to one of them, the oldest first.
+ * Positions of a link in the frames up to a given one, the oldest first.
  *
  * @param {History} history
  * @param {number} index of the last frame
@@ -21,7 +21,7 @@ export function trailOf(history, index, scene, selection) {
   const places = [];
   for (let i = index; i >= 0 && places.length <= MOST_PIECES; i--) {
     const { header, payload, clock } = history.frames[i];
-    // Frames of other bodies have other things in this place.
+    // Frames with another layout have the poses of other bodies at this index.
     if (header.layout !== last.header.layout || clock < last.clock - SECONDS) break;
     if (at + POSE_FLOATS <= header.poses * POSE_FLOATS) places.push([...new Float32Array(payload, 4 * at, 3)]);
   }

@@ -1,11 +1,11 @@
-// How far things reach: boxes around links, bodies and the whole scene.
+// Bounding boxes of links, bodies and the whole scene.
 
 import { add, turned } from "./maths.js";
 
-/** What reaches farther than this is a floor or a backdrop, and not what one looks at [m]. */
+/** A box larger than this along two axes is a floor or a backdrop, and is not fitted into the view [m]. */
 const FLOOR = 9;
 
-/** Lower and upper corner around a link, in the world; null where nothing is to be seen of it. */
+/** Lower and upper corner of a link's bounding box, in the world; null for a link without shapes or pose. */
 export function boundsOfLink(scene, body, link, collisions) {
   const pose = scene.inertialPose(body.body, link);
   const shapes = body.shapes.filter((shape) => shape.link === link && !!shape.collision === collisions);
@@ -22,7 +22,7 @@ export function boundsOfLink(scene, body, link, collisions) {
   return box[0][0] <= box[1][0] ? box : null;
 }
 
-/** The same around a body, or around those of its links that a function picks. */
+/** Bounding box of a body, or of those of its links for which `picked` is true; without floors. */
 export function boundsOfBody(scene, body, collisions, picked = () => true) {
   const box = emptyBox();
   body.links.forEach((_, link) => {
@@ -32,7 +32,7 @@ export function boundsOfBody(scene, body, collisions, picked = () => true) {
   return box[0][0] <= box[1][0] ? box : null;
 }
 
-/** The same around everything but floors. */
+/** Bounding box of all visible bodies, without floors. */
 export function boundsOfScene(scene, collisions) {
   const box = emptyBox();
   for (const body of scene.bodies.values()) {

@@ -7,10 +7,10 @@ const FAR = 1000;
 const DEGREES_PER_PIXEL = 0.3;
 const STEEPEST = 89.9;
 
-/** The sphere around what is looked at, as part of the distance that just shows it; and the least sphere [m]. */
+/** Distance of a camera that shows a sphere, in radii (1.41 would just do); and the smallest radius [m]. */
 const FIT_MARGIN = 1.5;
 const LEAST_FIT = 0.15;
-/** Yaw and pitch. */
+/** Yaw and pitch of the preset views [degrees]. */
 export const PRESETS = {
   corner: [50, -35],
   front: [90, 0],
@@ -27,7 +27,7 @@ export class Camera {
     this.yaw = 50;
     this.pitch = -35;
     this.target = [0, 0, 0];
-    /** Where the point is that the camera moves along with; null if there is none. */
+    /** Last position of the point that the camera follows; null if there is none. */
     this.followed = null;
     this.yUp = false;
     this.width = 1;
@@ -52,7 +52,7 @@ export class Camera {
     this.update();
   }
 
-  /** Moves the target so that what is there follows the mouse. */
+  /** Moves the target so that objects there follow the mouse. */
   pan(dx, dy) {
     const perPixel = (2 * this.distance) / this.height;
     const shift = add(scale(this.right, -dx * perPixel), scale(this.up, dy * perPixel));
@@ -84,23 +84,23 @@ export class Camera {
     this.matrix = multiply(this.projection, this.view);
   }
 
-  /** Looks at a box so that all of it is in view; the direction stays. */
+  /** Moves the camera so that a whole box is in view; its direction stays. */
   fit([lower, upper]) {
     this.target = lower.map((x, i) => 0.5 * (x + upper[i]));
     const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
-    // The field of view is 90 degrees from edge to edge of the shorter side.
+    // The vertical field of view is 90 degrees; in a tall window the horizontal one is narrower.
     const narrow = Math.min(1, this.width / Math.max(this.height, 1));
     this.distance = (FIT_MARGIN * radius) / narrow;
     this.update();
   }
 
-  /** Looks from one of the sides. */
+  /** Sets the direction of a preset view. */
   preset(name) {
     [this.yaw, this.pitch] = PRESETS[name];
     this.update();
   }
 
-  /** Moves along with a point that something is followed by. */
+  /** Moves the camera along with a moving point; null ends that. */
   follow(point) {
     if (this.followed && point) {
       this.target = add(this.target, subtract(point, this.followed));
@@ -109,14 +109,14 @@ export class Camera {
     this.followed = point;
   }
 
-  /** Direction of unit length from the eye through a pixel. */
+  /** Unit vector from the eye through a pixel. */
   ray(x, y) {
     const right = ((2 * x) / this.width - 1) * (this.width / this.height);
     const up = 1 - (2 * y) / this.height;
     return unit(add(this.forward, add(scale(this.right, right), scale(this.up, up))));
   }
 
-  /** Pixel of a point and its distance along the view, or null for what is behind the eye. */
+  /** Pixel of a point and its depth along the view direction; null for points behind the eye. */
   pixel(point) {
     const offset = subtract(point, this.eye);
     const depth = dot(offset, this.forward);
@@ -126,7 +126,7 @@ export class Camera {
     return [((x + 1) / 2) * this.width, ((1 - y) / 2) * this.height, depth];
   }
 
-  /** The camera as it is seen in the ground through the origin, and what it sees there. */
+  /** The camera mirrored at the ground plane through the origin, which sees the reflections of the ground. */
   mirrored() {
     const axis = this.yUp ? 1 : 2;
     const flip = (vector) => vector.map((value, i) => (i === axis ? -value : value));

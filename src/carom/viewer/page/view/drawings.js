@@ -1,4 +1,4 @@
-// What scripts draw: lines, points and texts, on links or in the world.
+// Lines, points and texts that scripts draw, fixed to links or in the world.
 
 import { add, turned } from "./maths.js";
 import { Sign } from "./sign.js";
@@ -44,7 +44,7 @@ export class Drawings {
     this.list();
   }
 
-  /** Keeps apart what the renderer asks for at every picture. */
+  /** Lists point clouds and signs separately, because the renderer needs them for every picture. */
   list() {
     const items = [...this.items.values()];
     this.clouds = items.filter((item) => item.type === "points");
@@ -83,7 +83,7 @@ export class Drawings {
     return label;
   }
 
-  /** Adds the lines that scripts have drawn. */
+  /** Adds the lines drawn by scripts. */
   addLines(lines, scene) {
     for (const item of this.items.values()) {
       if (item.type !== "line") continue;
@@ -92,7 +92,7 @@ export class Drawings {
     }
   }
 
-  /** Shows the names of the link under the mouse. */
+  /** Shows the names of body, link and joint under the mouse. */
   showName(scene, named, pixel) {
     this.name.hidden = !named;
     if (!named) return;
@@ -102,7 +102,7 @@ export class Drawings {
     this.name.style.transform = `translate(${pixel[0] + 14}px, ${pixel[1] + 14}px)`;
   }
 
-  /** Puts texts where they belong on the page. */
+  /** Moves the texts to the pixels of their positions. */
   placeLabels(scene, camera) {
     for (const item of this.items.values()) {
       if (!item.label) continue;

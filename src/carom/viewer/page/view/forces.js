@@ -1,4 +1,4 @@
-// Contacts and joints as the engine sees them: points, forces, friction cones, axes, torques, limits.
+// Drawings of contacts and joints: contact points, forces, friction cones, joint axes, torques and limits.
 
 import { add, cross, dot, scale, subtract, turned, unit } from "./maths.js";
 import { across } from "./lines.js";
@@ -14,11 +14,11 @@ const POINT_SIZE = 0.012;
 const NORMAL_LENGTH = 0.06;
 const AXIS_LENGTH = 0.12;
 const ARC_RADIUS = 0.08;
-/** Length of the longest arrow [m], and of the longest one there was. */
+/** Maximum length of an arrow [m]. */
 const LONGEST = 0.4;
 const CONE_LINES = 16;
 
-/** Contact points, the force in each, and how far friction lets it lean. */
+/** Adds contact points, their forces and their friction cones. */
 export function addContacts(overlays) {
   const { lines, options, readings, scales } = overlays;
   if (!options.contacts && !options.forces && !options.cones) return;
@@ -35,7 +35,7 @@ export function addContacts(overlays) {
   }
 }
 
-/** Forces inside the cone are held by friction; at its edge the contact slides. */
+/** Adds a friction cone: a contact sticks while its force is inside, and slides at the edge of the cone. */
 function addCone(lines, { point, normal, coefficient }, height) {
   const [side, other] = across(normal);
   const centre = add(point, scale(normal, height));
@@ -50,7 +50,7 @@ function addCone(lines, { point, normal, coefficient }, height) {
   }
 }
 
-/** Axes of joints, what their drives do, and how far they may go. */
+/** Adds the axes, torques and limits of joints. */
 export function addJoints(overlays) {
   const { options } = overlays;
   if (!options.axes && !options.torques && !options.limits) return;
@@ -71,7 +71,7 @@ function addAxis(lines, origin, axis) {
   lines.arrow(origin, scale(axis, AXIS_LENGTH), AXIS, 2);
 }
 
-/** An arrow along the axis, and for a torque an arc that turns the way it does. */
+/** Adds the force of a prismatic joint as an arrow along its axis, a torque as an arc about the axis. */
 function addTorque({ lines, scales }, origin, axis, torque, kind) {
   scales.torque = Math.max(scales.torque, niceScale(Math.abs(torque)));
   if (!(scales.torque > 0)) return;
@@ -88,7 +88,7 @@ function addTorque({ lines, scales }, origin, axis, torque, kind) {
   lines.arrow(tip, scale(onward, Math.sign(angle) * 0.04), TORQUE, 3);
 }
 
-/** Where the joint may go, seen from where it is. */
+/** Adds the range of motion of a joint, relative to its present position. */
 function addLimits(lines, pose, axis, { kind, limits: [lower, upper] }, position) {
   const origin = pose.position;
   if (kind === "prismatic") {
@@ -98,7 +98,7 @@ function addLimits(lines, pose, axis, { kind, limits: [lower, upper] }, position
     return;
   }
   const [zero] = across(axis);
-  // The direction across the axis belongs to the moving link: its own angle is that of the joint.
+  // A direction fixed to the moving link is drawn at the joint's present position.
   const other = cross(axis, zero);
   const hand = unit(turned(pose.orientation, [1, 0.3, 0.2]));
   const now = Math.atan2(dot(hand, other), dot(hand, zero));
@@ -110,7 +110,7 @@ function addLimits(lines, pose, axis, { kind, limits: [lower, upper] }, position
   }
 }
 
-/** The least of 1, 2, 5, 10, 20... by which an arrow is no longer than it may be. */
+/** The smallest scale of 1, 2, 5, 10, 20... [N or N m per metre] for which an arrow is not too long. */
 function niceScale(amount) {
   if (!(amount > 0) || !Number.isFinite(amount)) return 0;
   const wanted = amount / LONGEST;

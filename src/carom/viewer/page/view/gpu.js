@@ -1,4 +1,4 @@
-// Programs, meshes and textures on the graphics card.
+// Shader programs, meshes and textures on the GPU.
 
 export class Program {
   constructor(gl, { vertex, fragment }) {
@@ -19,7 +19,7 @@ export class Program {
     this.places = new Map();
   }
 
-  /** Makes it the present one and sets its uniforms: numbers, arrays of 2, 3 or 16 numbers. */
+  /** Makes the program the current one and sets its uniforms: numbers, or arrays of 2, 3 or 16 numbers. */
   use(uniforms) {
     this.gl.useProgram(this.program);
     for (const [name, value] of Object.entries(uniforms)) this.set(name, value);
@@ -42,7 +42,7 @@ export class Program {
   }
 }
 
-/** Triangles, and their edges once somebody wants to see them. */
+/** A triangle mesh; its edges are computed when they are first drawn. */
 export class Mesh {
   constructor(gl, { vertices, triangles }, payload) {
     this.gl = gl;
@@ -59,7 +59,7 @@ export class Mesh {
     this.ownEdges = null;
     this.ownEdgeBuffer = null;
     this.bounds = boundsOf(this.positions);
-    /** Of the ball about the origin that holds it. */
+    /** Radius of the bounding sphere about the origin. */
     this.radius = radiusOf(this.positions);
   }
 
@@ -72,13 +72,13 @@ export class Mesh {
     return buffer;
   }
 
-  /** Positions, normals and places in images of all vertices. */
+  /** Positions, normals and texture coordinates of all vertices. */
   get parts() {
     const { floats, vertexCount: count } = this;
     return [this.positions, floats.subarray(count * 3, count * 6), floats.subarray(count * 6)];
   }
 
-  /** The ends of all edges. */
+  /** Indices of the two vertices of each edge. */
   get edges() {
     return (this.ownEdges ??= distinctEdges(this.positions, this.indices));
   }
@@ -110,7 +110,7 @@ function radiusOf(positions) {
   return radius;
 }
 
-/** Edges of triangles, but for those that lie within a flat face. */
+/** Edges of triangles, without those inside a flat face. */
 function distinctEdges(positions, indices) {
   const names = new Map();
   const same = new Uint32Array(positions.length / 3);
@@ -142,10 +142,10 @@ function faceNormal(positions, [a, b, c]) {
   return n.map((value) => value / size);
 }
 
-/** A texture of RGB bytes, the lower row first, that repeats; `plain` where sharpness at a slant costs too much. */
+/** A repeating texture of RGB bytes, the bottom row first; a `plain` one has no anisotropic filtering. */
 export function imageTexture(gl, { width, height }, payload, plain) {
   let texels = new Uint8Array(payload);
-  // Small patterns have sharp borders, which smoothing would blur over half a pattern.
+  // Small patterns are enlarged, because linear filtering would blur their sharp borders.
   const times = Math.max(width, height) <= 16 ? 32 : 1;
   if (times > 1) {
     texels = enlarged(texels, width, height, times);
@@ -179,7 +179,7 @@ function enlarged(texels, width, height, times) {
   return result;
 }
 
-/** A square depth image that surfaces are compared with. */
+/** A square depth texture, seen from the light, for shadows. */
 export class ShadowMap {
   constructor(gl, size) {
     this.gl = gl;
@@ -207,7 +207,7 @@ export class ShadowMap {
   }
 }
 
-/** A picture that surfaces can show. */
+/** A picture that is rendered into a texture. */
 export class Picture {
   constructor(gl) {
     this.gl = gl;
@@ -217,7 +217,7 @@ export class Picture {
     this.target = gl.createFramebuffer();
   }
 
-  /** Makes it the one that is drawn to. */
+  /** Makes the picture the render target. */
   begin(width, height) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);

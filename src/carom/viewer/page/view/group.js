@@ -1,15 +1,15 @@
-// Shapes that look alike, drawn at once.
+// Shapes with the same meshes and texture, drawn in one call.
 
 import { Level } from "./level.js";
 import { Merged } from "./merged.js";
 
 export class Group {
   /**
-   * @param {{mesh: Mesh, reach: number}[]} levels meshes, the finest first, and up to what radius in pixels
-   *   each looks right
+   * @param {{mesh: Mesh, reach: number}[]} levels levels of detail, the finest first: meshes, and the maximum
+   *   radius on the screen at which each is used [pixels]
    * @param {object} shape one of the shapes
-   * @param {boolean} clear whether they can be seen through
-   * @param {boolean} byProcessor whether there is no graphics card
+   * @param {boolean} clear whether the shapes are transparent
+   * @param {boolean} byProcessor whether the CPU renders, because there is no GPU
    */
   constructor(gl, levels, shape, clear, byProcessor) {
     this.levels = levels.map(({ mesh, reach }) => new (byProcessor && Merged.suits(mesh) ? Merged : Level)(gl, mesh, reach));
@@ -19,11 +19,11 @@ export class Group {
     this.clear = clear;
     this.members = [];
     this.filledFor = "";
-    /** Somewhere among the instances, to sort by. */
+    /** A point among the instances, to sort groups by depth. */
     this.middle = [0, 0, 0];
   }
 
-  /** The mesh that is looked at from near by. */
+  /** The finest mesh. */
   get mesh() {
     return this.levels[0].mesh;
   }
@@ -36,10 +36,10 @@ export class Group {
     this.members.push({ body, shape, radius: this.mesh.radius * Math.max(...shape.scale.map(Math.abs)) });
   }
 
-  /** Puts the instances where their links are; see `Scene.fill`. */
+  /** Updates the poses and colours of the instances; see `Scene.fill`. */
   fill(scene, options, eye, focal) {
     const [levels, several] = [this.levels, this.levels.length > 1];
-    // Where there is one mesh it does not matter who looks.
+    // With a single level of detail the camera does not matter.
     const looks = [options.wireframe, options.linkColours, options.version];
     const filledFor = [scene.version, ...looks, ...(several ? [...eye, focal] : [])].join();
     if (this.filledFor === filledFor) return;
@@ -77,10 +77,10 @@ export class Group {
   }
 }
 
-/** Turns the hue from one number to the next, so that neighbours get colours far apart: the golden ratio. */
+/** Hue step between successive numbers [turns]: the golden ratio gives neighbours different colours. */
 const HUE_STEP = 0.61803398875;
 
-/** A colour of its own for each link. */
+/** A different colour for each link. */
 export function linkColour(body, link) {
   const hue = ((body * 17 + link + 1) * HUE_STEP) % 1;
   const part = (turn) => 0.35 + 0.6 * Math.min(Math.max(Math.abs(((hue + turn) % 1) * 6 - 3) - 1, 0), 1);

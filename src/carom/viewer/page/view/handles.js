@@ -1,5 +1,5 @@
-// Frames that scripts let the user move: arrows to shift them along their axes, knobs to turn them, a middle to carry
-// them in the plane that faces the viewer.
+// Frames that the user can move for scripts. Each has an arrow along each axis to shift it, an arc about each
+// axis to rotate it, and a centre to move it in the plane that faces the viewer.
 
 import { add, dot, quaternionProduct, scale, subtract, turned } from "./maths.js";
 
@@ -14,10 +14,10 @@ const COLOURS = [
   [0.16, 0.36, 0.86],
 ];
 const MIDDLE = [0.95, 0.62, 0.1];
-/** Length of an arrow as part of the distance to the eye, and of a knob's arm as part of an arrow. */
+/** Length of an arrow relative to the distance from the eye, and offset of an arc relative to an arrow. */
 const REACH = 0.16;
 const ARM = 0.6;
-/** How near the mouse has to come to take hold of something [pixels]. */
+/** Maximum distance between the mouse and a knob that it grabs [pixels]. */
 const NEAR = 14;
 
 export class Handles {
@@ -35,9 +35,9 @@ export class Handles {
     this.held = null;
   }
 
-  /** A handle has come, or has been moved elsewhere. */
+  /** Adds a handle, or updates its pose. */
   take(header) {
-    // While the user moves it, what comes back is where it was.
+    // While the user moves a handle, the pose that the simulation sends back is out of date.
     if (this.held?.item.handle !== header.handle) this.items.set(header.handle, { ...header });
   }
 
@@ -50,7 +50,7 @@ export class Handles {
     return this.held !== null;
   }
 
-  /** Takes hold of what is at a pixel, if there is something. */
+  /** Grabs the nearest knob at a pixel, if there is one. */
   begin(x, y) {
     let nearest = NEAR;
     for (const item of this.items.values()) {
@@ -85,7 +85,7 @@ export class Handles {
     this.held = null;
   }
 
-  /** What the mouse has hold of: how far along the axis, at which angle about it, or where in the plane. */
+  /** Mouse position relative to the knob: distance along its axis, angle about it, or point in the plane. */
   grip(x, y) {
     const { kind, axis, from } = this.held;
     const { eye, forward } = this.camera;
@@ -94,7 +94,7 @@ export class Handles {
     if (kind === "carry") return add(eye, scale(ray, dot(offset, forward) / dot(ray, forward)));
     const along = turned(from.orientation, AXES[axis]);
     if (kind === "shift") {
-      // Where the axis and the ray come nearest to each other.
+      // The point of the axis that is nearest to the ray.
       const slant = dot(ray, along);
       const room = 1 - slant * slant;
       return room < 1e-4 ? null : (slant * dot(offset, ray) - dot(offset, along)) / room;
@@ -106,7 +106,7 @@ export class Handles {
     return Math.atan2(dot(spoke, v), dot(spoke, u));
   }
 
-  /** What there is to take hold of. */
+  /** The knobs of a handle: points that the mouse can grab. */
   knobs({ position, orientation }) {
     const reach = REACH * Math.max(dot(subtract(position, this.camera.eye), this.camera.forward), 0.05);
     const at = (vector) => add(position, turned(orientation, scale(vector, reach)));
@@ -118,7 +118,7 @@ export class Handles {
     return knobs;
   }
 
-  /** Draws them. */
+  /** Draws the handles. */
   addLines(lines) {
     for (const item of this.items.values()) {
       for (const { kind, axis, point } of this.knobs(item)) {
@@ -133,13 +133,13 @@ export class Handles {
     }
   }
 
-  /** Writes their names beside them. */
+  /** Adds the names of the handles. */
   addLabels(labels) {
     for (const { name, position } of this.items.values()) labels.add(this.camera, position, name, 12);
   }
 }
 
-/** The first of several things to take hold of something holds it. */
+/** Several tools that can grab: the first one that finds something at the mouse grabs it. */
 export class Hands {
   constructor(...hands) {
     this.hands = hands;

@@ -1,4 +1,4 @@
-// Short texts beside things in the view, such as the angle of a joint beside it.
+// Short texts at points in the view, such as the positions of joints.
 
 export class Labels {
   constructor(overlay) {
@@ -31,10 +31,10 @@ export class Labels {
   }
 }
 
-/** Names of more links than these would cover each other. */
+/** Maximum number of link names; more would cover each other. */
 const MOST_NAMES = 300;
 
-/** Puts the name of each link beside its frame, below the position of its joint. */
+/** Shows the name of each link at its frame, below the position of its joint. */
 export function labelLinks(labels, camera, scene) {
   let room = MOST_NAMES;
   for (const { body, name, links } of scene.bodies.values()) {
@@ -46,7 +46,7 @@ export function labelLinks(labels, camera, scene) {
   }
 }
 
-/** Puts the position of each joint beside it. */
+/** Shows the position of each joint at the joint. */
 export function labelJoints(labels, camera, scene, readings) {
   for (const { body, joint, position } of readings.joints.values()) {
     const link = scene.bodies.get(body)?.links[joint + 1];

@@ -1,6 +1,6 @@
-// The shapes of a group that are drawn with the same mesh, as instances of it.
+// One level of detail of a group: the shapes drawn as instances of the same mesh.
 
-/** Numbers per instance on the graphics card: three axes, origin, colour, colour of highlights. */
+/** Numbers per instance on the GPU: three scaled axes, origin, colour, specular colour. */
 export const INSTANCE_FLOATS = 19;
 const INSTANCE_ATTRIBUTES = [3, 3, 3, 3, 4, 3];
 const FIRST_INSTANCE_ATTRIBUTE = 3;
@@ -18,10 +18,11 @@ export class Level {
   }
 
   /**
-   * A vertex array over the vertices, elements and instances.
+   * Makes a vertex array of the vertices, elements and instances.
    *
-   * @param {number} copies how often the mesh is in its buffer: all positions, then all normals, then all places in images
-   * @param {number} divisor how many instances share the numbers of one; 0: each vertex has its own
+   * @param {number} copies number of copies of the mesh in its buffer: all positions, then all normals, then
+   *   all texture coordinates
+   * @param {number} divisor 1: instance attributes advance per instance; 0: per vertex
    */
   vertexArray(vertices, elements, copies, divisor) {
     const gl = this.gl;
@@ -70,10 +71,10 @@ export class Level {
   }
 
   /**
-   * Adds an instance. Runs for each shape in each picture, so it makes no arrays.
+   * Adds an instance. Called for each shape in each picture, so it allocates no arrays.
    *
    * @param {Float32Array} poses poses of inertial frames
-   * @param {number} at where that of the link is
+   * @param {number} at index of the link's pose in `poses`
    */
   push(poses, at, { position, orientation, scale, specular }, colour) {
     const data = this.data;
@@ -86,7 +87,7 @@ export class Level {
     const by = orientation[1];
     const bz = orientation[2];
     const bw = orientation[3];
-    // The shape is turned by its own orientation, then by that of the link.
+    // Orientation of the link times that of the shape in the link.
     const x = aw * bx + ax * bw + ay * bz - az * by;
     const y = aw * by - ax * bz + ay * bw + az * bx;
     const z = aw * bz + ax * by - ay * bx + az * bw;
@@ -117,7 +118,7 @@ export class Level {
     this.count += 1;
   }
 
-  /** Brings the instances to the graphics card. */
+  /** Uploads the instances to the GPU. */
   end() {
     if (this.count > 0) this.upload(this.data.subarray(0, this.count * INSTANCE_FLOATS));
   }

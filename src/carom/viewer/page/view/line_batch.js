@@ -1,9 +1,9 @@
-// Lines on the graphics card: all of a picture at once, a rectangle of four corners each.
+// Lines on the GPU: all lines of a picture in one buffer, each as a rectangle with four corners.
 
 import { LINE_FLOATS } from "./lines.js";
 
 const CORNERS = 4;
-/** The corners of the two triangles of a line. */
+/** Corners of the two triangles of a line's rectangle. */
 const TRIANGLES = [0, 1, 2, 2, 1, 3];
 const ATTRIBUTES = [3, 3, 3, 1];
 
@@ -26,7 +26,7 @@ export class LineBatch {
     gl.bindVertexArray(null);
   }
 
-  /** Draws lines with the present program: those inside of bodies over all that is there. */
+  /** Draws lines with the current program; lines inside bodies are drawn without a depth test. */
   draw({ used: numbers, count, outside }) {
     const gl = this.gl;
     gl.bindVertexArray(this.array);

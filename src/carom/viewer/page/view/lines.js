@@ -1,12 +1,12 @@
-// Lines as the renderer takes them: start, end, colour and width of each, in one array that grows.
+// Lines for the renderer: start, end, colour and width of each, in one array that grows.
 
 import { add, cross, scale, subtract, unit } from "./maths.js";
 
 export const LINE_FLOATS = 10;
 const FIRST_ROOM = 256;
-/** Of an arrow's head, as part of its length. */
+/** Length of an arrow's head, as a fraction of the arrow's length. */
 const HEAD = 0.18;
-/** Straight pieces of a full circle. */
+/** Number of line segments of a full circle. */
 const PIECES = 32;
 
 export class Lines {
@@ -21,12 +21,12 @@ export class Lines {
     this.seenThrough = null;
   }
 
-  /** Lines that come from now on are inside of bodies, and are seen through them. */
+  /** Marks all lines added from now on as inside bodies: they are visible through the bodies. */
   goInside() {
     this.seenThrough = this.count;
   }
 
-  /** How many lines, the first ones, are hidden by what is before them. */
+  /** Number of lines, the first ones, that are hidden by surfaces in front of them. */
   get outside() {
     return this.seenThrough ?? this.count;
   }
@@ -60,7 +60,7 @@ export class Lines {
     }
   }
 
-  /** Part of a circle about an axis, from one angle to another; angle 0 is along `zero`. */
+  /** An arc about an axis, from one angle to another [rad]; angle 0 is along `zero`. */
   arc(centre, axis, zero, radius, from, to, colour, width = 2) {
     const other = cross(axis, zero);
     const point = (angle) => add(centre, add(scale(zero, radius * Math.cos(angle)), scale(other, radius * Math.sin(angle))));
@@ -79,7 +79,7 @@ export class Lines {
     }
   }
 
-  /** The edges of a box between two corners, each taken to its place by a function. */
+  /** The edges of a box between two corners; `place` transforms its corners into the world. */
   box(lower, upper, place, colour, width = 1) {
     const corner = (bits) => place([0, 1, 2].map((i) => (bits & (1 << i) ? upper[i] : lower[i])));
     for (let bits = 0; bits < 8; bits++) {
@@ -88,7 +88,7 @@ export class Lines {
   }
 }
 
-/** Two unit vectors at right angles to a vector and to each other. */
+/** Two unit vectors, perpendicular to a vector and to each other. */
 export function across(vector) {
   const along = unit(vector);
   const side = unit(cross(along, Math.abs(along[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));

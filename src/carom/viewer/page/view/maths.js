@@ -1,4 +1,4 @@
-// Vectors as arrays of 3, quaternions (x, y, z, w), matrices 4 x 4 column after column, as WebGL has them.
+// Vectors are arrays of 3, quaternions are (x, y, z, w), matrices are 4 x 4 and column-major, as in WebGL.
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -15,13 +15,13 @@ export function unit(a) {
   return size > 0 ? scale(a, 1 / size) : [0, 0, 0];
 }
 
-/** Turns a vector by a quaternion. */
+/** Rotates a vector by a quaternion. */
 export function turned([x, y, z, w], v) {
   const [tx, ty, tz] = scale(cross([x, y, z], v), 2);
   return add(add(v, [w * tx, w * ty, w * tz]), cross([x, y, z], [tx, ty, tz]));
 }
 
-/** Turns by b, then by a. */
+/** Product a b: the rotation by b, then by a. */
 export function quaternionProduct(a, b) {
   return [
     a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],
@@ -31,7 +31,7 @@ export function quaternionProduct(a, b) {
   ];
 }
 
-/** Puts pose b, given in the frame of pose a, into the frame a is given in. */
+/** Transforms pose b, given in the frame of pose a, into the frame that a is given in. */
 export function composed(a, b) {
   return {
     position: add(a.position, turned(a.orientation, b.position)),
@@ -51,7 +51,7 @@ export function multiply(a, b) {
   return result;
 }
 
-/** World to camera; x to the right, y up, z towards the viewer. */
+/** Transformation from world to camera axes; x to the right, y up, z towards the viewer. */
 export function viewMatrix(eye, right, up, forward) {
   return new Float32Array([
     ...[right[0], up[0], -forward[0], 0],
@@ -61,7 +61,7 @@ export function viewMatrix(eye, right, up, forward) {
   ]);
 }
 
-/** Perspective with a vertical field of view of 90 degrees, as PyBullet's window has it. */
+/** Perspective projection with a vertical field of view of 90 degrees, as in PyBullet's window. */
 export function perspective(aspect, near, far) {
   const depth = far - near;
   return new Float32Array([

@@ -1,9 +1,9 @@
-// Small shapes as one large mesh. Where the processor draws, each instance costs as much as a mesh of its own, which is
-// far more than its few triangles do.
+// Small shapes merged into one large mesh. If the CPU renders, each instance costs as much as a draw call of
+// its own, far more than its few triangles.
 
 import { INSTANCE_FLOATS, Level } from "./level.js";
 
-/** Meshes with more vertices are left to be instances: they cost more than what there is to be saved. */
+/** Meshes with more vertices are drawn as instances: copying them would cost more than it saves. */
 const MOST_VERTICES = 100;
 
 export class Merged extends Level {
@@ -13,13 +13,13 @@ export class Merged extends Level {
 
   constructor(gl, mesh, reach) {
     super(gl, mesh, reach);
-    /** How many copies of the mesh there are. */
+    /** Number of copies of the mesh in the buffers. */
     this.copies = 0;
     this.buffers = [];
     this.wide = new Float32Array(0);
   }
 
-  /** Gives each vertex the numbers of its shape. */
+  /** Copies the numbers of each instance to all its vertices, and uploads them. */
   end() {
     if (this.count === 0) return;
     if (this.count > this.copies) this.copyMesh(Math.max(this.count, 2 * this.copies));
@@ -48,7 +48,7 @@ export class Merged extends Level {
     this.solid = this.vertexArray(this.vertices, this.elements(mesh.indices), copies, 0);
   }
 
-  /** The elements of all copies. */
+  /** Index buffer of all copies. */
   elements(indices) {
     const all = new Uint32Array(this.copies * indices.length);
     for (let i = 0; i < all.length; i++) {

@@ -1,4 +1,4 @@
-// What the view adds to the scene: frames, bounds, the selection, masses, constraints and rays.
+// Lines that the page draws over the scene: frames, bounding boxes, the selection, masses, constraints, rays.
 
 import { add, scale, turned } from "./maths.js";
 import { boundsOfBody, boundsOfLink } from "./bounds.js";
@@ -35,13 +35,13 @@ export class Overlays {
     this.lines = new Lines();
     this.constraints = [];
     this.rays = new Float32Array(0);
-    /** Four near and four far corners of what the script's camera sees; none if there is no camera. */
+    /** Four near and four far corners of the view frustum of the script's camera; empty without a camera. */
     this.pyramid = [];
-    /** Places of what is selected, the newest last. */
+    /** Returns the recent positions of the selected link, the newest last. */
     this.trail = () => [];
-    /** Body and link that are selected; link null for all of the body. */
+    /** The selected body and link; link null for the whole body. */
     this.selection = null;
-    /** What a metre of an arrow stands for: newtons and newton metres. */
+    /** Scales of arrows: force [N] and torque [N m] per metre of length. */
     this.scales = { force: 0, torque: 0 };
   }
 
@@ -58,9 +58,9 @@ export class Overlays {
   }
 
   /**
-   * All lines of a picture.
+   * Collects all lines of a picture.
    *
-   * @param {?number[][]} pull start and end of what the mouse pulls
+   * @param {?number[][]} pull start and end of the line from a pulled body to the mouse
    * @param {?{body: number, link: number}} named the link whose frame is shown
    */
   draw(drawings, pull, named) {
@@ -135,7 +135,7 @@ export class Overlays {
     }
   }
 
-  /** A pyramid, with a mark where the image has its upper edge. */
+  /** Adds the frustum of the script's camera, with a triangle at the upper edge of the image. */
   addCamera() {
     const [near, far] = [this.pyramid.slice(0, 4), this.pyramid.slice(4)];
     if (far.length === 0) return;
@@ -149,7 +149,7 @@ export class Overlays {
     for (const corner of [left, right]) this.lines.line(corner, tip, CAMERA, 2);
   }
 
-  /** A line from each link to the one it hangs on. */
+  /** Adds a line from each link to its parent. */
   addSkeleton() {
     this.eachLink((body, link, { parent }) => {
       const [child, other] = [this.scene.linkPose(body.body, link), parent !== undefined && this.scene.linkPose(body.body, parent)];
@@ -177,7 +177,7 @@ export class Overlays {
   }
 }
 
-/** Half the edges of the box of even density that has this mass and these principal moments of inertia. */
+/** Half extents of the box of uniform density that has this mass and these principal moments of inertia. */
 function halfExtents({ mass, inertia: [x, y, z] }) {
   return [y + z - x, z + x - y, x + y - z].map((sum) => Math.sqrt((1.5 * Math.max(sum, 0)) / mass));
 }

@@ -1,21 +1,21 @@
-// How fine pictures are: finer while nothing moves, coarser while they take too long.
+// The resolution of pictures: higher while nothing moves, lower while drawing takes too long.
 
-/** Picture elements for each of the page, along an edge. */
+/** Resolution scales: drawn pixels per screen pixel, along an edge. */
 const STEPS = [0.25, 0.3, 0.4, 0.5, 0.65, 0.8, 1];
-/** Where the processor draws, the first picture has half of them. */
+/** Initial scale if the CPU renders, as an index of `STEPS`. */
 const MODEST = STEPS.indexOf(0.5);
-/** Pictures that take longer than this become coarser; those that take less, finer: 30 a second are wanted [ms]. */
+/** Slower pictures lower the resolution, faster ones raise it; the aim is 30 pictures per second [ms]. */
 const SLOW_MS = 34;
 const VERY_SLOW_MS = 70;
 const FAST_MS = 20;
-/** So many pictures in a row are looked at. The slowest of them does not count: something else may have run. */
+/** Number of pictures whose times are averaged, without the slowest: another process may have delayed it. */
 const PICTURES = 8;
-/** After so long without a change nothing is going on, and after so long there is time for the best picture [ms]. */
+/** Time without a change before drawing with all details, and before drawing at the best resolution [ms]. */
 const STILL_MS = 500;
 const RESTING_MS = 1500;
 
 export class Pace {
-  /** @param {boolean} byProcessor there is no graphics card: each picture element costs time that the simulation needs */
+  /** @param {boolean} byProcessor whether the CPU renders: then each pixel takes time from the simulation */
   constructor(byProcessor) {
     this.byProcessor = byProcessor;
     this.step = byProcessor ? MODEST : STEPS.length - 1;
@@ -24,34 +24,34 @@ export class Pace {
     this.held = null;
   }
 
-  /** Keeps all pictures as fine as those that move are now: films cannot change their size. Or ends that. */
+  /** Keeps the present resolution while `holding`, because a video cannot change its size. */
   hold(holding) {
     this.held = holding ? STEPS[this.step] : null;
   }
 
-  /** Nothing has moved for a while: there is time for all details. */
+  /** Whether nothing has moved for a while, so that there is time for all details. */
   get still() {
     return this.unchanged > STILL_MS;
   }
 
-  /** Picture elements for each of the page, along an edge, in the next picture. */
+  /** Resolution scale of the next picture: drawn pixels per screen pixel, along an edge. */
   get sharpness() {
     if (this.held !== null) return this.held;
     if (!this.still) return STEPS[this.step];
-    // Pictures that the processor draws have no smoothed edges: more elements take their place.
+    // Without a GPU pictures have no antialiasing: a higher resolution replaces it.
     return this.byProcessor && this.unchanged > RESTING_MS ? 2 : 1;
   }
 
   /**
-   * Takes note of the time since the last change of what is seen [ms], before each picture.
-   * A picture that is drawn only because it can be finer now is no change.
+   * Records the time since the last visible change [ms], before each picture.
+   * A picture that is redrawn only for a higher resolution is not a change.
    */
   wait(unchanged) {
     if (this.still && unchanged <= STILL_MS) this.durations = [];
     this.unchanged = unchanged;
   }
 
-  /** Takes note of how long a picture took while something moved [ms]. */
+  /** Records the time that a picture took [ms]; adapts the resolution while something moves. */
   note(duration) {
     if (this.still || this.held !== null) return;
     this.durations.push(duration);

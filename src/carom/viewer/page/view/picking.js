@@ -1,8 +1,8 @@
-// What is under the mouse, and taking hold of it.
+// Picking: finding the shape under the mouse, and pulling its body.
 
 import { add, dot, scale, subtract, turned } from "./maths.js";
 
-/** The nearest shape along a ray: its body, link, distance, and where it was hit. Null if there is none. */
+/** The nearest shape hit by a ray: body, link, distance, and point in world and link; null without a hit. */
 export function pick(scene, options, eye, direction) {
   let nearest = null;
   for (const group of scene.groups) {
@@ -13,7 +13,7 @@ export function pick(scene, options, eye, direction) {
       if (!pose) continue;
       const back = inverse(pose.orientation);
       const own = inverse(shape.orientation);
-      // Into the frame of the link, then of the shape, then of its mesh.
+      // The ray in the frame of the link, then of the shape, then of its mesh.
       const start = turned(own, subtract(turned(back, subtract(eye, pose.position)), shape.position));
       const along = turned(own, turned(back, direction));
       const from = start.map((x, i) => x / shape.scale[i]);
@@ -28,7 +28,7 @@ export function pick(scene, options, eye, direction) {
   return nearest;
 }
 
-/** Smallest factor of `way`, below `limit`, at which a ray meets a mesh. */
+/** Smallest ray parameter (factor of `way`) below `limit` at which a ray hits a mesh; null without a hit. */
 function hit(mesh, from, way, limit) {
   if (!meetsBounds(mesh.bounds, from, way, limit)) return null;
   const { positions, indices } = mesh;
@@ -72,7 +72,7 @@ function meetsBounds({ lower, upper }, from, way, limit) {
 
 const inverse = ([x, y, z, w]) => [-x, -y, -z, w];
 
-/** Holds a point of a body, and pulls it in the plane through that point that faces the viewer. */
+/** Grabs a point of a body, and pulls it in the plane through the point that faces the viewer. */
 export class Grasp {
   constructor(scene, camera, options, send) {
     Object.assign(this, { scene, camera, options, send });
@@ -105,7 +105,7 @@ export class Grasp {
     this.held = null;
   }
 
-  /** Start and end of the line from where the body is held to where it is pulled. */
+  /** Start and end of the line from the grabbed point to the target of the pull. */
   line() {
     const pose = this.held && this.scene.inertialPose(this.held.body, this.held.link);
     return pose ? [add(pose.position, turned(pose.orientation, this.held.local)), this.held.target] : null;

@@ -1,8 +1,9 @@
-// The mouse: it moves the camera, selects and pulls bodies, and tells the script. Left pulls what it is on, or turns; the
-// middle button or Shift and left move, right or the wheel zooms; with Ctrl or Alt the left button always turns,
-// as in PyBullet's window.
+// Mouse input: moves the camera, selects and pulls bodies, and is sent to the script. The left button pulls
+// the body under the mouse, or else rotates the view; the middle button, or Shift and the left button, shifts
+// the view; the right button or the wheel zooms; Ctrl or Alt and the left button always rotates the view, as
+// in PyBullet's window.
 
-/** A mouse that moves less than this with a button down has clicked. */
+/** Motion of the mouse with a button down from which on it is a drag, not a click [pixels]. */
 const CLICK_PIXELS = 3;
 
 export class Pointer {
@@ -14,13 +15,13 @@ export class Pointer {
     this.at = null;
     this.hovered = null;
     this.button = null;
-    /** Called when the mouse is somewhere else. */
+    /** Called when the mouse has moved. */
     this.hoverChanged = () => {};
-    /** Takes hold of what is under the mouse; see picking.js. */
+    /** Grabs a handle or a body under the mouse; see `Hands` in handles.js. */
     this.grasp = null;
-    /** Called with the pixel of a click that is no drag. */
+    /** Called with the pixel of a click without a drag. */
     this.clicked = () => {};
-    /** Where the left button went down, until the mouse has moved: a click or a drag. */
+    /** Pixel where the left button was pressed, until it is known to be a click or a drag. */
     this.pressed = null;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));

@@ -1,6 +1,6 @@
-// What a frame tells beside poses: contacts, joints and links, in columns of numbers.
+// Data in a frame besides poses: contacts, joints, and velocities of links, in columns of numbers.
 
-/** Columns of a contact: src/carom/viewer/readings.py has the same. */
+/** Numbers of columns; src/carom/viewer/readings.py documents them. */
 const CONTACT = 16;
 const JOINT = 8;
 const LINK = 14;
@@ -17,7 +17,7 @@ export class Readings {
     this.values = {};
   }
 
-  /** Takes over what follows the poses in a frame. */
+  /** Reads the blocks of numbers that follow the poses in a frame. */
   take({ poses, blocks = [], values = {} }, payload) {
     this.values = values;
     let at = poses * 28;

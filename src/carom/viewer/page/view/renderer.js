@@ -1,4 +1,4 @@
-// Draws a scene.
+// Draws a scene with WebGL.
 
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
@@ -8,14 +8,14 @@ import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { Surfaces } from "./surfaces.js";
 
 const GRID_EXTENT = 60;
-/** Far things fade from about this distance on, or this many times the camera's distance [m]. */
+/** Distance at which objects fade into haze [m]; at least this multiple of the camera's distance. */
 const HAZE = 90;
 const HAZE_BY_DISTANCE = 16;
-/** Most elements along a side of the shadow map where the processor draws, and while something moves there. */
+/** Maximum width of the shadow map if the CPU renders, at rest and while something moves [texels]. */
 const SMALL_SHADOWS = 1024;
 const MOVING_SHADOWS = 512;
 
-/** Whether there is no graphics card: every pixel then costs time that the simulation needs. */
+/** Whether the CPU renders, because there is no GPU: each pixel then takes time from the simulation. */
 function drawnByTheProcessor() {
   const gl = document.createElement("canvas").getContext("webgl2");
   if (!gl) return false;
@@ -32,7 +32,7 @@ export class Renderer {
     if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
     this.canvas = canvas;
     this.gl = gl;
-    /** What comes back after a loss has none of the objects made here. */
+    /** Whether the WebGL context is lost; a restored context has none of the objects made here. */
     this.lost = false;
     canvas.addEventListener("webglcontextlost", () => (this.lost = true));
     this.surfaces = new Surfaces(gl);
@@ -51,7 +51,7 @@ export class Renderer {
     this.pace = new Pace(slow);
   }
 
-  /** Fits the picture to the window; true if its size has changed. */
+  /** Fits the canvas to the window; true if its size has changed. */
   resize() {
     const ratio = Math.min(window.devicePixelRatio, 2) * this.pace.sharpness;
     const width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
@@ -73,7 +73,7 @@ export class Renderer {
     scene.regroup(options);
     scene.fill(options, camera.eye, this.canvas.height / 2);
     const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
-    // Where the processor draws, what moves is drawn without what is hardly missed.
+    // If the CPU renders, details are left out while something moves.
     const detailed = !this.byProcessor || this.pace.still;
     const { flat } = options;
     const shadows = options.shadows && !options.wireframe && !flat;
@@ -112,7 +112,7 @@ export class Renderer {
     gl.disable(gl.DEPTH_TEST);
   }
 
-  /** What all programs have to know of a view. */
+  /** Uniforms that all programs need for a view. */
   seenFrom(camera, options) {
     return {
       eye: camera.eye,
@@ -125,13 +125,13 @@ export class Renderer {
     };
   }
 
-  /** Draws what the ground mirrors. */
+  /** Draws the reflection in the ground into a texture. */
   drawReflection(groups, scene, mirrored, options, shading, features) {
     const gl = this.gl;
     this.reflection.begin(this.canvas.width, this.canvas.height);
     const common = this.seenFrom(mirrored, options);
     gl.enable(gl.DEPTH_TEST);
-    // In a mirror the corners of a triangle go round the other way.
+    // Mirroring reverses the winding order of triangles.
     gl.frontFace(gl.CW);
     this.surfaces.begin([...features, "ABOVE_GROUND"], { ...common, ...shading });
     this.drawSurfaces(groups, scene, null);
@@ -139,7 +139,7 @@ export class Renderer {
     this.drawSky(mirrored, common);
   }
 
-  /** Draws what cannot be seen through. */
+  /** Draws opaque surfaces. */
   drawSurfaces(groups, scene, reflection) {
     const gl = this.gl;
     gl.activeTexture(gl.TEXTURE1);
@@ -154,7 +154,7 @@ export class Renderer {
     const side = unit(cross(Math.abs(direction[2]) < 0.99 ? [0, 0, 1] : [1, 0, 0], direction));
     const up = cross(direction, side);
     const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.distance * 1.6));
-    // The map moves in whole texels, so that edges of shadows do not crawl when the camera moves.
+    // The shadow map moves in whole texels, so that edges of shadows do not flicker when the camera moves.
     const texel = (2 * extent) / this.map.size;
     const centre = add(camera.target, scale(camera.forward, Math.min(0, extent - camera.distance)));
     const snapped = [side, up].map((axis) => {
@@ -167,7 +167,7 @@ export class Renderer {
     return { direction, extent: extent / reach, matrix: multiply(orthographic(extent, 0, 2 * reach), view) };
   }
 
-  /** Sees to a shadow map of the size that is wanted. */
+  /** Replaces the shadow map if another size is needed. */
   sizeShadows(options, detailed) {
     const most = this.byProcessor ? (detailed ? SMALL_SHADOWS : MOVING_SHADOWS) : Infinity;
     const wanted = Math.min(options.shadowResolution, most);
@@ -251,7 +251,7 @@ export class Renderer {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
-    // A floor at the same height covers the grid.
+    // The offset lets a floor at the same height cover the grid.
     gl.enable(gl.POLYGON_OFFSET_FILL);
     gl.polygonOffset(2, 8);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);

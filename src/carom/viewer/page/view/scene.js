@@ -1,24 +1,24 @@
-// What there is: bodies, their shapes, and where their links are.
+// The scene: bodies, their shapes, and the poses of their links.
 
 import { composed } from "./maths.js";
 import { Mesh, imageTexture } from "./gpu.js";
 import { Group } from "./group.js";
 
 const IDENTITY = { position: [0, 0, 0], orientation: [0, 0, 0, 1] };
-/** Numbers of a pose in a frame: position and quaternion. */
+/** Number of floats of a pose in a frame: position and quaternion. */
 export const POSE_FLOATS = 7;
-/** How much of a body is seen where bodies are made transparent. */
+/** Opacity of bodies that are shown transparent. */
 const GLASS = 0.35;
 
 export class Scene {
-  /** @param {boolean} byProcessor whether there is no graphics card */
+  /** @param {boolean} byProcessor whether the CPU renders, because there is no GPU */
   constructor(gl, byProcessor) {
     this.gl = gl;
     this.byProcessor = byProcessor;
     this.clear();
   }
 
-  /** Forgets everything, before another simulation tells its own. */
+  /** Empties the scene, before a simulation sends its own. */
   clear() {
     for (const mesh of this.meshes?.values() ?? []) mesh.dispose();
     for (const texture of this.textures?.values() ?? []) this.gl.deleteTexture(texture);
@@ -27,15 +27,15 @@ export class Scene {
     this.textures = new Map();
     this.bodies = new Map();
     this.dynamics = new Map();
-    /** Bodies that the user does not want to see. */
+    /** Numbers of the bodies that the user has hidden. */
     this.hidden = new Set();
     this.layout = { layout: 0, bodies: [] };
     this.groups = [];
     this.stale = true;
     this.transparent = false;
-    /** Grows with every change of what is where. */
+    /** Increases with every change of shapes or poses. */
     this.version = 0;
-    /** Poses of the newest frame, all in one array, and where those of each body begin. */
+    /** Poses of the newest frame in one array, and the index at which the poses of each body begin. */
     this.poses = new Float32Array(0);
     this.starts = new Map();
     this.startsOf = this.layout;
@@ -61,17 +61,17 @@ export class Scene {
     this.textures.delete(texture);
   }
 
-  /** Takes over masses and inertias of a body's links. */
+  /** Sets the masses and inertias of a body's links. */
   addDynamics(header) {
     this.dynamics.set(header.body, header);
   }
 
-  removeDynamics({ body }) {
-    this.dynamics.delete(body);
+  removeDynamics({ dynamics }) {
+    this.dynamics.delete(dynamics);
   }
 
   addBody(header) {
-    // Another body under the number of one that is gone: its poses come with the next frame.
+    // A new body has the number of a removed one: its poses come with the next frame.
     if (this.bodies.get(header.body)?.links.length !== header.links.length) this.starts.delete(header.body);
     this.bodies.set(header.body, header);
     this.stale = true;
@@ -91,7 +91,7 @@ export class Scene {
     this.version += 1;
   }
 
-  /** Takes over where all links are; a frame that was made for other bodies is left alone. */
+  /** Sets the poses of all links; a frame that was made for other bodies is ignored. */
   place({ layout, poses }, payload) {
     if (layout !== this.layout.layout) return;
     this.poses = new Float32Array(payload, 0, poses * POSE_FLOATS);
@@ -107,13 +107,13 @@ export class Scene {
     this.version += 1;
   }
 
-  /** Where the pose of a link is in `poses`; -1 if it is not known yet. */
+  /** Index of the pose of a link in `poses`; -1 if the pose is not known yet. */
   poseAt(body, link) {
     const start = this.starts.get(body);
     return start === undefined ? -1 : start + link * POSE_FLOATS;
   }
 
-  /** Pose of the inertial frame of a link; 0 is the base. The world's for body -1. */
+  /** Pose of the inertial frame of a link in the world; link 0 is the base, body -1 is the world. */
   inertialPose(body, link) {
     if (body < 0) return IDENTITY;
     const at = this.poseAt(body, link);
@@ -122,14 +122,14 @@ export class Scene {
     return { position: [x, y, z], orientation };
   }
 
-  /** Pose of a link frame. */
+  /** Pose of a link frame in the world. */
   linkPose(body, link) {
     const pose = this.inertialPose(body, link);
     if (body < 0 || pose === null) return pose;
     return composed(pose, this.bodies.get(body).links[link]);
   }
 
-  /** Shapes that look alike, to be drawn at once. */
+  /** Groups the shapes with the same meshes and texture, to draw each group in one call. */
   regroup(options) {
     if (!this.stale && options.transparent === this.transparent) return;
     this.stale = false;
@@ -142,7 +142,7 @@ export class Scene {
         if (shape.rgba[3] <= 0) continue;
         const clear = glassy || shape.rgba[3] < 1;
         const numbers = shape.meshes.map(([mesh]) => mesh);
-        // Shapes that are seen through are drawn one by one, from the back to the front.
+        // Transparent shapes are drawn one by one, from back to front.
         const key = [...numbers, shape.texture, shape.twoSided, !!shape.collision, clear && groups.size].join();
         if (!groups.has(key)) {
           const levels = shape.meshes.map(([mesh, reach]) => ({ mesh: this.meshes.get(mesh), reach: reach ?? Infinity }));
@@ -157,10 +157,10 @@ export class Scene {
   }
 
   /**
-   * Brings the instances of all groups up to date.
+   * Updates the instances of all groups.
    *
-   * @param {number[]} eye where they are looked at from
-   * @param {number} focal pixels that something of the size of its distance takes up
+   * @param {number[]} eye position of the camera
+   * @param {number} focal focal length of the camera [pixels]
    */
   fill(options, eye, focal) {
     for (const group of this.groups) group.fill(this, options, eye, focal);

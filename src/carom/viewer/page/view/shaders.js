@@ -1,6 +1,6 @@
-// The programs of the graphics card.
+// The shader programs.
 
-/** Light, sky and haze, the same for everything. Colours are mixed in linear light. */
+/** Light, sky and haze, shared by all programs. Colours are mixed in linear light. */
 const COMMON = `
 precision highp float;
 uniform vec3 eye;
@@ -10,7 +10,7 @@ uniform vec3 backdrop;
 uniform float plainBackdrop;
 uniform float haze;
 
-// A gamma of 2, which costs a fraction of one of 2.2 where the processor draws.
+// A gamma of 2, which is far cheaper than 2.2 if the CPU renders.
 vec3 linear(vec3 c) { return c * c; }
 vec3 display(vec3 c) { return sqrt(clamp(c, 0.0, 1.0)); }
 
@@ -22,7 +22,7 @@ vec3 sky(vec3 direction) {
   return mix(HORIZON, height >= 0.0 ? ZENITH : BELOW, sqrt(min(height >= 0.0 ? height : -2.5 * height, 1.0)));
 }
 
-// Far things fade into what is behind them at the horizon.
+// Far objects fade into the colour of the horizon.
 vec3 hazy(vec3 colour, vec3 point) {
   vec3 offset = point - eye;
   vec3 horizon = plainBackdrop > 0.5 ? linear(backdrop) : HORIZON;
@@ -45,18 +45,18 @@ vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * positio
 `;
 
 /**
- * The program of surfaces. What is not needed is left out of it: where the processor draws, a program does the work of
- * branches that are not taken, too.
+ * The program of surfaces, compiled without the features that are not needed: if the CPU renders, a program
+ * also spends time on branches that are not taken.
  *
  * @param {string[]} features any of
- *   TEXTURED: an image is on the surface
- *   SHADOWED: it lies in the shadow of others
- *   SOFT: edges of shadows are smoothed; else each pixel looks at one place
- *   GLOSSY: light is reflected as by something smooth
- *   ABOVE_GROUND: only what is above the ground is drawn
- *   MIRRORING: the ground shows the picture of what it mirrors
- *   FLAT: it has its colour and no light
- *   DEPTH: it is the brighter the farther it is
+ *   TEXTURED: surfaces have a texture
+ *   SHADOWED: surfaces receive shadows
+ *   SOFT: edges of shadows are smoothed; otherwise each pixel reads the shadow map once
+ *   GLOSSY: specular highlights and reflections of the sky
+ *   ABOVE_GROUND: only surfaces above the ground are drawn
+ *   MIRRORING: the ground shows its reflection
+ *   FLAT: surfaces have their plain colour, without light
+ *   DEPTH: surfaces are the brighter the farther they are
  */
 export function surface(features) {
   const head = ["#version 300 es", ...features.map((name) => `#define ${name}`)].join("\n");
@@ -74,7 +74,7 @@ out vec3 shine;
 out vec3 shadowPoint;
 void main() {
   point = placed();
-  // Normals scale the other way round.
+  // Normals scale inversely to the shape.
   vec3 squared = vec3(dot(axisX, axisX), dot(axisY, axisY), dot(axisZ, axisZ));
   vec3 n = normal / max(squared, vec3(1e-20));
   facing = axisX * n.x + axisY * n.y + axisZ * n.z;
@@ -99,10 +99,10 @@ uniform sampler2DShadow shadows;
 uniform float shadowStrength;
 uniform float shadowTexel;
 uniform float shadowBias;
-// What the ground mirrors, and the size of that picture in pixels.
+// The picture of the reflection in the ground, and its size in pixels.
 uniform sampler2D reflection;
 uniform vec2 reflectionSize;
-// How far away that is what the camera turns about.
+// Distance from the camera to its target.
 uniform float focus;
 out vec4 result;
 
@@ -126,7 +126,7 @@ float lit(float slope) {
 void main() {
   float level = dot(point, upward);
 #ifdef DEPTH
-  // What the camera turns about is grey; the horizon is white.
+  // The target of the camera is grey; the horizon is white.
   result = vec4(vec3(1.0 - exp(-0.7 * length(point - eye) / focus)), 1.0);
   return;
 #endif
@@ -166,7 +166,7 @@ void main() {
   result = vec4(display(hazy(seen, point)), colour.a);
 #ifdef MIRRORING
   if (abs(level) < 0.002 && dot(n, upward) > 0.99) {
-    // A floor lets the mirror under it through as far as it is transparent; an opaque one is polished.
+    // The more transparent a floor is, the stronger is its reflection; an opaque floor reflects 20 %.
     vec3 mirrored = texture(reflection, gl_FragCoord.xy / reflectionSize).rgb;
     result = vec4(mix(result.rgb, mirrored, max(1.0 - colour.a, 0.2)), 1.0);
   }
@@ -216,7 +216,7 @@ out vec4 result;
 void main() { result = vec4(display(sky(normalize(direction))), 1.0); }`,
 };
 
-/** Lines every metre, and finer ones near by, on the ground through the origin. */
+/** The grid on the ground plane through the origin: lines every 10 m, 1 m and, near the camera, 10 cm. */
 export const GRID = {
   vertex: `#version 300 es
 uniform mat4 camera;
@@ -257,7 +257,7 @@ void main() {
 }`,
 };
 
-/** A line as wide as asked for, in pixels: a rectangle that faces the viewer. */
+/** Lines with a width in pixels, as rectangles that face the viewer. */
 export const LINES = {
   vertex: `#version 300 es
 layout(location = 0) in vec3 start;
@@ -316,7 +316,7 @@ void main() {
 }`,
 };
 
-/** Text on a rectangle in the world. */
+/** A text, as a textured rectangle in the world. */
 export const SIGN = {
   vertex: `#version 300 es
 uniform mat4 camera;

@@ -1,4 +1,4 @@
-// Texts with an orientation of their own: signs that stand in the world.
+// Signs: texts with a fixed orientation in the world.
 
 import { add, composed, scale, turned } from "./maths.js";
 
@@ -8,7 +8,7 @@ const PIXELS = 64;
 const FONT = `600 ${Math.round(PIXELS * 0.75)}px system-ui, sans-serif`;
 
 export class Sign {
-  /** @param {object} item a text; it is written along x, from its position on, and its y axis points up */
+  /** @param {object} item a text; it starts at its position and runs along its x axis, its y axis is up */
   constructor(gl, item) {
     this.gl = gl;
     this.item = item;
@@ -26,13 +26,13 @@ export class Sign {
     for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, edge, gl.CLAMP_TO_EDGE);
   }
 
-  /** Lower left corner and the two edges from there; null while its link is nowhere. */
+  /** Lower left corner of the sign and the edges from there; null while the pose of its link is unknown. */
   edges(scene) {
     const pose = scene.linkPose(this.item.body, this.item.link);
     if (!pose) return null;
     const { position, orientation } = composed(pose, this.item);
     const [across, upright] = [turned(orientation, [this.width, 0, 0]), turned(orientation, [0, this.height, 0])];
-    // The position is on the line the letters stand on.
+    // The position is on the baseline of the text.
     return { corner: add(position, scale(upright, -0.25)), across, upright };
   }
 

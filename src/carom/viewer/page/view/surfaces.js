@@ -1,9 +1,9 @@
-// The programs that draw surfaces: one for each set of features that is needed.
+// The shader programs that draw surfaces: one for each set of features that is needed.
 
 import { Program } from "./gpu.js";
 import { surface } from "./shaders.js";
 
-/** Which unit each sampler takes its texture from. */
+/** Texture unit of each sampler. */
 const SAMPLERS = { image: 0, shadows: 1, reflection: 2 };
 
 export class Surfaces {
@@ -13,16 +13,16 @@ export class Surfaces {
     this.begin([], {});
   }
 
-  /** From now on surfaces have these features (see `surface`) and uniforms. */
+  /** Sets the features (see `surface`) and uniforms of the surfaces drawn from now on. */
   begin(features, uniforms) {
     this.features = features;
     this.uniforms = uniforms;
-    /** The programs that have been told the uniforms. */
+    /** The programs whose uniforms are set. */
     this.told = new Set();
     this.present = null;
   }
 
-  /** Makes the program for textured surfaces, or for others, the present one. */
+  /** Makes the program for surfaces with or without a texture the current one. */
   use(textured) {
     const program = this.program(textured ? ["TEXTURED", ...this.features] : this.features);
     if (program === this.present) return;
@@ -31,7 +31,7 @@ export class Surfaces {
     this.present = program;
   }
 
-  /** Another program has been used in between. */
+  /** Notes that another program has been used in between. */
   interrupted() {
     this.present = null;
   }
