@@ -32,7 +32,6 @@ def assert_is_closed_convex(solid: Polyhedron, points: np.ndarray, outside: floa
     np.testing.assert_allclose(np.linalg.norm(solid.planes[:, :3], axis=1), 1.0, rtol=1e-12)
 
 
-
 @pytest.mark.parametrize("size", [1e-3, 1.0, 50.0, 1e3, 1e6, 1e14, 1e60])
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 def test_flat_sets_of_any_size_have_a_slab(size: float, count: int) -> None:
