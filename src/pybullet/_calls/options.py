@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 
 _WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
 
 
-def values_of(options: str) -> dict[str, str]:
-    """The values of options `--name=value` by name; empty for `--name`. The last one of a name counts.
+def named_values(options: str) -> Iterator[tuple[str, str]]:
+    """Names and values of options `--name=value`, in their order; the value of `--name` is empty.
 
     Args:
         options: Options separated by spaces; double quotes enclose values with spaces.
     """
-    words = (word.lstrip("-").partition("=") for word in _WORDS.findall(options))
-    return {name: value.replace('"', "") for name, _, value in words}
+    for word in _WORDS.findall(options):
+        name, _, value = word.lstrip("-").partition("=")
+        yield name, value.replace('"', "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom.record import record
 from pybullet._calls.constants import SHARED_MEMORY_KEY
-from pybullet._calls.options import values_of
+from pybullet._calls.options import named_values
 
 
 @record
@@ -25,4 +25,4 @@ class Target:
 
     def option(self, name: str) -> str | None:
         """The value of the last `--name=value`, empty for `--name`; None if not given."""
-        return values_of(self.options).get(name)
+        return dict(named_values(self.options)).get(name)

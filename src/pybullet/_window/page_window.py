@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description.pose import Vector3
 from carom.viewer.items import DebugItem, Slider
 from pybullet._calls.errors import fail
-from pybullet._calls.options import values_of
+from pybullet._calls.options import named_values
 from pybullet._window.options import DebugCamera, VisualizerOptions
 from pybullet._window.recording_window import RecordingWindow
 
@@ -192,10 +192,10 @@ def open_window(client: Client, options: str) -> PageWindow:
     from carom.viewer.display import tunnel_command
     from carom.viewer.viewer import Viewer
 
-    values = values_of(options)
-    for name, limit in _COUNTS.items():
-        if name in values and not (values[name].isdecimal() and int(values[name]) >= limit):
-            del values[name]
+    values: dict[str, str] = {}
+    for name, value in named_values(options):
+        if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
+            values[name] = value
     arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
     arguments |= {name: values[name] for name in ("host", "token") if values.get(name)}
     if "names" in values:

@@ -1,12 +1,12 @@
 """Options of `connect`."""
 
-from pybullet._calls.options import values_of
+from pybullet._calls.options import named_values
 from pybullet._connections.target import Target
 
 
 def test_double_quotes_enclose_spaces() -> None:
     options = '--width=800 --mp4="my run.mp4" --minGraphicsUpdateTimeMs --key-file="a b"c'
-    assert values_of(options) == {
+    assert dict(named_values(options)) == {
         "width": "800",
         "mp4": "my run.mp4",
         "minGraphicsUpdateTimeMs": "",

@@ -130,7 +130,7 @@ def test_functions_ask_only_while_there_is_somebody_to_ask(servers: Servers, key
         lambda: p.getBasePositionAndOrientation(3),
         lambda: p.resetBasePositionAndOrientation(0, [1, 2], [0, 0, 0, 1]),
         lambda: p.setJointMotorControlArray(0, [0, 1], p.POSITION_CONTROL, targetPositions=[0]),
-        lambda: p.loadSoftBody("cloth.obj"),
+        lambda: p.loadSoftBody("nowhere.obj"),
         lambda: p.renderImage(1, 2, 3),
         lambda: p.getCameraImage(0, 0),
     ],

@@ -199,7 +199,7 @@ def test_a_landscape_gets_other_heights_wherever_it_is_used(client: int) -> None
         p.createCollisionShape(
             p.GEOM_HEIGHTFIELD, heightfieldData=[1] * 4, replaceHeightfieldIndex=shape, **GRID
         )
-    with pytest.raises(p.error, match="no heightfield"):
+    with pytest.raises(p.error, match="not a heightfield"):
         landscape([0] * 6, replaced=p.createCollisionShape(p.GEOM_SPHERE))
 
 
