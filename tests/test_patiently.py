@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,9 @@ def test_status_and_output_are_the_commands():
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_ends_a_command_that_does_not_listen(sent, tmp_path):
     number = tmp_path / "number"
-    process = patiently(sys.executable, "-c", STUBBORN, number)
+    # A job in the background of a shell, as tests may be, ignores Ctrl-C, and so would what it starts.
+    listening = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    process = patiently(sys.executable, "-c", STUBBORN, number, preexec_fn=listening)
     written = tmp_path / "number.written"
     while not written.exists():
         assert process.poll() is None
