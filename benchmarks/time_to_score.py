@@ -22,7 +22,6 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 
 COUNT = 16
-SEED = 1
 THREADS = 2
 # Those of RL Baselines3 Zoo for these environments, but larger batches at a higher rate, and half the epochs:
 # learning costs both engines the same, and should not hide what is compared.
@@ -91,11 +90,12 @@ def main() -> None:
     parser.add_argument("score", type=float)
     parser.add_argument("curve", type=Path)
     parser.add_argument("--steps", type=int, default=4_000_000)
+    parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
     torch.set_num_threads(THREADS)
     env = VecNormalize(VecMonitor(environments(asked.engine, asked.env)))
     score = Score(asked.score, asked.curve)
-    PPO("MlpPolicy", env, seed=SEED, device="cpu", **HYPERPARAMETERS).learn(asked.steps, callback=score)
+    PPO("MlpPolicy", env, seed=asked.seed, device="cpu", **HYPERPARAMETERS).learn(asked.steps, callback=score)
     seconds, steps, mean = score.rows[-1]
     said = "reached" if score.reached else "not reached"
     print(f"{asked.env}, {asked.engine}: {said}: {mean:.0f} after {seconds:.0f} s and {steps:,} steps")
