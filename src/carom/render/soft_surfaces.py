@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description import TriangleMesh
 from carom.description.transform import rotation_matrix
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
 from carom.record import record
@@ -34,20 +35,20 @@ def nodes_at_base(body: SoftBody) -> tuple[NDArray[np.float64], NDArray[np.int32
     return (vertices - world.position[first : first + 3]) @ turn, triangles
 
 
-def surface_mesh(body: SoftBody, first: RenderMesh) -> RenderMesh:
+def surface_mesh(body: SoftBody) -> RenderMesh:
     """The present surface of a soft body, in the link frame of its base.
 
-    Args:
-        body: The body.
-        first: Its surface when it was loaded, with three vertices of its own for each triangle.
+    With texture coordinates each triangle has vertices of its own, in the order of its visual shape.
     """
     vertices, triangles = nodes_at_base(body)
     normals = node_normals(vertices, triangles)
     places = vertices + np.asarray(body.spec.base.inertial_frame.position)
-    if not first.uvs.size or not np.ptp(first.uvs, axis=0).any():
+    visual = body.spec.base.visuals[0].geometry
+    assert isinstance(visual, TriangleMesh)
+    if visual.uvs is None:
         return mesh_of(places, normals, np.full((len(vertices), 2), NO_TEXTURE_UV), triangles)
     corners = triangles.reshape(-1)
-    return mesh_of(places[corners], normals[corners], first.uvs, first.triangles)
+    return mesh_of(places[corners], normals[corners], visual.uvs, visual.triangles)
 
 
 @record(frozen=False, eq=False)

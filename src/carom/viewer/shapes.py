@@ -151,7 +151,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
-            seen = replace(look, mesh=surface_mesh(body, look.mesh)) if isinstance(body, SoftBody) else look
+            seen = replace(look, mesh=surface_mesh(body)) if isinstance(body, SoftBody) else look
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
