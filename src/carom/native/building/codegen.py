@@ -42,6 +42,9 @@ _TILE_ROOM = re.compile(
 # Functions for adjoints of structs have external linkage, and several modules have the same structs; so they
 # are made static.
 _SEEN = re.compile(r"^(?=CUDA_CALLABLE )", re.MULTILINE)
+# Warp lets no native function (`wp.func_native`) be inlined by force. Called, it would be passed copies of arrays'
+# descriptors, and wait for them to be written.
+_NATIVE = re.compile(r"^static (?=CUDA_CALLABLE )", re.MULTILINE)
 
 
 class KernelClash(Exception):
@@ -104,6 +107,7 @@ def _generate_module(name: str) -> tuple[str, list[Any]]:
     builder = _ForwardBuilder(module, options, target="cpu")
     source = _COMMENT.sub("", builder.codegen("cpu"))
     source, count = _TILE_ROOM.subn("", source)
+    source = _NATIVE.sub("static WP_FORCEINLINE ", source)
     source = _SEEN.sub("static ", source)
     kernels = list(builder.kernels)
     if count != len(kernels):
