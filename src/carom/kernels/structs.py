@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     )
     from carom.layouts.images import Lighting, Picture, Scene, View
     from carom.layouts.mechanism import Control, Ends, MechanismSizes, MechanismTable
-    from carom.layouts.model import Dofs, Model, Scratch, Settings, State, Trees
+    from carom.layouts.model import ConstraintRows, Dofs, Model, Scratch, Settings, State, Trees
     from carom.layouts.motor_commands import MotorCommands
     from carom.layouts.parallel import IslandProgress, IslandWork, PairWork, RunWork
     from carom.layouts.queries import ContactReport, Places, Rays, Searches, Touching
@@ -50,6 +50,7 @@ else:
     View = warp_type(images.View)
     Lighting = warp_type(images.Lighting)
     Picture = warp_type(images.Picture)
+    ConstraintRows = warp_type(model.ConstraintRows)
     Settings = warp_type(model.Settings)
     Trees = warp_type(model.Trees)
     Dofs = warp_type(model.Dofs)

@@ -21,5 +21,6 @@ def restless_sweeps_kernel(
         and work.tree_progress[world, root].stage == WRITTEN
         and work.tree_progress[world, root].resting == 0
     ):
+        rows = work.tree_progress[world, root].rows
         visits = work.tree_progress[world, root].visits
-        sweep(settings, scratch, pair_rows, work, world, root, visits, 0)
+        sweep(settings, scratch, pair_rows, work, world, root, rows, visits, 0)

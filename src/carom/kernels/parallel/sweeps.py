@@ -23,6 +23,7 @@ def sweep(
     work: IslandWork,
     world: Int32,
     root: Int32,
+    rows: Int32,
     visits: Int32,
     resting: Int32,
 ) -> real:
@@ -32,6 +33,7 @@ def sweep(
         scratch_of_island(scratch, work, world, root),
         pair_rows_of_island(pair_rows, work, world, root),
         world,
+        rows,
         visits,
         work.tree_progress[world, root].units,
         work.tree_progress[world, root].manifold_blocks,
@@ -58,7 +60,7 @@ def resting_sweeps_kernel(
     ):
         return
     # An island at rest has no motors, limits or user constraints to visit.
-    residual = sweep(settings, scratch, pair_rows, work, world, root, 0, 1)
+    residual = sweep(settings, scratch, pair_rows, work, world, root, 0, 0, 1)
     work.tree_progress[world, root].outcome = Int32(SOLVED)
     if residual > settings.residual_threshold:
         work.tree_progress[world, root].outcome = Int32(UNSOLVED)

@@ -11,10 +11,9 @@ from carom.kernels.dynamics.limits import limit_rows, spherical_limit_rows
 from carom.kernels.dynamics.motors import motor_row, spherical_motor_rows
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.rows import row_dof
-from carom.kernels.maths.blocks import add_multiple
-from carom.kernels.maths.min_max import maximum, within_bounds
-from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector4, func, real, shared_func
+from carom.kernels.maths.min_max import within_bounds
+from carom.kernels.structs import ConstraintRows, Model, Scratch, Settings, State
+from carom.kernels.types import Int32, Vector4, Vector4Rows, func, real
 from carom.layouts.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
 
 
@@ -65,51 +64,80 @@ def joint_constraint_rows(
     return row
 
 
-@shared_func
-def bounded_change(before: real, after: real, lower: real, upper: real, effective_mass: real) -> real:
-    """Change of a row's rate when its impulse is clamped to its bounds."""
-    return (within_bounds(after, lower, upper) - before) / effective_mass
+@wp.func_native("""
+    auto* rows = &wp::index(row, world, 0);
+    auto* delta = &wp::index(delta_velocity, world, 0);
+    const auto* responses = &wp::index(response, world, 0);
+    wp::float64 residual = 0.0;
+    wp::float64 rate = delta[rows[first].entry / 4][rows[first].entry % 4];
+    for (int i = first, left = count; left > 0; --left) {
+        auto& own = rows[i];
+        i += stride;
+        const auto before = own.impulse;
+        auto change = own.change - rate;
+        auto after = before + change * own.effective_mass;
+        if (after < own.lower || after > own.upper) {
+            after = after < own.lower ? own.lower : after;
+            after = after > own.upper ? own.upper : after;
+            change = (after - before) / own.effective_mass;
+            after = before + change * own.effective_mass;
+        }
+        own.impulse = after;
+        const auto* x = responses + own.response;
+        auto* y = delta + own.delta;
+        if (left > 1) {
+            const int entry = rows[i].entry;
+            const int place = entry - 4 * own.delta;
+            rate = delta[entry / 4][entry % 4];
+            if (place >= 0 && place < 4 * own.blocks)
+                rate += change * x[place / 4][place % 4];
+        }
+        #pragma clang loop vectorize(disable)
+        for (int block = 0; block < own.blocks; ++block)
+            y[block] = wp::add(y[block], wp::mul(change, x[block]));
+        const auto square = change * change;
+        residual = square > residual ? square : residual;
+    }
+    return residual;
+""")
+def relax_rows(
+    row: ConstraintRows,
+    delta_velocity: Vector4Rows,
+    response: Vector4Rows,
+    world: Int32,
+    first: Int32,
+    count: Int32,
+    stride: Int32,
+) -> real:
+    """Relax `count` rows within their bounds, at least one: `first`, `first + stride`...
 
+    Each row depends on the row before only through one entry of the delta velocities. It is computed first, so
+    that the next row need not wait for the vectors; and clamping is a branch that is seldom taken.
 
-@func
-def relax_row(scratch: Scratch, world: Int32, row: Int32) -> real:
-    """Relax one row within its bounds; returns the change of its velocity.
-
-    Each row depends on the row before only through the delta velocities: the impulse is computed alongside,
-    and clamping is a branch that is seldom taken.
+    Returns:
+        The maximum change of a row's velocity, squared.
     """
-    entry = scratch.row[world, row].entry
-    before = scratch.row[world, row].impulse
-    effective_mass = scratch.row[world, row].effective_mass
-    change = scratch.row[world, row].change - scratch.entry_delta_velocity[world, entry]
-    after = before + change * effective_mass
-    lower = scratch.row[world, row].lower
-    upper = scratch.row[world, row].upper
-    if after < lower or after > upper:
-        change = bounded_change(before, after, lower, upper, effective_mass)
-        after = before + change * effective_mass
-    scratch.row[world, row].impulse = after
-
-    add_multiple(
-        scratch.delta_velocity, scratch.row[world, row].delta, change, scratch.block_response,
-        scratch.row[world, row].response, world, scratch.row[world, row].blocks,
-    )  # fmt: skip
-    return change
+    ...
 
 
 @func
-def row_sweep(scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> real:
-    """Relax `count` rows once; returns the maximum change squared."""
-    residual = real(0.0)
-    row = Int32(0)
+def row_sweep(settings: Settings, scratch: Scratch, world: Int32, count: Int32, sweep: Int32) -> real:
+    """Relax all `count` rows `inner_iterations` times; returns as `relax_rows`, for the last time."""
+    first = Int32(0)
     stride = Int32(1)
     if sweep % 2 == 0:
-        row = count - 1
+        first = count - 1
         stride = Int32(-1)
-    while row >= 0 and row < count:
-        change = relax_row(scratch, world, row)
-        residual = maximum(residual, change * change)
-        row += stride
+    residual = real(0.0)
+    inner = Int32(0)
+    while inner < settings.inner_iterations:
+        residual = relax_rows(
+            scratch.row, scratch.delta_velocity, scratch.block_response, world, first, count, stride
+        )
+        inner += 1
+        if residual == 0.0:
+            # No row has changed, so further inner sweeps would not change any.
+            inner = settings.inner_iterations
     return residual
 
 
@@ -128,13 +156,7 @@ def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratc
     sweep = Int32(0)
     searching = count > 0 and settings.iterations > 0
     while searching:
-        inner = Int32(0)
-        while inner < settings.inner_iterations:
-            residual = row_sweep(scratch, world, count, sweep)
-            inner += 1
-            if residual == 0.0:
-                # No row has changed, so further inner sweeps would not change any.
-                inner = settings.inner_iterations
+        residual = row_sweep(settings, scratch, world, count, sweep)
         sweep += 1
         searching = residual > settings.residual_threshold and sweep < settings.iterations
     keep_row_results(model, settings, state, scratch, world, root, count, sweep, residual)

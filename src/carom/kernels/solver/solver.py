@@ -104,6 +104,7 @@ def sweep_island(
     scratch: Scratch,
     pair_rows: PairRows,
     world: Int32,
+    rows: Int32,
     visits: Int32,
     units: Int32,
     manifold_blocks: Int32,
@@ -117,6 +118,7 @@ def sweep_island(
         scratch: Rows over one tree.
         pair_rows: Rows over two trees.
         world: The world.
+        rows: Number of rows of motors and limits.
         visits: Number of rows of motors, limits and user constraints.
         units: Number of units of contacts.
         manifold_blocks: Number of manifold blocks among the units.
@@ -140,7 +142,7 @@ def sweep_island(
     while searching == 1:
         if resting == 1:
             remember_impulses(pair_rows, world, manifold_blocks)
-        residual = visit_sweep(settings, scratch, pair_rows, world, visits, sweep)
+        residual = visit_sweep(settings, scratch, pair_rows, world, rows, visits, sweep)
         if resting == 1:
             residual = maximum(residual, resting_sweep(settings, scratch, pair_rows, world, manifold_blocks))
         elif units > 0:
@@ -195,7 +197,7 @@ def solve_island(
             state.status_entry[world, STATUS] = OVERFLOW
             return
         residual, sweeps = sweep_island(
-            settings, scratch, pair_rows, world, visits, units, manifold_blocks, torsion, resting
+            settings, scratch, pair_rows, world, rows, visits, units, manifold_blocks, torsion, resting
         )
         if resting == 1:
             outcome = Int32(SOLVED)

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.maths.min_max import maximum
 from carom.kernels.solver.articulated_manifolds import relax_articulated_friction, relax_articulated_normals
-from carom.kernels.solver.joint_solver import relax_row
+from carom.kernels.solver.joint_solver import relax_rows, row_sweep
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
 from carom.kernels.structs import PairRows, Scratch, Settings
@@ -14,10 +14,23 @@ from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROW_FRICTION, ROW_IMPUL
 
 @func
 def visit_sweep(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, count: Int32, sweep: Int32
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    rows: Int32,
+    visits: Int32,
+    sweep: Int32,
 ) -> real:
-    """Relax motors, limits and user constraints once; returns the maximum change squared."""
+    """Relax motors, limits and user constraints once; returns the maximum change squared.
+
+    `rows` and `visits` are the numbers of rows without and with those of user constraints.
+    """
     residual = real(0.0)
+    if visits == 0:
+        return residual
+    if visits == rows:
+        return row_sweep(settings, scratch, world, rows, sweep)
     inner = Int32(0)
     while inner < settings.inner_iterations:
         inner += 1
@@ -25,18 +38,19 @@ def visit_sweep(
         place = Int32(0)
         stride = Int32(1)
         if sweep % 2 == 0:
-            place = count - 1
+            place = visits - 1
             stride = Int32(-1)
-        while place >= 0 and place < count:
+        while place >= 0 and place < visits:
             row = pair_rows.visit_row[world, place]
             place += stride
-            change = real(0.0)
             if row >= 0:
-                change = relax_row(scratch, world, row)
+                square = relax_rows(
+                    scratch.row, scratch.delta_velocity, scratch.block_response, world, row, 1, stride
+                )
+                residual = maximum(residual, square)
             else:
                 change = relax_pair_row(scratch, pair_rows, world, -1 - row)
-            if change * change > residual:
-                residual = change * change
+                residual = maximum(residual, change * change)
         if residual == 0.0:
             # No row has changed, so further inner sweeps would not change any.
             inner = settings.inner_iterations
