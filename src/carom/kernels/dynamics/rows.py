@@ -81,21 +81,35 @@ def dof_effective_mass(model: Model, scratch: Scratch, world: Int32, tree: Int32
 
 
 @func
-def angular_inverse_mass(
-    model: Model, scratch: Scratch, world: Int32, tree: Int32, last_dof: Int32, direction: Vector3
-) -> real:
-    """Angular velocity of the link of `last_dof` along `direction`, by a unit angular impulse along it."""
-    total = real(0.0)
-    first = model.tree[tree].first_dof
+def along_axes(scratch: Scratch, world: Int32, dof: Int32, first: Int32) -> Vector3:
+    """Angular velocity by a unit rate of a dof, along the axes of the three dofs from `first` on."""
+    angular = scratch.dof[world, dof].angular
+    return Vector3(
+        wp.dot(scratch.dof[world, first].angular, angular),
+        wp.dot(scratch.dof[world, first + 1].angular, angular),
+        wp.dot(scratch.dof[world, first + 2].angular, angular),
+    )
+
+
+@func
+def angular_inverse_masses(
+    model: Model, scratch: Scratch, world: Int32, tree: Int32, last_dof: Int32, first: Int32
+) -> Vector3:
+    """Angular velocity of the link of `last_dof` along each axis, by a unit angular impulse along it.
+
+    The axes are those of the three dofs from `first` on.
+    """
+    total = Vector3(0.0, 0.0, 0.0)
+    first_of_tree = model.tree[tree].first_dof
     i = last_dof
     while i >= 0:
-        along_i = wp.dot(direction, scratch.dof[world, i].angular)
-        if along_i != 0.0:
+        along_i = along_axes(scratch, world, i, first)
+        if along_i[0] != 0.0 or along_i[1] != 0.0 or along_i[2] != 0.0:
             j = last_dof
             while j >= 0:
-                along_j = wp.dot(direction, scratch.dof[world, j].angular)
-                total += (
-                    along_i * along_j * inverse_mass_entry(model, scratch, world, tree, i - first, j - first)
+                share = wp.cw_mul(along_i, along_axes(scratch, world, j, first))
+                total += share * inverse_mass_entry(
+                    model, scratch, world, tree, i - first_of_tree, j - first_of_tree
                 )
                 j = model.dof[j].parent
         i = model.dof[i].parent
@@ -109,11 +123,8 @@ def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: In
     As in Bullet, the inverse inertias of both links are added as if the links were independent. So effective
     masses are too small, but the rows still converge, in smaller steps.
     """
-    result = Vector3(0.0, 0.0, 0.0)
     first = model.link[link].first_dof
-    for axis in range(3):
-        direction = scratch.dof[world, first + axis].angular
-        own = angular_inverse_mass(model, scratch, world, tree, first + 2, direction)
-        parents = angular_inverse_mass(model, scratch, world, tree, model.dof[first].parent, direction)
-        result[axis] = inverse_or_off(own + parents)
-    return result
+    own = angular_inverse_masses(model, scratch, world, tree, first + 2, first)
+    parents = angular_inverse_masses(model, scratch, world, tree, model.dof[first].parent, first)
+    total = own + parents
+    return Vector3(inverse_or_off(total[0]), inverse_or_off(total[1]), inverse_or_off(total[2]))
