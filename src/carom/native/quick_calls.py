@@ -164,7 +164,12 @@ class Box(ctypes.Structure):
 class Joint(ctypes.Structure):
     """Index of the coordinates of a joint with one degree of freedom in its body; -1 for other joints."""
 
-    _fields_ = (("position", ctypes.c_int32), ("velocity", ctypes.c_int32))
+    _fields_ = (
+        ("position", ctypes.c_int32),
+        ("velocity", ctypes.c_int32),
+        ("lower", ctypes.c_double),
+        ("upper", ctypes.c_double),
+    )
 
 
 class MotorGroup(ctypes.Structure):
@@ -191,6 +196,9 @@ class Body(ctypes.Structure):
         ("pose", ctypes.c_void_p),
         ("twist", ctypes.c_void_p),
         ("wrench", ctypes.c_void_p),
+        ("motor", ctypes.c_void_p),
+        ("pd", ctypes.c_void_p),
+        ("torque", ctypes.c_void_p),
         ("links", ctypes.c_void_p),
         ("joints", ctypes.c_void_p),
         ("motors", ctypes.c_void_p),

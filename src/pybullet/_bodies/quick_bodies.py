@@ -17,14 +17,14 @@ from carom.native.quick_calls import Body, Box, Client, Joint, Link, Moments
 if TYPE_CHECKING:
     from carom.model.inertia import MassTerms
     from carom.native.quick_calls import QuickCalls
-    from carom.scene.body import Body as Handle
     from pybullet._bodies.body_access import BodyAccess
     from pybullet._bodies.link_access import LinkAccess
     from pybullet._bodies.link_box import LinkBox
     from pybullet._clients.clients import Client as Connection
 
 _DOUBLE = 8
-_POSE_ROW, _SPATIAL_ROW = 7 * _DOUBLE, 6 * _DOUBLE
+_POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = 7 * _DOUBLE, 6 * _DOUBLE, 8 * _DOUBLE
+_NO_JOINT = (-1, -1, 0.0, 0.0)
 # CPython interns names of attributes.
 _TIME_STEP, _JOINT_COUNT, _NAMES = map(sys.intern, ("time_step", "joint_count", "_encoded_names"))
 _FIRST_ROOM = 16
@@ -82,13 +82,16 @@ class QuickBodies:
             return
         state = body.world.arrays.state.struct()
         row = body.first_link
-        joints = _joint_records(body)
+        joints = _joint_records(access)
         record = Body(
             position=state.position.data + body.first_position * _DOUBLE,
             velocity=state.dof_velocity.data + body.first_velocity * _DOUBLE,
             pose=state.link_pose.data + row * _POSE_ROW,
             twist=state.link_twist.data + row * _SPATIAL_ROW,
             wrench=state.link_wrench.data + row * _SPATIAL_ROW,
+            motor=state.dof_motor.data + body.first_velocity * _MOTOR_ROW,
+            pd=state.dof_pd.data + body.first_velocity * _MOTOR_ROW,
+            torque=state.dof_torque.data + body.first_velocity * _DOUBLE,
             joints=addressof(joints),
             link_count=body.joint_count,
             tree=body.rows.tree,
@@ -127,14 +130,15 @@ class QuickBodies:
         self._record.body_count = len(places)
 
 
-def _joint_records(body: Handle) -> Array[Joint]:
+def _joint_records(access: BodyAccess) -> Array[Joint]:
+    body = access.body
     first, first_velocity = body.first_position, body.first_velocity
     return (Joint * body.joint_count)(
         *[
-            (position - first, velocity - first_velocity) if freedoms == 1 else (-1, -1)
-            for position, velocity, freedoms in zip(
-                body.position_index, body.velocity_index, body.velocity_count, strict=True
-            )
+            (joint.q - first, joint.u - first_velocity, joint.motor.lower, joint.motor.upper)
+            if freedoms == 1
+            else _NO_JOINT
+            for joint, freedoms in zip(access.joints.values(), body.velocity_count, strict=True)
         ]
     )
 

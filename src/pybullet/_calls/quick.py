@@ -39,6 +39,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "applyExternalTorque": ("apply_torque", "bi3ic", ()),
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
     "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
+    "setJointMotorControl2": ("command_motor", "biirrrrrrc", ()),
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
     "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),

@@ -7,7 +7,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from math import sqrt
+from math import inf, nan, sqrt
 from random import Random
 from types import FunctionType
 from typing import Any
@@ -82,6 +82,7 @@ def _state(client: int) -> list[bytes]:
             world.link_force_memory,
             world.link_pose_memory,
             world.motor_memory,
+            world.pd_memory,
             world.joint_torque_memory,
         )
     ]
@@ -150,6 +151,7 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "applyExternalTorque": (0, -1, [1, 2, 3], p.WORLD_FRAME),
     "resetBasePositionAndOrientation": (1, [1, 2, 3], [0, 0, 0.6, 0.8]),
     "resetBaseVelocity": (1, [1, 2, 3], None),
+    "setJointMotorControl2": (0, 3, p.POSITION_CONTROL, 0.5, 0.25, 5, 0.125, 0.75, 2),
     "setJointMotorControlArray": (0, [3, 1, 2], p.POSITION_CONTROL, [0.5, 0.25, 0.125], None, (5, 6.0, 7)),
     "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
     "resetJointState": (0, 3, 0.5),
@@ -220,6 +222,29 @@ def test_odd_arguments_meet_what_they_meet_in_python(name: str, two: tuple[int, 
         first_outcome, second_outcome = (str(outcome).split(" object at 0x")[0] for outcome in outcomes)
         assert first_outcome == second_outcome
     assert _state(first) == _state(second)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.integers(-1, 7),
+    st.sampled_from([p.POSITION_CONTROL, p.VELOCITY_CONTROL, p.TORQUE_CONTROL, p.PD_CONTROL, 7]),
+    st.dictionaries(
+        st.sampled_from(["targetPosition", "targetVelocity", "positionGain", "velocityGain", "maxVelocity"]),
+        st.floats(-5.0, 5.0),
+    ),
+    st.sampled_from([0.0, 1e-9, 5, 1e31, inf, nan]),
+    st.booleans(),
+)
+def test_motors_are_set_as_python_sets_them(
+    two: tuple[int, int], joint: int, mode: int, targets: dict[str, float], force: float, narrow: bool
+) -> None:
+    outcomes = []
+    for call, client in zip((p.setJointMotorControl2, _in_python("setJointMotorControl2")), two, strict=True):
+        if narrow:
+            p.changeDynamics(0, 3, jointLowerLimit=-0.5, jointUpperLimit=0.5, physicsClientId=client)
+        outcomes.append(_outcome(call, 0, joint, mode, **targets, force=force, physicsClientId=client))
+    assert outcomes[0] == outcomes[1]
+    assert _state(two[0]) == _state(two[1])
 
 
 FRICTION = ["lateralFriction", "spinningFriction", "rollingFriction", "restitution"]

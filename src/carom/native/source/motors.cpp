@@ -1,11 +1,24 @@
-// Commands to several motors at once: a kernel of quick calls.
+// Commands to one motor, and to several at once: kernels of quick calls.
 
 #include "export.h"
 #include "quick_calls.h"
 
 namespace {
 
-enum { VELOCITY = 0, TORQUE = 1, POSITION = 2 };
+enum { VELOCITY = 0, TORQUE = 1, POSITION = 2, PD = 3 };
+enum { COLUMNS = 8, VELOCITY_CLAMP = 5 };
+
+// A PD drive with a smaller maximum force is switched off.
+const double LEAST_PD_FORCE = 1.1920928955078125e-07;
+
+double clipped(double position, const Joint& joint) {
+    return position < joint.lower ? joint.lower : position > joint.upper ? joint.upper : position;
+}
+
+void write_target(double* row, double position, double velocity, double kp, double kd, double bound) {
+    const double numbers[] = {position, velocity, kp, kd, bound};
+    __builtin_memcpy(row, numbers, sizeof numbers);
+}
 
 bool are_those_of(const MotorGroup& group, PyObject* indices) {
     if (!indices || python.PySequence_Size(indices) != group.count)
@@ -23,6 +36,36 @@ bool are_those_of(const MotorGroup& group, PyObject* indices) {
 }
 
 }  // namespace
+
+// Arguments: body, joint, mode, position, velocity, force, position gain, velocity gain, maximum velocity, connection.
+// `carom.scene.joint_motor.AxisMotor` does the same.
+extern "C" CAROM_EXPORT int carom_command_motor(const double* in, double* out, const Call* call) {
+    const Body& body = *call->body;
+    if (!(0.0 <= in[1] && in[1] < body.link_count))
+        return 0;
+    const Joint& joint = body.joints[static_cast<int64_t>(in[1])];
+    const double mode = in[2], position = in[3], velocity = in[4], force = in[5], kp = in[6], kd = in[7], clamp = in[8];
+    double seconds;
+    if (joint.velocity < 0 || !read_time_step(*call->client, &seconds))
+        return 0;
+    double* const motor = body.motor + joint.velocity * COLUMNS;
+    if (mode == POSITION) {
+        write_target(motor, clipped(position, joint), velocity, kp, kd, force * seconds);
+        if (clamp > 0.0)
+            motor[VELOCITY_CLAMP] = clamp;
+    } else if (mode == VELOCITY) {
+        write_target(motor, 0.0, velocity, 0.0, kd, force * seconds);
+        motor[VELOCITY_CLAMP] = __builtin_inf();
+    } else if (mode == TORQUE) {
+        body.torque[joint.velocity] += force;
+    } else if (mode == PD) {
+        const double bound = force >= LEAST_PD_FORCE ? force : 0.0;
+        write_target(body.pd + joint.velocity * COLUMNS, clipped(position, joint), velocity, kp, kd, bound);
+    } else {
+        return 0;
+    }
+    return 1;
+}
 
 // Arguments: body, mode, connection; then sequences: joints, positions, velocities, forces, position gains, velocity
 // gains. Python handles joints other than those commanded last, and uncommon modes.

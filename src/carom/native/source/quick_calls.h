@@ -105,6 +105,7 @@ struct Box {
 
 struct Joint {
     int32_t position, velocity;  // indices among those of the body; -1 for joints without exactly one dof
+    double lower, upper;         // bounds of target positions
 };
 
 // Joints of a body that were commanded together, and the kernel for their commands.
@@ -125,6 +126,8 @@ struct Body {
     double* pose;      // of all links, the base first, seven numbers for each
     double* twist;     // linear and angular velocity of each link
     double* wrench;    // force and torque on each link in the next step
+    double *motor, *pd;  // the motor and the PD drive of each dof, eight numbers for each
+    double* torque;      // on each dof in the next step
     Link* links;       // all except the base; null until they are first needed
     const Joint* joints;
     const MotorGroup* motors;  // the group commanded last; null if there is none
