@@ -162,11 +162,13 @@ class Box(ctypes.Structure):
 
 
 class Joint(ctypes.Structure):
-    """Index of the coordinates of a joint with one degree of freedom in its body; -1 for other joints."""
+    """A joint: indices of its first coordinates in its body, and bounds of target positions."""
 
     _fields_ = (
         ("position", ctypes.c_int32),
         ("velocity", ctypes.c_int32),
+        ("dof_count", ctypes.c_int32),
+        ("has_sensor", ctypes.c_int32),
         ("lower", ctypes.c_double),
         ("upper", ctypes.c_double),
     )
@@ -199,6 +201,8 @@ class Body(ctypes.Structure):
         ("motor", ctypes.c_void_p),
         ("pd", ctypes.c_void_p),
         ("torque", ctypes.c_void_p),
+        ("motor_impulse", ctypes.c_void_p),
+        ("reaction", ctypes.c_void_p),
         ("links", ctypes.c_void_p),
         ("joints", ctypes.c_void_p),
         ("motors", ctypes.c_void_p),

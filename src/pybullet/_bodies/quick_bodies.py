@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = 7 * _DOUBLE, 6 * _DOUBLE, 8 * _DOUBLE
-_NO_JOINT = (-1, -1, 0.0, 0.0)
 # CPython interns names of attributes.
 _TIME_STEP, _JOINT_COUNT, _NAMES = map(sys.intern, ("time_step", "joint_count", "_encoded_names"))
 _FIRST_ROOM = 16
@@ -92,6 +91,8 @@ class QuickBodies:
             motor=state.dof_motor.data + body.first_velocity * _MOTOR_ROW,
             pd=state.dof_pd.data + body.first_velocity * _MOTOR_ROW,
             torque=state.dof_torque.data + body.first_velocity * _DOUBLE,
+            motor_impulse=state.dof_motor_impulse.data + body.first_velocity * _DOUBLE,
+            reaction=state.link_reaction.data + row * _SPATIAL_ROW,
             joints=addressof(joints),
             link_count=body.joint_count,
             tree=body.rows.tree,
@@ -135,9 +136,14 @@ def _joint_records(access: BodyAccess) -> Array[Joint]:
     first, first_velocity = body.first_position, body.first_velocity
     return (Joint * body.joint_count)(
         *[
-            (joint.q - first, joint.u - first_velocity, joint.motor.lower, joint.motor.upper)
-            if freedoms == 1
-            else _NO_JOINT
+            Joint(
+                joint.q - first,
+                joint.u - first_velocity,
+                freedoms,
+                joint.has_sensor,
+                joint.motor.lower,
+                joint.motor.upper,
+            )
             for joint, freedoms in zip(access.joints.values(), body.velocity_count, strict=True)
         ]
     )

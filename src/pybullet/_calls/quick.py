@@ -39,6 +39,8 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "applyExternalTorque": ("apply_torque", "bi3ic", ()),
     "resetBasePositionAndOrientation": ("place_base", "b3qc", ()),
     "resetBaseVelocity": ("set_base_velocity", "b33c", ()),
+    "getJointState": ("joint_state", "bic", (0, 0, 6, 0)),
+    "getJointStates": ("joint_states", "bsc", None),
     "setJointMotorControl2": ("command_motor", "biirrrrrrc", ()),
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
     "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),

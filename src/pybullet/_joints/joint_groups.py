@@ -1,7 +1,6 @@
-"""Access to several joints of a body at once.
+"""Commands to several joints of a body at once.
 
-Scripts use the same joints in every step of a control loop, so data of a group of joints are cached. If their
-rows are contiguous in the state arrays, as for all joints of most arms, one loop reads all states.
+Scripts use the same joints in every step of a control loop, so data of a group of joints are cached.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from carom.scene.motor_group import MotorGroup
-from pybullet._joints.joint_access import NO_WRENCH, AxisJoint, JointAccess, JointState
+from pybullet._joints.joint_access import AxisJoint, JointAccess
 from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
@@ -23,15 +22,7 @@ _MOST_GROUPS = 64
 
 
 class JointGroup:
-    """A group of joints of any types, handled one by one; base class for the other groups."""
-
-    def __init__(self, client: Client, joints: Sequence[JointAccess]) -> None:
-        self.client = client
-        self.joints = joints
-
-    def states(self) -> tuple[JointState, ...]:
-        """The state of each joint, as `getJointState` returns it."""
-        return tuple([joint.state() for joint in self.joints])
+    """A group of joints of any types, handled one by one; base class for the other group."""
 
     def command(self, mode: int, *lists: Iterable[float] | None) -> None:
         """Set the motor of each joint as `setJointMotorControl2` does. After an error nothing has been set.
@@ -58,13 +49,13 @@ class AxisGroup(JointGroup):
     """A group of revolute and prismatic joints, commanded together."""
 
     def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
-        super().__init__(client, joints)
+        self._client = client
         self._axes = joints
 
     @cached_property
     def _motors(self) -> MotorGroup:
         return MotorGroup(
-            self.client.world,
+            self._client.world,
             [joint.u for joint in self._axes],
             [(joint.motor.lower, joint.motor.upper) for joint in self._axes],
             DEFAULT_FORCE,
@@ -77,29 +68,7 @@ class AxisGroup(JointGroup):
         return self._motors.record([joint.index for joint in self._axes])
 
     def command(self, mode: int, *lists: Iterable[float] | None) -> None:
-        self._motors.command(mode, self.client.time_step, *lists)
-
-
-class ConsecutiveAxes(AxisGroup):
-    """A group of revolute and prismatic joints without sensors, in consecutive rows of the state arrays."""
-
-    def __init__(self, client: Client, joints: Sequence[AxisJoint]) -> None:
-        super().__init__(client, joints)
-        first, count = joints[0], len(joints)
-        self._positions = first.positions[first.q : first.q + count]
-        self._velocities = first.velocities[first.u : first.u + count]
-        self._impulses = first.impulses[first.u : first.u + count]
-
-    def states(self) -> tuple[JointState, ...]:
-        time_step = self.client.time_step
-        return tuple(
-            [
-                (position, velocity, NO_WRENCH, impulse / time_step)
-                for position, velocity, impulse in zip(
-                    self._positions, self._velocities, self._impulses, strict=True
-                )
-            ]
-        )
+        self._motors.command(mode, self._client.time_step, *lists)
 
 
 class JointGroups(dict[tuple[int, ...], JointGroup]):
@@ -116,20 +85,8 @@ class JointGroups(dict[tuple[int, ...], JointGroup]):
     def __missing__(self, indices: tuple[int, ...]) -> JointGroup:
         joints = [self._joints[index] for index in indices]
         axes = [joint for joint in joints if isinstance(joint, AxisJoint)]
-        if not axes or len(axes) < len(joints):
-            group = JointGroup(self._client, joints)
-        elif _are_consecutive(axes) and not any(joint.has_sensor for joint in axes):
-            group = ConsecutiveAxes(self._client, axes)
-        else:
-            group = AxisGroup(self._client, axes)
+        group = AxisGroup(self._client, axes) if axes and len(axes) == len(joints) else JointGroup()
         if len(self) >= _MOST_GROUPS:
             self.clear()
         self[indices] = group
         return group
-
-
-def _are_consecutive(joints: Sequence[AxisJoint]) -> bool:
-    first = joints[0]
-    return all(
-        joint.q == first.q + place and joint.u == first.u + place for place, joint in enumerate(joints)
-    )

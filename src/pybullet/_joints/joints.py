@@ -139,8 +139,8 @@ def getJointStates(
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
     try:
-        group = clients[physicsClientId].bodies[bodyUniqueId].groups[tuple(jointIndices)]
-        return group.states() or None
+        joints = clients[physicsClientId].bodies[bodyUniqueId].joints
+        return tuple([joints[index].state() for index in jointIndices]) or None
     except (KeyError, TypeError, ValueError):
         requested = _requested(bodyUniqueId, jointIndices, physicsClientId)
         if not requested:

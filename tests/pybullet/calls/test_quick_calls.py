@@ -42,6 +42,7 @@ ARGUMENTS: dict[str, st.SearchStrategy[Any]] = {
 MATHS = [name for name, (_, kinds, _) in quick._KERNELS.items() if "c" not in kinds]
 READING = [
     *("getBasePositionAndOrientation", "getBaseVelocity", "getLinkState", "getLinkStates"),
+    *("getJointState", "getJointStates"),
     *("getContactPoints", "getClosestPoints", "getOverlappingObjects"),
     *("getAABB", "getNumBodies", "getBodyUniqueId", "getNumJoints", "getBodyInfo"),
     "isConnected",
@@ -151,6 +152,8 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "applyExternalTorque": (0, -1, [1, 2, 3], p.WORLD_FRAME),
     "resetBasePositionAndOrientation": (1, [1, 2, 3], [0, 0, 0.6, 0.8]),
     "resetBaseVelocity": (1, [1, 2, 3], None),
+    "getJointState": (0, 3),
+    "getJointStates": (0, range(7)),
     "setJointMotorControl2": (0, 3, p.POSITION_CONTROL, 0.5, 0.25, 5, 0.125, 0.75, 2),
     "setJointMotorControlArray": (0, [3, 1, 2], p.POSITION_CONTROL, [0.5, 0.25, 0.125], None, (5, 6.0, 7)),
     "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
@@ -245,6 +248,24 @@ def test_motors_are_set_as_python_sets_them(
         outcomes.append(_outcome(call, 0, joint, mode, **targets, force=force, physicsClientId=client))
     assert outcomes[0] == outcomes[1]
     assert _state(two[0]) == _state(two[1])
+
+
+def test_states_of_all_kinds_of_joints_are_those_of_python(one: int) -> None:
+    folder = pybullet_data.getDataPath()
+    for file in ("humanoid/humanoid.urdf", "r2d2.urdf"):
+        body = p.loadURDF(f"{folder}/{file}", [0, 5, 2], physicsClientId=one)
+        joints = range(p.getNumJoints(body, one))
+        for joint in joints[::2]:
+            p.enableJointForceTorqueSensor(body, joint, True, one)
+        for _ in range(3):
+            p.stepSimulation(one)
+        states = _in_python("getJointStates")(body, joints, one)
+        assert any(any(wrench) for _, _, wrench, _ in states)
+        assert _takes_no_python("getJointStates", body, joints, one)
+        assert p.getJointStates(body, joints, one) == states
+        for joint in joints:
+            assert _takes_no_python("getJointState", body, joint, one)
+            assert p.getJointState(body, joint, one) == states[joint]
 
 
 FRICTION = ["lateralFriction", "spinningFriction", "rollingFriction", "restitution"]

@@ -111,8 +111,8 @@ def relax_rows(
 ) -> real:
     """Relax `count` rows within their bounds, at least one: `first`, `first + stride`...
 
-    Each row depends on the row before only through one entry of the delta velocities. It is computed first, so
-    that the next row need not wait for the vectors; and clamping is a branch that is seldom taken.
+    Each row depends on the row before only through one entry of the delta velocities. It is computed first,
+    so that the next row need not wait for the vectors; and clamping is a branch that is seldom taken.
 
     Returns:
         The maximum change of a row's velocity, squared.

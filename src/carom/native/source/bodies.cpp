@@ -19,14 +19,6 @@ bool is_given(double number) { return number == number; }
 
 bool has_link(const Body& body, double link) { return -1.0 <= link && link < body.link_count; }
 
-void run(const Launch& launch, int64_t tree) {
-    // The host relies on the tree that it set last.
-    const int32_t before = *launch.tree;
-    *launch.tree = static_cast<int32_t>(tree);
-    launch.function(launch.bounds, launch.arguments);
-    *launch.tree = before;
-}
-
 struct Pose {
     Vector position;
     Quaternion orientation;
@@ -130,22 +122,6 @@ CAROM_QUICK(set_base_velocity) {
     return 1;
 }
 
-// Arguments: body, joint, position, velocity, connection.
-CAROM_QUICK(reset_joint) {
-    const Body& body = *call->body;
-    const Scene& scene = *call->client->scene;
-    if (!(0.0 <= in[1] && in[1] < body.link_count))
-        return 0;
-    const Joint joint = body.joints[static_cast<int64_t>(in[1])];
-    const Lock lock(*call->client);
-    if (!lock.is_held || !scene.find_poses.function || joint.position < 0)
-        return 0;
-    body.position[joint.position] = in[2];
-    body.velocity[joint.velocity] = in[3];
-    run(scene.find_poses, body.tree);
-    return 1;
-}
-
 namespace {
 
 // Updates the requested data of links; false if data for this are missing.
@@ -211,20 +187,8 @@ extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call
     const bool with_velocity = in[1] != 0.0;
     double numbers[MOST_LINKS][LINK_NUMBERS];
     int64_t links[MOST_LINKS];
-    const intptr_t count = python.PySequence_Size(call->sequences[0]);
-    if (count > MOST_LINKS)
-        return nullptr;
-    for (intptr_t i = 0; i < count; ++i) {
-        PyObject* item = python.PySequence_GetItem(call->sequences[0], i);
-        double index = -1.0;
-        const bool well = item && read_integer(item, &index) && 0.0 <= index && index < body.link_count;
-        if (item)
-            python.Py_DecRef(item);
-        if (!well)
-            return nullptr;
-        links[i] = static_cast<int64_t>(index);
-    }
-    if (!prepare_links(*call, with_velocity, in[2] != 0.0))
+    const intptr_t count = read_indices(call->sequences[0], body.link_count, MOST_LINKS, links);
+    if (count < 0 || !prepare_links(*call, with_velocity, in[2] != 0.0))
         return nullptr;
     int groups = 0;
     for (intptr_t i = 0; i < count; ++i)

@@ -46,7 +46,7 @@ extern "C" CAROM_EXPORT int carom_command_motor(const double* in, double* out, c
     const Joint& joint = body.joints[static_cast<int64_t>(in[1])];
     const double mode = in[2], position = in[3], velocity = in[4], force = in[5], kp = in[6], kd = in[7], clamp = in[8];
     double seconds;
-    if (joint.velocity < 0 || !read_time_step(*call->client, &seconds))
+    if (joint.dof_count != 1 || !read_time_step(*call->client, &seconds))
         return 0;
     double* const motor = body.motor + joint.velocity * COLUMNS;
     if (mode == POSITION) {

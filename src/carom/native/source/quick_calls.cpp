@@ -289,6 +289,31 @@ bool read_integer(PyObject* value, double* number) {
     return value->type == python.int_type && read_number(value, number) && __builtin_fabs(*number) <= 0x7FFFFFFF;
 }
 
+intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* indices) {
+    const intptr_t count = python.PySequence_Size(sequence);
+    if (count > most)
+        return -1;
+    for (intptr_t i = 0; i < count; ++i) {
+        PyObject* item = python.PySequence_GetItem(sequence, i);
+        double index = -1.0;
+        const bool well = item && read_integer(item, &index) && 0.0 <= index && index < end;
+        if (item)
+            python.Py_DecRef(item);
+        if (!well)
+            return -1;
+        indices[i] = static_cast<int64_t>(index);
+    }
+    return count;
+}
+
+void run(const Launch& launch, int64_t tree) {
+    // The host relies on the tree that it set last.
+    const int32_t before = *launch.tree;
+    *launch.tree = static_cast<int32_t>(tree);
+    launch.function(launch.bounds, launch.arguments);
+    *launch.tree = before;
+}
+
 Lock::Lock(const Client& of) : client(of) {
     PyObject* taken = python.PyObject_CallObject(client.acquire, client.without_waiting);
     is_held = taken == python.True;

@@ -104,8 +104,10 @@ struct Box {
 };
 
 struct Joint {
-    int32_t position, velocity;  // indices among those of the body; -1 for joints without exactly one dof
-    double lower, upper;         // bounds of target positions
+    int32_t position, velocity;  // indices of the first coordinates among those of the body
+    int32_t dof_count;
+    int32_t has_sensor;
+    double lower, upper;  // bounds of target positions
 };
 
 // Joints of a body that were commanded together, and the kernel for their commands.
@@ -128,6 +130,8 @@ struct Body {
     double* wrench;    // force and torque on each link in the next step
     double *motor, *pd;  // the motor and the PD drive of each dof, eight numbers for each
     double* torque;      // on each dof in the next step
+    const double* motor_impulse;  // of the last step, on each dof
+    const double* reaction;       // force and torque that sensors measure, for each link
     Link* links;       // all except the base; null until they are first needed
     const Joint* joints;
     const MotorGroup* motors;  // the group commanded last; null if there is none
@@ -186,6 +190,12 @@ const Body* find_body(const Client& client, double number);
 
 // Reads a Python integer that fits into 32 bits; false if it is none.
 bool read_integer(PyObject* value, double* number);
+
+// Reads a sequence of at most `most` integers from 0 to `end` - 1; returns their number, or -1 if it is none.
+intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* indices);
+
+// Runs a kernel for one tree.
+void run(const Launch& launch, int64_t tree);
 
 // Replaces a value and restores it on destruction: the host relies on the arguments that it set last.
 template <typename T>
