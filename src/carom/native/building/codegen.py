@@ -42,8 +42,8 @@ _TILE_ROOM = re.compile(
 # Functions for adjoints of structs have external linkage, and several modules have the same structs; so they
 # are made static.
 _SEEN = re.compile(r"^(?=CUDA_CALLABLE )", re.MULTILINE)
-# Warp has no inline hint for native functions (`wp.func_native`). If one is called, its arguments are copies of
-# array descriptors, and it waits for these to be written.
+# Warp has no inline hint for native functions (`wp.func_native`). If one is called, its arguments are
+# copies of array descriptors, and it waits for these to be written.
 _NATIVE = re.compile(r"^static (?=CUDA_CALLABLE )", re.MULTILINE)
 
 
