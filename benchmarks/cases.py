@@ -44,6 +44,11 @@ IN_PROCESS = (
     Case("step_towel", "stepSimulation, towel of 33 x 33 nodes in the Panda's hand", speedup=5.0),
     Case("rays", "rayTestBatch, 1,024 rays at a pile of 200 balls", speedup=3.0),
     Case("control_loop", "control loop: 9 targets by one call, step, read 9 joints", speedup=3.0),
+    Case(
+        "control_loop_one_by_one",
+        "control loop of the original Panda: 9 targets one by one, step, read 9 joints",
+        speedup=5.0,
+    ),
     Case("get_joint_state", "getJointState", speedup=1.0),
     Case("get_joint_states", "getJointStates, 9 joints", speedup=1.0),
     Case("get_link_state", "getLinkState with velocity", speedup=1.0),

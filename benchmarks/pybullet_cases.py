@@ -231,6 +231,23 @@ def control_loop(original_data: str) -> Prepared:
     return loop
 
 
+def control_loop_one_by_one(original_data: str) -> Prepared:
+    _world()
+    p.loadURDF(f"{original_data}/plane.urdf")
+    panda = p.loadURDF(f"{original_data}/franka_panda/panda.urdf", useFixedBase=True)
+    for joint, position in zip(MOVABLE, HOME, strict=True):
+        p.resetJointState(panda, joint, position)
+
+    def loop() -> None:
+        for joint, position in zip(MOVABLE, HOME, strict=True):
+            p.setJointMotorControl2(panda, joint, p.POSITION_CONTROL, targetPosition=position, force=87)
+        p.stepSimulation()
+        for joint in MOVABLE:
+            p.getJointState(panda, joint)
+
+    return loop
+
+
 def get_joint_state(original_data: str) -> Prepared:
     panda = _panda()
     return lambda: p.getJointState(panda, 3)
