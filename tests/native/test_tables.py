@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, State
-from carom.native.tables import ArrayTable, fields_of
+from carom.native.tables import ArrayTable, array_view, fields_of
 
 
 @pytest.fixture(params=[None, 1, 3], ids=["shared", "one world", "three worlds"])
@@ -178,3 +178,12 @@ def test_bytes_of_a_field_follow_it_when_it_is_replaced():
     after = table.bytes_of("link")
     assert len(after) > len(before)
     assert after[: len(before)] == before
+
+
+def test_kernels_are_given_arrays_whose_rows_are_contiguous_only():
+    entries = np.zeros((4, 6, 3))
+    assert array_view(entries, 2).strides[:2] == [6 * 24, 24]
+    assert array_view(entries[::2], 2).strides[0] == 2 * 6 * 24
+    for array, axes in ((entries[:, ::2], 2), (entries[:, :, :2], 2), (entries[0, :, 0], 1)):
+        with pytest.raises(ValueError, match="next to each other"):
+            array_view(array, axes)

@@ -12,11 +12,13 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.parameters import EngineParameters
 from carom.engine.program import Plan, Program, detection_program, step_program
+from carom.engine.quick_scene import QuickScene
 from carom.engine.settings import EngineSettings
 from carom.engine.threads import Threads
 from carom.engine.workspace import Workspace
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
+from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
 
@@ -26,6 +28,8 @@ MOST_STEPS = 64
 """Maximum number of steps in one call."""
 # Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 16
+# Shapes of a scene in which collisions are detected with the GIL held.
+_MOST_QUICK_SHAPES = 64
 _NONE = np.zeros(0, dtype=np.int64)
 # Contacts take memory in each of many worlds: factor by which their arrays grow.
 _GROWTH_OF_MANY = 1.25
@@ -222,6 +226,18 @@ class Engine:
         while len(short := self._short_of_room()):
             self._grow(short)
             self._detect(short)
+
+    def show_detection(self, quick: QuickScene) -> None:
+        """Let the native library detect collisions by itself, until the scene changes.
+
+        In a large scene Python does it, which lets other threads run meanwhile.
+        """
+        detector = self._detectors[0]
+        is_small = self.contact_arrays.shapes.shape_count <= _MOST_QUICK_SHAPES
+        if is_small and self._detection_ready and self._plan and isinstance(detector, Interpreter):
+            find_poses = self.workspace.structs.launch(link_poses_kernel, first_world=0)
+            poses = self.arrays.state.bytes_of("link_pose")
+            quick.know_detection(detector, find_poses, poses, self.status)
 
     def _detect(self, worlds: np.ndarray | None = None) -> None:
         if not self._detection_ready:

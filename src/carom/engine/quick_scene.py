@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from ctypes import addressof
+from ctypes import addressof, c_char
 from sys import intern
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from carom.native.quick_calls import DAMPING, REPORT_ARRAYS, REPORT_SCALARS, SURFACE, Launch, Scene
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
+    from carom.engine.interpreter import Interpreter
     from carom.model.builder import WorldArrays
+    from carom.native.launch import Launch as KernelLaunch
     from carom.native.launch import TreeLaunch
     from carom.queries.question import Question
 
@@ -39,7 +43,12 @@ class QuickScene:
         self.record.find_poses.function = None
         self.record.find_twists.function = None
         self.forget_queries()
+        self.forget_detection()
         self._kept.clear()
+
+    def forget_detection(self) -> None:
+        """Forget the addresses that detect collisions: settings may change before the next time."""
+        self.record.detection.perform = None
 
     def forget_queries(self) -> None:
         """Forget the addresses for queries of contacts and shapes, which will be replaced."""
@@ -68,6 +77,28 @@ class QuickScene:
         """Set the addresses that update the link velocities of a body."""
         self._kept.append(launch)
         _know(self.record.find_twists, launch)
+
+    def know_detection(
+        self, detector: Interpreter, find_poses: KernelLaunch, poses: memoryview[int], status: np.ndarray
+    ) -> None:
+        """Set the addresses that detect collisions.
+
+        Args:
+            detector: Its program detects collisions in a world.
+            find_poses: The kernel that computes the link poses for the current coordinates.
+            poses: The memory of the link poses.
+            status: The status of the world.
+        """
+        poses_before = np.empty(poses.nbytes // 8)
+        self._kept += (detector, find_poses, poses, poses_before, status)
+        record = self.record.detection
+        called = record.find_poses
+        called.function, called.bounds, called.arguments = find_poses.addresses()
+        record.poses, record.poses_before = addressof(c_char.from_buffer(poses)), poses_before.ctypes.data
+        record.pose_count, record.status = len(poses_before), status.ctypes.data
+        # The function last: without it the other addresses are not used.
+        perform, record.run = detector.addresses
+        record.perform = perform
 
     def keep(self, *what: Any) -> None:
         """Keep the memory that addresses in the record point to, until they are forgotten."""

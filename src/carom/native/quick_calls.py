@@ -76,6 +76,20 @@ class KernelCall(ctypes.Structure):
     _fields_ = tuple((name, ctypes.c_void_p) for name in ("function", "bounds", "arguments"))
 
 
+class Detection(ctypes.Structure):
+    """Collision detection at the current coordinates of all bodies."""
+
+    _fields_ = (
+        ("perform", ctypes.c_void_p),
+        ("run", ctypes.c_void_p),
+        ("find_poses", KernelCall),
+        ("poses", ctypes.c_void_p),
+        ("poses_before", ctypes.c_void_p),
+        ("pose_count", ctypes.c_int64),
+        ("status", ctypes.c_void_p),
+    )
+
+
 class Placement(ctypes.Structure):
     """The shapes of all links, and the kernels that place them at the current coordinates."""
 
@@ -125,6 +139,7 @@ class Scene(ctypes.Structure):
         *((name, ctypes.c_void_p) for name in ("mass", "inertia")),
         *((name, ctypes.c_void_p) for name in ("mass_name", "inertia_name", "fixed_base_name")),
         ("report", ContactReport),
+        ("detection", Detection),
         ("placement", Placement),
         ("nearest", PairSearch),
     )

@@ -71,8 +71,14 @@ def array_view(array: np.ndarray, axes: int = 1) -> ArrayView:
         array: The array. Axes behind the first ones are those of its entries.
         axes: Number of axes that kernels see. Of two axes the first is the world axis; if it has a single
             row, all worlds see this row.
+
+    Raises:
+        ValueError: The entries along the last axis are not next to each other, as kernels expect.
     """
     shape, strides = array.shape, array.strides
+    entry = strides[axes] * shape[axes] if len(shape) > axes else array.itemsize
+    if strides[axes - 1] != entry and shape[axes - 1] > 1:
+        raise ValueError("kernels need arrays whose entries are next to each other along the last axis")
     view = ArrayView(array.ctypes.data, 0, shape[:axes], strides[:axes], axes)
     if axes == 2 and shape[0] == 1:
         view.strides[0] = 0

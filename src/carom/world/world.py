@@ -355,6 +355,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     def constraints_changed(self) -> None:
         """Discard the prepared step: constraints have changed, and nothing else."""
         self._derived.step = None
+        self.quick.forget_detection()
         self.engine.constraints_changed()
 
     # Time

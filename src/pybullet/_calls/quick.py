@@ -32,6 +32,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "getBaseVelocity": ("base_velocity", "bc", (3, 3)),
     "getLinkState": ("link_state", "biiic", (3, 4, 3, 4, 3, 4, 3, 3)),
     "getLinkStates": ("link_states", "bsiic", None),
+    "performCollisionDetection": ("detect_collisions", "c", ()),
     "getContactPoints": ("contact_points", "iiiic", None),
     "getClosestPoints": ("closest_points", "biriiii----c", None),
     "getOverlappingObjects": ("overlapping", "33c", None),

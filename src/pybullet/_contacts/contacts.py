@@ -42,6 +42,7 @@ def performCollisionDetection(physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     with client.lock, client.world.present_poses():
         client.world.detect_collisions()
+        client.world.engine.show_detection(client.world.quick)
 
 
 @exported

@@ -145,6 +145,7 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "getBaseVelocity": (1,),
     "getLinkState": (0, 3, 1, 1),
     "getLinkStates": (0, [3, 1], 1, 1),
+    "performCollisionDetection": (),
     "getContactPoints": (1,),
     "getClosestPoints": (0, 1, 10.0),
     "getOverlappingObjects": ([-9, -9, -9], [9, 9, 9]),

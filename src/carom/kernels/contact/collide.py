@@ -13,7 +13,7 @@ from carom.kernels.contact.contact_margins import (
     region_margin,
 )
 from carom.kernels.contact.gathering import AT_ONCE, find_new_point, gather
-from carom.kernels.contact.manifold import keep_previous, skip_contacts, write_new_contact
+from carom.kernels.contact.manifold import keep_previous, sides_of, skip_contacts, write_new_contact
 from carom.kernels.contact.narrow_phase import collide_shapes
 from carom.kernels.contact.sides import in_order_of_sides
 from carom.kernels.structs import Contacts, Model, Pairs, Shapes, State
@@ -165,11 +165,12 @@ def add_manifold(
     far = breaking_distance(shapes, pair[0], pair[1])
     if found != AT_ONCE:
         return gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
+    if count == 0:
+        return wanted
+    both = sides_of(shapes, state, world, sides)
     for candidate in range(count):
         if wanted < contacts.contact_shapes.shape[1]:
-            write_new_contact(
-                shapes, state, contacts, pairs, world, wanted, sides, candidate, first, last, far
-            )
+            write_new_contact(contacts, pairs, world, wanted, both, candidate, first, last, far)
         wanted += 1
     return wanted
 

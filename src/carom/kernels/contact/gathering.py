@@ -19,7 +19,7 @@ from carom.kernels.contact.candidates import (
     flip_candidates,
 )
 from carom.kernels.contact.contact_margins import is_part_of_compound
-from carom.kernels.contact.manifold import keep_contact, keep_for_matching, write_contact
+from carom.kernels.contact.manifold import keep_contact, keep_for_matching, sides_of, write_contact
 from carom.kernels.contact.narrow_phase import in_order
 from carom.kernels.queries.closest import nearest_convex
 from carom.kernels.shapes.cores import core_of
@@ -298,7 +298,7 @@ def gather(
         row = wanted + slot
         if row < contacts.contact_shapes.shape[1]:
             if manifold.slots[slot] == NEW:
-                write_contact(shapes, state, contacts, pairs, world, row, sides, 0)
+                write_contact(contacts, pairs, world, row, sides_of(shapes, state, world, sides), 0)
                 keep_for_matching(contacts, pairs, world, manifold.predecessor, row)
             else:
                 keep_contact(state, contacts, pairs, world, manifold.slots[slot], row)

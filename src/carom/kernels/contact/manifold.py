@@ -12,10 +12,19 @@ from carom.kernels.contact.candidates import (
 )
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.kernels.types import Index4, Int32, Transform, Vector3, func, real
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, THERE
 
 _HALF_ROOT = real(math.sqrt(0.5))
+
+
+@wp.struct
+class Sides:
+    """The two sides of all contacts of a pair of shapes."""
+
+    shapes: Index4  # as `Contacts.contact_shapes`: the two shapes, and their links
+    to_a: Transform  # from world axes to the frame of the link of shape a
+    to_b: Transform
 
 
 @func
@@ -182,28 +191,27 @@ def write_place(
 
 
 @func
-def write_contact(
-    shapes: Shapes,
-    state: State,
-    contacts: Contacts,
-    pairs: Pairs,
-    world: Int32,
-    row: Int32,
-    pair: Index4,
-    candidate: Int32,
-):
+def sides_of(shapes: Shapes, state: State, world: Int32, pair: Index4) -> Sides:
+    """The two sides of the contacts of a pair of shapes."""
+    sides = Sides()
+    sides.shapes = Index4(pair[0], pair[1], shapes.shape_link[pair[0]], shapes.shape_link[pair[1]])
+    sides.to_a = wp.transform_inverse(state.link_pose[world, sides.shapes[2]])
+    sides.to_b = wp.transform_inverse(state.link_pose[world, sides.shapes[3]])
+    return sides
+
+
+@func
+def write_contact(contacts: Contacts, pairs: Pairs, world: Int32, row: Int32, sides: Sides, candidate: Int32):
     """Write the geometry of a candidate to contact `row`; `keep_for_matching` writes its impulses."""
-    link_a = shapes.shape_link[pair[0]]
-    link_b = shapes.shape_link[pair[1]]
     point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
     point_b = candidate_point(pairs.candidate_terms, world, candidate)
     write_place(
         contacts,
         world,
         row,
-        Index4(pair[0], pair[1], link_a, link_b),
-        wp.transform_point(wp.transform_inverse(state.link_pose[world, link_a]), point_a),
-        wp.transform_point(wp.transform_inverse(state.link_pose[world, link_b]), point_b),
+        sides.shapes,
+        wp.transform_point(sides.to_a, point_a),
+        wp.transform_point(sides.to_b, point_b),
         point_a,
         point_b,
         candidate_normal(pairs.candidate_terms, world, candidate),
@@ -213,20 +221,18 @@ def write_contact(
 
 @func
 def write_new_contact(
-    shapes: Shapes,
-    state: State,
     contacts: Contacts,
     pairs: Pairs,
     world: Int32,
     row: Int32,
-    pair: Index4,
+    sides: Sides,
     candidate: Int32,
     first: Int32,
     last: Int32,
     far: real,
 ):
     """Write a candidate as contact `row`, with the impulses of its predecessor in [first, last)."""
-    write_contact(shapes, state, contacts, pairs, world, row, pair, candidate)
+    write_contact(contacts, pairs, world, row, sides, candidate)
     before = predecessor(
         pairs,
         world,

@@ -100,13 +100,16 @@ def box_axis(
             along = t[i2] * turn[i1, j] - t[i1] * turn[i2, j]
             max_distance_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
             max_distance_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
-            gap = (wp.abs(along) - max_distance_a - max_distance_b) / wp.sqrt(length_sq)
-            if gap > needed:
-                needed = gap
-                best = gap
-                code = EDGES + pair
-                cross = wp.cross(column(frame_a, i), column(frame_b, j))
-                normal = cross * (-toward(along, 1.0) / wp.sqrt(length_sq))
+            apart = wp.abs(along) - max_distance_a - max_distance_b
+            # The length is at most 1: a negative gap is at most `apart`.
+            if apart > needed or apart > 0.0:
+                gap = apart / wp.sqrt(length_sq)
+                if gap > needed:
+                    needed = gap
+                    best = gap
+                    code = EDGES + pair
+                    cross = wp.cross(column(frame_a, i), column(frame_b, j))
+                    normal = cross * (-toward(along, 1.0) / wp.sqrt(length_sq))
         pair += 1
     if code >= EDGES and best > max_distance:
         return Int32(APART), normal, best

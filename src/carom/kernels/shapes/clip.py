@@ -15,6 +15,12 @@ def clip_by_side(
     polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32, point: Vector3, outward: Vector3
 ) -> Int32:
     """Clip a polygon, or a line of two corners, at a plane; returns the number of corners left."""
+    inside = Int32(0)
+    for i in range(count):
+        if wp.dot(polygon[world, i] - point, outward) <= 0.0:
+            inside += 1
+    if inside == count:
+        return count
     kept = Int32(0)
     edges = count
     if count == 2:

@@ -6,7 +6,7 @@ from carom.kernels.contact.candidates import add_candidate, candidate_distance
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.shapes.clip import clip_faces
 from carom.kernels.shapes.cores import Core, support, toward
-from carom.kernels.shapes.faces import arrange_box_corners, supporting_face
+from carom.kernels.shapes.faces import arrange_box_corners, box_face, supporting_face
 from carom.kernels.shapes.gjk import TOUCHING, nearest_points
 from carom.kernels.shapes.polytope import overlap
 from carom.kernels.structs import Pairs, Shapes
@@ -92,6 +92,8 @@ def face_towards(
     shapes: Shapes, core: Core, shape: Int32, direction: Vector3, polygon: Vector3Rows, world: Int32
 ):
     """Write the face of a core most aligned with `direction`; returns its normal and number of corners."""
+    if core.kind == BOX:
+        return box_face(core, direction, polygon, world), Int32(4)
     normal, count = supporting_face(
         core,
         shapes.shape_first_face[shape],

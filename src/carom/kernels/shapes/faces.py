@@ -6,7 +6,7 @@ from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.boxes import main_axis
 from carom.kernels.shapes.cores import Core, toward
 from carom.kernels.types import Int32, Ints, Vector3, Vector3Rows, Vectors3, Vectors4, func, real, shared_func
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, TRIANGLES
+from carom.layouts.codes import CAPSULE, CYLINDER, HULL, TRIANGLES
 
 # Number of corners that approximate the rim of a cylinder.
 RIM = 8
@@ -163,12 +163,11 @@ def supporting_face(
 ):
     """Write the corners of the face (two for a line, one for a point) most aligned with `direction`.
 
+    For boxes there is `box_face`.
+
     Returns:
         The face's outward normal, and the number of corners.
     """
-    if core.kind == BOX:
-        normal = box_face(core, direction, polygon, world)
-        return normal, Int32(4)
     if core.kind == CYLINDER:
         normal, count = cylinder_feature(core, direction, polygon, world)
         return normal, count

@@ -37,6 +37,9 @@ _TILE_ROOM = re.compile(
     r"^ *wp::tile_shared_storage_t tile_mem;\n#if defined\(WP_ENABLE_TILES_IN_STACK_MEMORY\)\n.*\n#endif\n",
     re.MULTILINE,
 )
+# Accesses to elements of arrays, for which `arrays.h` has functions of the same names; it uses Warp's header.
+_ACCESS = re.compile(r"\bwp::(address|index|array_store)\(")
+_WARPS_HEADER = '#include "builtin.h"\n'
 
 
 # Functions for adjoints of structs have external linkage, and several modules have the same structs; so they
@@ -109,6 +112,8 @@ def _generate_module(name: str) -> tuple[str, list[Any]]:
     source, count = _TILE_ROOM.subn("", source)
     source = _NATIVE.sub("static WP_FORCEINLINE ", source)
     source = _SEEN.sub("static ", source)
+    source = _ACCESS.sub(r"carom::\1(", source)
+    source = source.replace(_WARPS_HEADER, f'{_WARPS_HEADER}#include "arrays.h"\n')
     kernels = list(builder.kernels)
     if count != len(kernels):
         raise RuntimeError(f"{name}: this version of Warp generates kernels in another form than 1.19")

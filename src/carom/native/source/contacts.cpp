@@ -1,4 +1,4 @@
-// Contacts as Python tuples: the results of quick calls that list contacts.
+// Quick calls that find contacts, and list them as Python tuples.
 
 #include "export.h"
 #include "quick_calls.h"
@@ -82,4 +82,20 @@ extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const C
     for (int32_t i = 0; rows.tuple && i < found; ++i)
         rows.add(tuple_of(contacts[i]));
     return rows.tuple;
+}
+
+// Arguments: connection.
+extern "C" CAROM_EXPORT int carom_detect_collisions(const double*, double*, const Call* call) {
+    const Detection& detection = call->client->scene->detection;
+    const Lock lock(*call->client);
+    if (!lock.is_held || !detection.perform)
+        return 0;
+    const uint64_t bytes = detection.pose_count * sizeof(double);
+    // Detection starts from the present poses. After a step the others are those at the start of its last substep,
+    // which other functions have to return.
+    __builtin_memcpy(detection.poses_before, detection.poses, bytes);
+    detection.find_poses.function(detection.find_poses.bounds, detection.find_poses.arguments);
+    detection.perform(detection.run);
+    __builtin_memcpy(detection.poses, detection.poses_before, bytes);
+    return *detection.status == 0;
 }

@@ -33,6 +33,16 @@ struct KernelCall {
     void* arguments;
 };
 
+// Collision detection at the current coordinates of all bodies.
+struct Detection {
+    void (*perform)(const void* run);  // null if the other fields are not filled
+    const void* run;
+    KernelCall find_poses;
+    double *poses, *poses_before;  // of all links; they are restored afterwards
+    int64_t pose_count;
+    const int32_t* status;  // not 0 if nothing was done, because arrays are too short
+};
+
 // The shapes of all links, and the kernels that place them at the current coordinates.
 struct Placement {
     KernelCall place;  // null if the other fields are not filled
@@ -78,6 +88,7 @@ struct Scene {
     double *mass, *inertia;  // by row of link: one number for the mass, three for the inertia
     PyObject *mass_name, *inertia_name, *fixed_base_name;
     ContactReport report;
+    Detection detection;
     Placement placement;
     PairSearch nearest;
 };
