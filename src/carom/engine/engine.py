@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from ctypes import addressof
 from typing import Any
 
 import numpy as np
@@ -161,6 +162,15 @@ class Engine:
         whole = self._steppers[0].program.whole
         if whole is not None and len(self._all_worlds) == 1:
             self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
+
+    def step_addresses(self) -> tuple[int, int, int]:
+        """Addresses of the arguments of a step (0 if there are none), of the first status, of the time step.
+
+        They are valid until the next call of `prepare`.
+        """
+        settings = self._settings.struct
+        time_step = addressof(settings) + type(settings).time_step.offset
+        return self._steppers[0].address, self.status.ctypes.data, time_step
 
     def step_by(self, make_program: ProgramMaker, steppers: list[Stepper] | None = None) -> None:
         """Use other programs and steppers from now on."""

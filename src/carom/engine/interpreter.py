@@ -42,6 +42,8 @@ class _Run(ctypes.Structure):
         ("resumed", ctypes.c_int32),  # 1: continue after the steps that each world has already done
         ("first_substep", ctypes.c_int32),  # if it is not 0, the step has already begun
         ("end_substep", ctypes.c_int32),  # the step is ended only after its last substep
+        # 1: a step that fails is undone completely, whatever the reason, for another attempt.
+        ("repeatable", ctypes.c_int32),
     ]
 
 
@@ -51,10 +53,12 @@ class Stepper(Protocol):
     Attributes:
         run: Runs the requested steps.
         program: The program loaded last.
+        address: Address of the arguments with which `run` calls `carom_perform`; 0 if it does not.
     """
 
     run: Callable[[], None]
     program: Program
+    address: int = 0
 
     def load(self, program: Program) -> None:
         """Use another program from now on."""
@@ -95,6 +99,7 @@ class Interpreter(Stepper):
         )
         # The arguments are changed in place, so the function itself never changes.
         self.run: Callable[[], None] = partial(library().perform, ctypes.byref(self._asked))
+        self.address = ctypes.addressof(self._asked)
 
     @property
     def addresses(self) -> tuple[int, int]:

@@ -11,7 +11,10 @@ import numpy as np
 from carom.native.quick_calls import DAMPING, REPORT_ARRAYS, REPORT_SCALARS, SURFACE, Launch, Scene
 
 if TYPE_CHECKING:
+    from ctypes import c_double
+
     from carom.engine.contact_arrays import ContactArrays
+    from carom.engine.engine import Engine
     from carom.engine.interpreter import Interpreter
     from carom.model.builder import WorldArrays
     from carom.native.launch import Launch as KernelLaunch
@@ -31,17 +34,19 @@ class QuickScene:
         record: The addresses; unknown functions are null.
     """
 
-    __slots__ = ("_kept", "record")
+    __slots__ = ("_kept", "_stepped", "record")
 
     def __init__(self) -> None:
         self.record = Scene()
         # The objects that the addresses point to.
         self._kept: list[Any] = []
+        self._stepped: tuple[Any, ...] = ()
 
     def forget(self) -> None:
         """Forget all addresses: the world has changed."""
         self.record.find_poses.function = None
         self.record.find_twists.function = None
+        self.forget_step()
         self.forget_queries()
         self.forget_detection()
         self._kept.clear()
@@ -49,6 +54,11 @@ class QuickScene:
     def forget_detection(self) -> None:
         """Forget the addresses that detect collisions: settings may change before the next time."""
         self.record.detection.perform = None
+
+    def forget_step(self) -> None:
+        """Forget the addresses for steps."""
+        self.record.step.run = None
+        self._stepped = ()
 
     def forget_queries(self) -> None:
         """Forget the addresses for queries of contacts and shapes, which will be replaced."""
@@ -72,6 +82,21 @@ class QuickScene:
         self.record.contact_warm_starts = contacts.contact_warm_start.data
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]
         _know(self.record.find_poses, launch)
+
+    def know_step(self, engine: Engine, time: c_double, observers: list[Any]) -> None:
+        """Set the addresses for steps of one substep.
+
+        Args:
+            engine: The engine, prepared.
+            time: Simulated time [s], which steps advance.
+            observers: The objects that are told of each step; while there are any, Python performs steps.
+        """
+        self._stepped = engine, time, observers
+        record = self.record.step
+        run, record.status, record.duration = engine.step_addresses()
+        record.time, record.observers = addressof(time), id(observers)
+        # Last: without it the other addresses are not used.
+        record.run = run
 
     def know_twists(self, launch: TreeLaunch) -> None:
         """Set the addresses that update the link velocities of a body."""

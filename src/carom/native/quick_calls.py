@@ -124,6 +124,12 @@ class PairSearch(ctypes.Structure):
     )
 
 
+class Step(ctypes.Structure):
+    """A step of the world with one substep, as `carom.engine.interpreter` performs it."""
+
+    _fields_ = tuple((name, ctypes.c_void_p) for name in ("run", "status", "duration", "time", "observers"))
+
+
 class Scene(ctypes.Structure):
     """Data derived from the bodies and arrays of a world."""
 
@@ -142,6 +148,7 @@ class Scene(ctypes.Structure):
         ("detection", Detection),
         ("placement", Placement),
         ("nearest", PairSearch),
+        ("step", Step),
     )
 
 
@@ -244,6 +251,7 @@ class Client(ctypes.Structure):
         ("without_waiting", ctypes.c_void_p),
         ("connection", ctypes.c_void_p),
         ("time_step_name", ctypes.c_void_p),
+        ("analytics_name", ctypes.c_void_p),
         ("world_bodies", ctypes.c_void_p),
         ("joint_count_name", ctypes.c_void_p),
         ("encoded_names_name", ctypes.c_void_p),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from ctypes import c_double
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, overload
@@ -68,7 +69,6 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     Attributes:
         parameters: Parameters of the engine; call `apply_parameters` after a change.
         bodies: The bodies by their numbers, in the order they were added.
-        time: Simulated time [s].
         user_data: Texts attached to bodies.
         undo: Repairs the world after a change that was interrupted.
         quick: Addresses of its data for the fast paths in the native library.
@@ -81,7 +81,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: dict[int, Body] = {}
-        self.time: float = 0.0
+        self._clock = c_double(0.0)
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
         self.unspent_time: float = 0.0
@@ -356,9 +356,19 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """Discard the prepared step: constraints have changed, and nothing else."""
         self._derived.step = None
         self.quick.forget_detection()
+        self.quick.forget_step()
         self.engine.constraints_changed()
 
     # Time
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self._clock.value
+
+    @time.setter
+    def time(self, value: float) -> None:
+        self._clock.value = value
 
     def step(self, count: int = 1) -> None:
         """Advance the world by `count` time steps.
@@ -384,7 +394,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             self._look_into_status()
         if self._substep_observers:
             self._tell_of_substep()
-        self.time += self.parameters.time_step
+        self._clock.value += self.parameters.time_step
         if self.observers:
             for observer in self.observers.copy():
                 observer.after_step()
@@ -482,6 +492,8 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         else:
             self.unspent_time = 0.0
             step = self.engine.run_prepared
+            if not self._substep_observers:
+                self.quick.know_step(self.engine, self._clock, self.observers)
         self._derived.step = step
         return step
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = 7 * _DOUBLE, 6 * _DOUBLE, 8 * _DOUBLE
 # CPython interns names of attributes.
-_TIME_STEP, _JOINT_COUNT, _NAMES = map(sys.intern, ("time_step", "joint_count", "_encoded_names"))
+_TIME_STEP, _ANALYTICS = sys.intern("time_step"), sys.intern("report_analytics")
+_JOINT_COUNT, _NAMES = sys.intern("joint_count"), sys.intern("_encoded_names")
 _FIRST_ROOM = 16
 # Python handles bodies whose id is not less than this.
 _MOST_ROOM = 1 << 20
@@ -59,6 +60,7 @@ class QuickBodies:
             without_waiting=id(self._kept[3]),
             connection=id(client),
             time_step_name=id(_TIME_STEP),
+            analytics_name=id(_ANALYTICS),
             world_bodies=id(client.world.bodies),
             joint_count_name=id(_JOINT_COUNT),
             encoded_names_name=id(_NAMES),

@@ -46,6 +46,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
     "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
     "resetJointState": ("reset_joint", "birrc", ()),
+    "stepSimulation": ("step", "c", None),
     "getAABB": ("link_box", "bic", (3, 3)),
     "isConnected": ("is_connected", "c", None),
     "getNumBodies": ("body_count", "c", None),

@@ -159,6 +159,7 @@ CALLS: dict[str, tuple[Any, ...]] = {
     "setJointMotorControlArray": (0, [3, 1, 2], p.POSITION_CONTROL, [0.5, 0.25, 0.125], None, (5, 6.0, 7)),
     "changeDynamics": (0, 3, -1, 0.5, 0.25, 0.125, 0.75),
     "resetJointState": (0, 3, 0.5),
+    "stepSimulation": (),
     "getAABB": (0, 3),
     "isConnected": (),
     "getNumBodies": (),
@@ -417,6 +418,82 @@ def test_what_changes_the_world_waits_for_who_else_does(one: int) -> None:
     assert done.wait(10.0)
     thread.join()
     assert p.getBasePositionAndOrientation(1, one)[0] == (9.0, 9.0, 9.0)
+
+
+def test_steps_are_those_of_python(two: tuple[int, int]) -> None:
+    first, second = two
+    for number in range(200):
+        for client in two:
+            p.applyExternalForce(1, -1, [0, 0, 5 * (number % 3)], [0, 0, 0], p.LINK_FRAME, client)
+        assert p.stepSimulation(first) == _in_python("stepSimulation")(second)
+        assert _state(first) == _state(second)
+    assert clients[first].world.time == clients[second].world.time > 0.0
+
+
+def test_steps_that_someone_follows_are_left_to_python(one: int) -> None:
+    world = clients[one].world
+    log = world.log("position")
+    assert not _takes_no_python("stepSimulation", one)
+    log.stop()
+    assert _takes_no_python("stepSimulation", one)
+    for parameter in ({"reportSolverAnalytics": 1}, {"numSubSteps": 2}):
+        p.setPhysicsEngineParameter(**parameter, physicsClientId=one)
+        assert not _takes_no_python("stepSimulation", one)
+        p.setPhysicsEngineParameter(**dict.fromkeys(parameter, 0), physicsClientId=one)
+        p.stepSimulation(one)
+        assert _takes_no_python("stepSimulation", one)
+
+
+@pytest.mark.parametrize("apart", [True, False])
+def test_steps_that_fail_fail_as_in_python(two: tuple[int, int], apart: bool) -> None:
+    outcomes = []
+    for client, step in zip(two, (p.stepSimulation, _in_python("stepSimulation")), strict=True):
+        for body in (1, 2) if apart else ():
+            p.removeBody(body, client)
+        p.stepSimulation(client)
+        before = _state(client)
+        clients[client].world.link_force[7, 3] = np.inf
+        outcomes.append([_outcome(step, client), _state(client), before[2:4] == _state(client)[2:4]])
+        outcomes[-1] += [step(client), _state(client), clients[client].world.time]
+    assert outcomes[0] == outcomes[1]
+    (kind, message), _, is_restored, *_ = outcomes[0]
+    assert kind is p.error
+    assert "not finite" in message
+    assert is_restored
+
+
+def test_steps_for_which_arrays_are_too_short_are_repeated(two: tuple[int, int]) -> None:
+    for client, step in zip(two, (p.stepSimulation, _in_python("stepSimulation")), strict=True):
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
+        for number in range(60):
+            p.createMultiBody(1.0, box, basePosition=[0.18 * number, 5, 0.2], physicsClientId=client)
+            if number == 2:
+                _in_python("stepSimulation")(client)
+        for _ in range(5):
+            step(client)
+    assert _state(two[0]) == _state(two[1])
+
+
+def test_a_step_lets_other_threads_run_and_keeps_them_out(one: int) -> None:
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=one)
+    for number in range(300):
+        p.createMultiBody(1.0, box, basePosition=[0.2 * number, 5, 0.2], physicsClientId=one)
+    p.stepSimulation(one)
+    stepping, seen = threading.Event(), 0
+
+    def step() -> None:
+        stepping.set()
+        for _ in range(30):
+            p.stepSimulation(one)
+        stepping.clear()
+
+    thread = threading.Thread(target=step)
+    thread.start()
+    stepping.wait()
+    while stepping.is_set():
+        seen += not clients[one].lock.acquire(blocking=False) or bool(clients[one].lock.release())
+    thread.join()
+    assert seen > 0
 
 
 def test_calls_are_logged_as_ever(one: int, tmp_path: Any) -> None:

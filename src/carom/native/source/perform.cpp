@@ -2,49 +2,20 @@
 //
 // A launch is a C function with the addresses of its bounds and of its arguments. Each thread takes chunks of
 // worlds from a list that all threads share, which balances their load, and takes each world through all of its
-// steps while it is in the processor's caches. `carom.engine.interpreter` has the same structs.
+// steps while it is in the processor's caches.
 
-#include <stdint.h>
-
-#include "export.h"
+#include "perform.h"
 
 namespace {
 
-struct Launch {
-    void (*function)(void* bounds, void* arguments);
-    void* bounds;
-    void* arguments;
-    int32_t* world;     // among the arguments
-    int32_t* substeps;  // likewise, or null
-};
-
-struct Program {
-    char* status;           // of the first world
-    int64_t status_stride;  // bytes from one world's status to the next
-    // Ends of the five parts of the list of launches.
-    int64_t begin_end, detection_end, motion_end, end_end, abandon_end;
-    Launch launches[1];
-};
-
-struct Run {
-    const Program* program;
-    const int32_t* worlds;
-    const int32_t* due;  // substeps of each step; if it is 0, contacts are found and nothing moves
-    int32_t* counter;    // index in `worlds` of the next chunk, shared by all threads; or null
-    int32_t world_count;
-    int32_t step_count;
-    int32_t chunk;
-    int32_t resumed;  // 1: continue after the steps that each world has already done
-    int32_t first_substep;
-    int32_t end_substep;
-};
-
 // Columns of a world's status.
 enum { STATUS = 0, STEPS_DONE = 3 };
+// The status of a step that is to be performed again.
+enum { OVERFLOW = -1 };
 
 bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status) {
     for (int64_t i = from; i < to; ++i) {
-        const Launch& launch = program.launches[i];
+        const Program::Launch& launch = program.launches[i];
         *launch.world = world;
         if (launch.substeps)
             *launch.substeps = substeps;
@@ -69,6 +40,8 @@ void take_through_steps(const Run& run, int world) {
         if (well && run.end_substep >= rounds)
             well = perform(program, program.motion_end, program.end_end, world, substeps, status);
         if (!well) {
+            if (run.repeatable)
+                status[STATUS] = OVERFLOW;
             perform(program, program.end_end, program.abandon_end, world, substeps, nullptr);
             return;
         }
@@ -78,7 +51,7 @@ void take_through_steps(const Run& run, int world) {
 
 }  // namespace
 
-extern "C" CAROM_EXPORT void carom_perform(const Run* run) {
+void carom_perform(const Run* run) {
     int next = 0;
     for (;;) {
         const int from = run->counter ? __atomic_fetch_add(run->counter, run->chunk, __ATOMIC_RELAXED) : next;

@@ -49,6 +49,8 @@ struct PyBuffer {
     F(void, Py_IncRef, (PyObject*))                                                   \
     F(void, Py_DecRef, (PyObject*))                                                   \
     F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))                         \
+    F(void*, PyEval_SaveThread, ())                                                   \
+    F(void, PyEval_RestoreThread, (void*))                                            \
     F(PyObject*, PyObject_Vectorcall, (PyObject*, PyObject* const*, intptr_t, PyObject*))
 
 // Singletons.

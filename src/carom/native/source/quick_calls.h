@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "perform.h"
 #include "python.h"
 
 struct Launch {
@@ -75,6 +76,15 @@ struct PairSearch {
     const double* points;  // eight numbers for each pair: point on the second shape, normal, distance, unused
 };
 
+// A step of the world with one substep.
+struct Step {
+    Run* run;             // null if Python has to perform steps
+    const int32_t* status;
+    const double* duration;
+    double* time;         // of the world
+    PyObject* observers;  // the list of objects that Python tells of steps
+};
+
 // Data derived from the bodies and arrays of a world; functions are null if their data are missing.
 struct Scene {
     Launch find_poses;
@@ -91,6 +101,7 @@ struct Scene {
     Detection detection;
     Placement placement;
     PairSearch nearest;
+    Step step;
 };
 
 struct Link {
@@ -163,7 +174,7 @@ struct Client {
     // Two methods of the lock that is held while the world changes, and the arguments of `acquire`.
     PyObject *acquire, *release, *without_waiting;
     // An object, and the name of its attribute with the duration of a step.
-    PyObject *connection, *time_step_name;
+    PyObject *connection, *time_step_name, *analytics_name;
     // A dictionary with the Python objects of the bodies, by number, and names of attributes of these.
     PyObject *world_bodies, *joint_count_name, *encoded_names_name;
 };

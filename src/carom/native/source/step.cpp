@@ -1,0 +1,44 @@
+// Steps of a world: a quick call.
+
+#include "export.h"
+#include "quick_calls.h"
+
+namespace {
+
+// Keeps an object alive, together with all that it owns.
+struct Kept {
+    explicit Kept(PyObject* object) : object(object) { python.Py_IncRef(object); }
+    ~Kept() { python.Py_DecRef(object); }
+    PyObject* object;
+};
+
+bool reports_analytics(const Client& client) {
+    PyObject* value = python.PyObject_GetAttr(client.connection, client.analytics_name);
+    if (!value) {
+        python.PyErr_Clear();
+        return true;
+    }
+    python.Py_DecRef(value);
+    return value != python.False;
+}
+
+}  // namespace
+
+// Arguments: connection. Python performs a step again if it fails: it grows arrays, or raises the error.
+extern "C" CAROM_EXPORT PyObject* carom_step(const double* in, const Call* call) {
+    const Client& client = *call->client;
+    // Another thread may disconnect during the step.
+    const Kept connection(client.connection);
+    const Lock lock(client);
+    const Step& step = client.scene->step;
+    if (!lock.is_held || !step.run || python.PyList_Size(step.observers) || reports_analytics(client))
+        return nullptr;
+    const Instead<int32_t> repeatable(&step.run->repeatable, 1);
+    void* thread = python.PyEval_SaveThread();
+    carom_perform(step.run);
+    python.PyEval_RestoreThread(thread);
+    if (*step.status)
+        return nullptr;
+    *step.time += *step.duration;
+    return python.PyTuple_New(0);
+}
