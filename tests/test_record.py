@@ -31,7 +31,9 @@ def classes(**options: bool) -> tuple[Any, Any]:
     """The same class, made by `record` and by `dataclass`."""
     space = {name: value for name, value in vars(Declared).items() if name not in ("__dict__", "__weakref__")}
     ours, theirs = type("Declared", (), dict(space)), type("Declared", (), dict(space))
-    return record(**options)(ours), dataclass(slots=True, **{"frozen": True, **options})(theirs)
+    usual = {"frozen": True, **options}
+    usual.pop("hot", None)
+    return record(**options)(ours), dataclass(slots=True, **usual)(theirs)
 
 
 @record
@@ -74,16 +76,17 @@ def outcome(cls: Any, values: list[int], named: dict[str, int]) -> Any:
     return repr(made), made.doubled(), [getattr(made, known.name) for known in fields(made)]
 
 
+@pytest.mark.parametrize("hot", [False, True])
 @given(ARGUMENTS)
-def test_arguments_do_what_they_do_with_dataclasses(arguments):
-    ours, theirs = classes()
+def test_arguments_do_what_they_do_with_dataclasses(hot, arguments):
+    ours, theirs = classes(hot=hot)
     assert outcome(ours, *arguments) == outcome(theirs, *arguments)
 
 
-@given(ARGUMENTS, ARGUMENTS, st.booleans(), st.booleans())
-def test_comparing_and_hashing_do_what_they_do_with_dataclasses(one, other, frozen, eq):
+@given(ARGUMENTS, ARGUMENTS, st.booleans(), st.booleans(), st.booleans())
+def test_comparing_and_hashing_do_what_they_do_with_dataclasses(one, other, frozen, eq, hot):
     results = []
-    for cls in classes(frozen=frozen, eq=eq):
+    for cls in classes(frozen=frozen, eq=eq, hot=hot):
         if TypeError in (outcome(cls, *one), outcome(cls, *other)):
             return
         a, b = cls(*one[0], **one[1]), cls(*other[0], **other[1])

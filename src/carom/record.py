@@ -29,9 +29,9 @@ Class = TypeVar("Class", bound=type)
 @overload
 def record(cls: Class, /) -> Class: ...
 @overload
-def record(*, frozen: bool = ..., eq: bool = ...) -> Callable[[Class], Class]: ...
+def record(*, frozen: bool = ..., eq: bool = ..., hot: bool = ...) -> Callable[[Class], Class]: ...
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
-def record(cls: type | None = None, /, *, frozen: bool = True, eq: bool = True) -> Any:
+def record(cls: type | None = None, /, *, frozen: bool = True, eq: bool = True, hot: bool = False) -> Any:
     """Make a class a data class with slots, as `dataclasses.dataclass` does.
 
     Args:
@@ -39,11 +39,13 @@ def record(cls: type | None = None, /, *, frozen: bool = True, eq: bool = True) 
         frozen: Whether objects cannot be changed.
         eq: Whether objects with equal fields are equal, and hashable if they are frozen. Otherwise objects
             are compared by identity, which classes with arrays as fields need.
+        hot: Whether objects are made or compared often: then the class has an `__init__` and an `__eq__` of
+            its own, which take a tenth of a millisecond to define and a fraction of the time to run.
     """
 
     def made(cls: type) -> type:
-        own = set(cls.__dict__)
-        cls = dataclass(init=False, repr=False, eq=False, slots=True)(cls)
+        own = {*cls.__dict__, "__init__", "__eq__", "__hash__"} if hot else set(cls.__dict__)
+        cls = dataclass(init=hot, repr=False, eq=hot and eq, slots=True, frozen=hot and frozen)(cls)
         methods: dict[str, Any] = {"__init__": _init, "__repr__": _repr, "__reduce__": _reduce}
         if eq:
             methods |= {"__eq__": _eq, "__hash__": _hash if frozen else None}

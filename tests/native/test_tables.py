@@ -187,3 +187,26 @@ def test_kernels_are_given_arrays_whose_rows_are_contiguous_only():
     for array, axes in ((entries[:, ::2], 2), (entries[:, :, :2], 2), (entries[0, :, 0], 1)):
         with pytest.raises(ValueError, match="next to each other"):
             array_view(array, axes)
+
+
+@pytest.mark.parametrize("first", [1, 3], ids=["in the middle", "at the end"])
+def test_rows_that_are_removed_leave_zeros_in_every_world(first, table):
+    arrays = {
+        name: array.swapaxes(0, 1) if table.is_per_world(name) else array
+        for name, array in table.numpy.items()
+        if name.startswith("link_")
+    }
+    assert arrays
+    for array in arrays.values():
+        array[:] = 1
+        for row in range(5):
+            array[row] = row + 2
+    before = {name: array.copy() for name, array in arrays.items()}
+    remove = table.removal({"link": (first, 2)}, {"link": 5}, {})
+    for _ in range(2):
+        remove()
+        for name, array in arrays.items():
+            kept = np.delete(before[name][:5], [first, first + 1], axis=0)
+            assert np.array_equal(array[:3], kept), name
+            assert not array[3:5].any(), name
+            assert np.array_equal(array[5:], before[name][5:]), name

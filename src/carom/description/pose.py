@@ -8,7 +8,7 @@ Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-@record
+@record(hot=True)
 class Pose:
     """Position and orientation of a frame in its parent frame.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from ctypes import addressof
+from operator import le
 from typing import Any
 
 import numpy as np
@@ -63,6 +64,8 @@ class Engine:
     # The programs of steps and of collision detection.
     step_program: ProgramMaker = staticmethod(step_program)
     detection_program: Callable[[KernelStructs], Program] = staticmethod(detection_program)
+    # Whether workspaces depend on nothing but the lengths of arrays and the numbers of rows in use.
+    keeps_structs = True
 
     def __init__(self, arrays: WorldArrays, contact_arrays: ContactArrays, threads: int = 1) -> None:
         self.arrays = arrays
@@ -89,6 +92,8 @@ class Engine:
         self._plan_before: Plan | None = None
         # The plan and the structs of the current launches of steps.
         self._loaded_for: tuple[Any, ...] | None = None
+        # The structs and counts of rows for which structs were bound last.
+        self._bound: tuple[list[Any], tuple[int, ...]] = [], ()
         self._watched = False
         self.growths = 0
         self.changes = 0
@@ -129,6 +134,18 @@ class Engine:
                 workspace.structs.changed("settings")
 
     def _bind(self, workspaces: Sequence[Workspace]) -> list[KernelStructs]:
+        """Structs over the current arrays for some threads; the arrays are made longer if necessary."""
+        arrays, contact_arrays, soft = self.arrays, self.contact_arrays, self.contact_arrays.soft
+        tables = [arrays.model, arrays.state, contact_arrays.shapes.table, contact_arrays.contacts]
+        tables += [contact_arrays.users, soft.table]
+        for workspace in workspaces:
+            tables += workspace.tables
+        counts = (contact_arrays.user_count, contact_arrays.shapes.shape_count, len(soft.bodies))
+        counts = (*arrays.used.values(), *counts)
+        structs = [table.struct() for table in tables]
+        if self.keeps_structs and structs == self._bound[0] and all(map(le, counts, self._bound[1])):
+            # No array has been replaced since, and all were long enough for more rows than these.
+            return [workspace.structs for workspace in workspaces]
         self.contact_arrays.reserve()
         for workspace in workspaces:
             workspace.fit(self.arrays, self.contact_arrays)
@@ -137,7 +154,9 @@ class Engine:
             **self.arrays.structs(),
             **self.contact_arrays.structs(),
         }
-        return [workspace.bind(shared) for workspace in workspaces]
+        bound = [workspace.bind(shared) for workspace in workspaces]
+        self._bound = [table.struct() for table in tables], counts
+        return bound
 
     # Steps
 

@@ -30,14 +30,15 @@ class EngineSettings:
             arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
             arrays.model.written("gravity_vector")
             self._gravity = parameters.gravity
-        changed = False
-        for name, value in _values(parameters, arrays, contact_arrays).items():
+        values = _values(parameters, arrays, contact_arrays)
+        if values == self._written:
+            return False
+        for name, value in values.items():
             # Writing a field of a struct takes a hundred times as long as comparing values.
             if self._written.get(name) != value:
                 setattr(self.struct, name, value)
                 self._written[name] = value
-                changed = True
-        return changed
+        return True
 
 
 def _values(

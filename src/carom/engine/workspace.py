@@ -38,6 +38,11 @@ class Workspace:
         self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
         self.structs: KernelStructs = KernelStructs()
 
+    @property
+    def tables(self) -> tuple[ArrayTable, ...]:
+        """All its tables."""
+        return self.scratch, self.pairs, self.pair_rows, self.soft_work
+
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]

@@ -40,6 +40,9 @@ class DeviceEngine(Engine):
     step_program = staticmethod(parallel_step_program)
     detection_program = staticmethod(parallel_detection_program)
 
+    # Workspaces also depend on whether shapes can touch.
+    keeps_structs = False
+
     def __init__(self, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         self.device = device
         super().__init__(arrays, contact_arrays)

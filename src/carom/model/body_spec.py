@@ -19,7 +19,7 @@ BASE = -1
 DEFAULT_CONTACT = ContactParameters()
 
 
-@record(frozen=False)
+@record(frozen=False, hot=True)
 class LinkSpec:
     """A link and its parent joint.
 
@@ -78,7 +78,7 @@ class LinkSpec:
     user_data: dict[str, str] = field(default_factory=dict)
 
 
-@record(frozen=False)
+@record(frozen=False, hot=True)
 class BodySpec:
     """A tree of links.
 

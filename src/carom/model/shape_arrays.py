@@ -71,7 +71,7 @@ class Surface(Protocol):
     anisotropic_friction: tuple[float, float, float]
 
 
-@record(frozen=False, eq=False)
+@record(frozen=False, eq=False, hot=True)
 class BodyShapes:
     """The rows of a body's shapes.
 

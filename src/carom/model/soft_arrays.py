@@ -141,6 +141,8 @@ class SoftArrays:
     def write_anchors(self) -> None:
         """Update the arrays from the present anchors."""
         numpy = self.table.numpy
+        if not self.bodies and not numpy["count_soft"][ANCHORS]:
+            return
         for soft in self.bodies:
             nodes = slice(soft.first["node"], soft.first["node"] + soft.count["node"])
             numpy["node_inverse_mass"][nodes] = 1.0 / soft.spec.masses
@@ -181,6 +183,8 @@ class SoftArrays:
         Returns:
             A function that removes them; it can be called again if it was interrupted.
         """
+        if not self.bodies:
+            return _nothing
         gone = next((soft for soft in self.bodies if soft.rows is rows), None)
         count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count
         cuts = {"tree": (rows.tree, 1)}
@@ -210,3 +214,7 @@ class SoftArrays:
     def struct(self) -> Any:
         """A C struct whose fields are views of the arrays."""
         return self.table.struct()
+
+
+def _nothing() -> None:
+    """Remove nothing: there are no soft bodies."""

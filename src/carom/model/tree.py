@@ -9,7 +9,7 @@ from carom.description import Joint, Link, Robot
 from carom.record import record
 
 
-@record(frozen=False, eq=False)
+@record(frozen=False, eq=False, hot=True)
 class TreeNode:
     """A link, its parent joint, and its children.
 

@@ -148,6 +148,7 @@ class ArrayTable:
         self._made: Any = None
         self._bytes: dict[str, memoryview[int]] = {}
         self._by_axis: dict[str, list[np.ndarray]] = {}
+        self._memory_by_axis: dict[str, list[tuple[memoryview[int], int]]] = {}
         self._replace({name: self._allocate(name, first_capacity) for name in self._fields})
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
@@ -176,6 +177,7 @@ class ArrayTable:
         self._made = None
         self._bytes.clear()
         self._by_axis.clear()
+        self._memory_by_axis.clear()
         for name, array in self._memory.items():
             field = self._fields[name]
             self.capacity[field.axis] = array.shape[int(field.per_world)]
@@ -256,7 +258,7 @@ class ArrayTable:
         other = ArrayTable.__new__(ArrayTable)
         other.__dict__.update(self.__dict__)
         other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
-        other._by_axis = {}
+        other._by_axis, other._memory_by_axis = {}, {}
         other._world_counts = self._world_counts.copy()
         other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
         arrays = {}
@@ -300,11 +302,13 @@ class ArrayTable:
         """
         moves, freed, values = [], [], []
         for axis, (start, count) in cuts.items():
-            for rows in self._rows_along(axis):
-                end = used[axis]
-                if start + count < end:
-                    moves.append((rows[start : end - count], rows[start + count : end].copy()))
-                freed.append(rows[end - count : end])
+            arrays = self._rows_along(axis)
+            if not arrays:
+                continue
+            end = used[axis]
+            if start + count < end:
+                moves += [(rows[start : end - count], rows[start + count : end].copy()) for rows in arrays]
+            freed.append((self._memory_along(axis), end - count, end))
         # Axes whose last rows are removed. The rows before them do not refer to removed or later rows.
         last = {axis for axis, cut in cuts.items() if sum(cut) == used.get(axis)}
         for name, target in targets.items():
@@ -320,10 +324,26 @@ class ArrayTable:
         def remove() -> None:
             for rows, moved in (*moves, *values):
                 rows[...] = moved
-            for rows in freed:
-                rows.fill(0)
+            for memories, first, end in freed:
+                for memory, size in memories:
+                    memory[first * size : end * size] = bytes((end - first) * size)
 
         return remove
+
+    def _memory_along(self, axis: str) -> list[tuple[memoryview[int], int]]:
+        """The memory of all arrays of an axis, world by world, and the bytes of a row.
+
+        Through it a few rows are cleared in a fraction of the time that NumPy takes.
+        """
+        found = self._memory_by_axis.get(axis)
+        if found is None:
+            found = []
+            for name, field in self._fields.items():
+                array = self._memory[name]
+                for rows in (array if field.per_world else [array]) if field.axis == axis else ():
+                    found.append((rows.reshape(-1).view(np.uint8).data, rows.nbytes // len(rows)))
+            self._memory_by_axis[axis] = found
+        return found
 
     def _rows_along(self, axis: str) -> list[np.ndarray]:
         """All arrays of an axis, with their row axis first."""

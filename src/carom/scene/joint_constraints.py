@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from carom.scene.user_constraints import UserConstraint
 
 
-@record(frozen=False, eq=False)
+@record(frozen=False, eq=False, hot=True)
 class JointConstraint:
     """A motor or a limit of one joint, or a user constraint.
 
@@ -145,11 +145,11 @@ class JointConstraints:
         A constraint between two bodies merges their islands; one between two fixed bodies is not active.
         """
         tags = self.tags.tags()
-        above = {tag: tag for tag in tags.values()}
+        above: dict[int, int] = {}
 
         def root(tag: int) -> int:
-            while above[tag] != tag:
-                tag = above[tag]
+            while (higher := above.get(tag, tag)) != tag:
+                tag = higher
             return tag
 
         for constraint in self.all:
@@ -162,9 +162,8 @@ class JointConstraints:
             ):
                 parent, child = root(tags[user.parent.id]), root(tags[user.child.id])
                 above[parent] = child
-        moving = [(constraint, constraint.moving_body.id) for constraint in self.all]
-        active = [(constraint, body) for constraint, body in moving if body in tags]
-        return [constraint for constraint, _ in active], [root(tags[body]) for _, body in active]
+        active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
+        return active, [root(tags[constraint.moving_body.id]) for constraint in active]
 
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
@@ -215,16 +214,17 @@ class JointConstraints:
             model["constraint_max_impulse"][:, :count] = [constraint.max_impulse for constraint in ordered]
 
         tree_count = arrays.used["tree"]
-        counts = model["tree_constraint_count"]
-        counts[:tree_count] = 0
-        for tree in (*trees, *(user.child.rows.tree for user in users if user.child is not None)):
+        counts = [0] * tree_count
+        for tree in (*trees, *[user.child.rows.tree for user in users if user.child is not None]):
             counts[tree] += 1
+        model["tree_constraint_count"][:tree_count] = counts
         model["tree_batch"][:tree_count] = np.arange(tree_count)
         model["tree_batch_constraints"][:tree_count] = 0
         for first, length in islands:
             batch = trees[first : first + length]
             root = min(batch)
-            model["tree_batch"][batch] = root
+            if root != max(batch):
+                model["tree_batch"][batch] = root
             model["tree_first_constraint"][root] = first
             model["tree_batch_constraints"][root] = length
 

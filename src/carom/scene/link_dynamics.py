@@ -14,7 +14,7 @@ DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
 
 
-@record(frozen=False)
+@record(frozen=False, hot=True)
 class LinkDynamics:
     """Inertia, surface and joint limits of a link.
 

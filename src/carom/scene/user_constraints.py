@@ -26,7 +26,7 @@ ROWS = {
 }
 
 
-@record(frozen=False, eq=False)
+@record(frozen=False, eq=False, hot=True)
 class UserConstraint:
     """A user constraint.
 

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
-@record(frozen=False)
+@record(frozen=False, hot=True)
 class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose
@@ -15,6 +16,7 @@ from pybullet._clients.lookup import no_body
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
+    from carom.layouts.codes import UserConstraintKind
     from carom.model.soft_arrays import Anchor
     from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
@@ -100,14 +102,12 @@ def createConstraint(
     if kind == JOINT_GEAR:
         _check_gear(parent, parent_link, child, child_link)
 
-    from carom.layouts.codes import UserConstraintKind
-
     parent_frame = _frame(parentFramePosition, parentFrameOrientation, "parentFrame")
     child_frame = _frame(childFramePosition, childFrameOrientation, "childFrame")
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     with client.lock:
         constraint = client.world.tie(
-            UserConstraintKind(kind),
+            _kind(kind),
             parent,
             parent_link,
             child,
@@ -379,6 +379,13 @@ def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
     return link
 
 
+@cache
+def _kind(joint_type: int) -> UserConstraintKind:
+    from carom.layouts.codes import UserConstraintKind
+
+    return UserConstraintKind(joint_type)
+
+
 def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:
     """Check that both links of a gear have a joint with one degree of freedom."""
     for body, link, name in ((parent, parent_link, "parent"), (child, child_link, "child")):
@@ -388,5 +395,5 @@ def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: 
 
 def _frame(position: Vector, orientation: Vector | None, name: str) -> Pose:
     origin = optional_vector3(position, _FAILED, f"{name}Position") or IDENTITY.position
-    turn = optional_rotation(orientation, _FAILED, f"{name}Orientation") or IDENTITY.orientation
-    return Pose(origin, unit(turn))
+    turn = optional_rotation(orientation, _FAILED, f"{name}Orientation")
+    return Pose(origin, IDENTITY.orientation if turn is None else unit(turn))
