@@ -6,13 +6,12 @@ H = Lᵀ D L causes no fill-in: an entry is zero unless one dof is an ancestor o
 (R. Featherstone, Efficient factorization of the joint-space inertia matrix for branched kinematic
 trees, IJRR 2005). Its pivots D are the articulated inertias of the dofs.
 
-Inner loops use `while`: Warp's `range` costs as much as the body of these loops.
+Loops over few dofs use `while`: Warp's `range` costs as much as their bodies.
 """
 
 import warp as wp
 
-from carom.kernels.dynamics.elimination import factorise_rows, invert_rows, solve_rows
-from carom.kernels.maths.blocks import fill_zero
+from carom.kernels.dynamics.matrix_rows import factorise_rows, invert_rows, solve_rows, write_row
 from carom.kernels.structs import Model, Scratch
 from carom.kernels.types import Int32, func, real
 
@@ -47,14 +46,10 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
             spin = inertia * angular + wp.cross(moment, linear)
             push = mass * linear - wp.cross(moment, angular)
 
-            row = matrix + (dof - first) * blocks
-            fill_zero(scratch.block_factor, row, world, blocks)
-            other = dof + 0
-            while other >= 0:
-                scratch.entry_factor[world, 4 * row + other - first] = wp.dot(
-                    scratch.dof[world, other].angular, spin
-                ) + wp.dot(scratch.dof[world, other].linear, push)
-                other = model.dof[other].parent
+            write_row(
+                scratch.block_factor, matrix + (dof - first) * blocks, blocks, scratch.dof, model.dof, first,
+                dof, world, spin, push,
+            )  # fmt: skip
             dof += 1
 
         if link > base:
@@ -97,6 +92,6 @@ def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     blocks = (count + 3) // 4
     if count > 0:
         invert_rows(
-            scratch.block_inverse_mass, scratch.block_factor, model.tree[tree].first_block, scratch.dof, first,
-            world, count, blocks,
+            scratch.block_inverse_mass, scratch.block_factor, model.tree[tree].first_block, scratch.dof,
+            first, world, count, blocks,
         )  # fmt: skip
