@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     )
     from carom.layouts.images import Lighting, Picture, Scene, View
     from carom.layouts.mechanism import Control, Ends, MechanismSizes, MechanismTable
-    from carom.layouts.model import ConstraintRows, Dofs, Model, Scratch, Settings, State, Trees
+    from carom.layouts.model import ConstraintRows, DofRows, Dofs, Model, Scratch, Settings, State, Trees
     from carom.layouts.motor_commands import MotorCommands
     from carom.layouts.parallel import IslandProgress, IslandWork, PairWork, RunWork
     from carom.layouts.queries import ContactReport, Places, Rays, Searches, Touching
@@ -54,6 +54,7 @@ else:
     Settings = warp_type(model.Settings)
     Trees = warp_type(model.Trees)
     Dofs = warp_type(model.Dofs)
+    DofRows = warp_type(model.DofRows)
     Model = warp_type(model.Model)
     State = warp_type(model.State)
     Scratch = warp_type(model.Scratch)

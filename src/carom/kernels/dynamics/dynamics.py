@@ -94,17 +94,23 @@ def link_bias_forces(
     linear_damping = model.tree_linear_damping[world, tree]
     angular_damping = model.tree_angular_damping[world, tree]
 
+    omega = base_omega(model, state, world, tree)
+    velocity = base_velocity(model, state, world, tree)
+    alpha = Vector3(0.0, 0.0, 0.0)
+    acceleration = Vector3(0.0, 0.0, 0.0)
+    if model.tree[tree].fixed == 0:
+        # The base's velocity stays constant, so its spatial acceleration is -omega x velocity.
+        acceleration = -wp.cross(omega, velocity)
+
     for link in range(base, base + model.tree[tree].link_count):
-        omega = base_omega(model, state, world, tree)
-        velocity = base_velocity(model, state, world, tree)
-        alpha = Vector3(0.0, 0.0, 0.0)
-        acceleration = Vector3(0.0, 0.0, 0.0)
         if link > base:
             parent = model.link[link].parent
-            omega = scratch.link[world, parent].omega
-            velocity = scratch.link[world, parent].velocity
-            alpha = scratch.link[world, parent].alpha
-            acceleration = scratch.link[world, parent].acceleration
+            # The parent of most links is the link before, whose motion is still in the variables.
+            if parent != link - 1:
+                omega = scratch.link[world, parent].omega
+                velocity = scratch.link[world, parent].velocity
+                alpha = scratch.link[world, parent].alpha
+                acceleration = scratch.link[world, parent].acceleration
             joint_omega = Vector3(0.0, 0.0, 0.0)
             joint_velocity = Vector3(0.0, 0.0, 0.0)
             first = model.link[link].first_dof
@@ -119,9 +125,6 @@ def link_bias_forces(
             # The motion subspace moves with the link: spatial cross product of both velocities.
             alpha += wp.cross(omega, joint_omega)
             acceleration += wp.cross(omega, joint_velocity) + wp.cross(velocity, joint_omega)
-        elif model.tree[tree].fixed == 0:
-            # The base's velocity stays constant, so its spatial acceleration is -omega x velocity.
-            acceleration = -wp.cross(omega, velocity)
         scratch.link[world, link].omega = omega
         scratch.link[world, link].velocity = velocity
         scratch.link[world, link].alpha = alpha

@@ -25,14 +25,16 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
     base = model.tree[tree].first_link
     q = model.tree[tree].first_position
     position = Vector3(state.position[world, q], state.position[world, q + 1], state.position[world, q + 2])
-    poses[world, base] = Transform(position, canonical(load_quaternion(state, world, q + 3)))
+    orientation = canonical(load_quaternion(state, world, q + 3))
+    poses[world, base] = Transform(position, orientation)
 
     for link in range(base + 1, base + model.tree[tree].link_count):
-        parent_pose = poses[world, model.link[link].parent]
-        parent_orientation = wp.transform_get_rotation(parent_pose)
-        pivot = wp.transform_get_translation(parent_pose) + wp.quat_rotate(
-            parent_orientation, model.link[link].pivot_in_parent
-        )
+        parent = model.link[link].parent
+        # The parent of most links is the link before, whose pose is still in the variables.
+        if parent != link - 1:
+            position = wp.transform_get_translation(poses[world, parent])
+            orientation = wp.transform_get_rotation(poses[world, parent])
+        pivot = position + wp.quat_rotate(orientation, model.link[link].pivot_in_parent)
         # Most is computed in the parent's frame, without waiting for the parent's world pose.
         turn = model.link[link].joint_rotation
         slide = Vector3(0.0, 0.0, 0.0)
@@ -48,15 +50,15 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
         elif joint_type == PLANAR:
             # The translations are measured along axes that do not turn with the joint.
             pivot += wp.quat_rotate(
-                parent_orientation * turn,
+                orientation * turn,
                 model.link[link].planar_axis1 * state.position[world, q + 1]
                 + model.link[link].planar_axis2 * state.position[world, q + 2],
             )
             turn = turn * axis_rotation(model.link[link].unit_axis, state.position[world, q])
 
-        child_orientation = canonical(parent_orientation * turn)
-        offset = wp.quat_rotate(child_orientation, model.link[link].com_from_pivot + slide)
-        poses[world, link] = Transform(pivot + offset, child_orientation)
+        orientation = canonical(orientation * turn)
+        position = pivot + wp.quat_rotate(orientation, model.link[link].com_from_pivot + slide)
+        poses[world, link] = Transform(position, orientation)
 
 
 @func

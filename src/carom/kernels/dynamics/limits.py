@@ -44,13 +44,15 @@ def limit_rows(
     tree = model.constraint[constraint].tree
     position = state.position[world, model.link[link].first_position]
     velocity = state.dof_velocity[world, dof]
+    below = model.constraint_lower[world, constraint] - position
+    above = position - model.constraint_upper[world, constraint]
+    if below < 0.0 and above < 0.0:
+        return row
     bound = model.constraint_max_impulse[world, constraint]
     effective_mass = dof_effective_mass(model, scratch, world, tree, dof)
-    below = model.constraint_lower[world, constraint] - position
     if below >= 0.0:
         change = limit_change(settings, below) - velocity
         row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, 0.0, bound)
-    above = position - model.constraint_upper[world, constraint]
     if above >= 0.0:
         change = -limit_change(settings, above) - velocity
         row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, 0.0)

@@ -10,6 +10,7 @@ from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.dynamics.rows import add_row, axis_effective_masses, dof_effective_mass
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.maths.runs import subtract_products
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import (
@@ -38,9 +39,14 @@ def unless_nan(value: real, other: real) -> real:
 @func
 def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
     """Add viscous joint damping as an explicit torque, from the rates before the step."""
-    first = model.tree[tree].first_dof
-    for dof in range(first, first + model.tree[tree].dof_count):
-        state.dof_torque[world, dof] -= model.dof_damping[world, dof] * state.dof_velocity[world, dof]
+    subtract_products(
+        state.dof_torque,
+        model.dof_damping,
+        state.dof_velocity,
+        model.tree[tree].first_dof,
+        world,
+        model.tree[tree].dof_count,
+    )
 
 
 @func

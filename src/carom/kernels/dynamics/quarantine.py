@@ -7,6 +7,7 @@ repeated with longer arrays.
 
 import warp as wp
 
+from carom.kernels.maths.runs import copy_run
 from carom.kernels.structs import Model, Scratch, State
 from carom.kernels.types import Int32, func, real
 from carom.layouts.status import STATUS, WELL
@@ -15,10 +16,13 @@ from carom.layouts.status import STATUS, WELL
 @func
 def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Save the coordinates, joint torques and sleep state of a tree at the start of the step."""
-    q = model.tree[tree].first_position
-    while q < model.tree[tree].first_position + model.tree[tree].position_count:
-        scratch.position_start[world, q] = state.position[world, q]
-        q += 1
+    copy_run(
+        scratch.position_start,
+        state.position,
+        model.tree[tree].first_position,
+        world,
+        model.tree[tree].position_count,
+    )
     dof = model.tree[tree].first_dof
     while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
         scratch.dof[world, dof].start_velocity = state.dof_velocity[world, dof]
@@ -32,10 +36,13 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
 @func
 def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """Restore the state of a tree at the start of the step."""
-    q = model.tree[tree].first_position
-    while q < model.tree[tree].first_position + model.tree[tree].position_count:
-        state.position[world, q] = scratch.position_start[world, q]
-        q += 1
+    copy_run(
+        state.position,
+        scratch.position_start,
+        model.tree[tree].first_position,
+        world,
+        model.tree[tree].position_count,
+    )
     dof = model.tree[tree].first_dof
     while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
         state.dof_velocity[world, dof] = scratch.dof[world, dof].start_velocity

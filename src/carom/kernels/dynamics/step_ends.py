@@ -5,6 +5,7 @@ import warp as wp
 from carom.kernels.contact.manifold import restore_contacts
 from carom.kernels.dynamics.motors import joint_damping
 from carom.kernels.dynamics.quarantine import keep_start, return_to_start
+from carom.kernels.maths.runs import clear_run
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector6, func, kernel
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS
@@ -17,9 +18,7 @@ def clear_forces(model: Model, state: State, world: Int32, tree: Int32):
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         state.link_wrench[world, link] = Vector6()
-    first = model.tree[tree].first_dof
-    for dof in range(first, first + model.tree[tree].dof_count):
-        state.dof_torque[world, dof] = 0.0
+    clear_run(state.dof_torque, model.tree[tree].first_dof, world, model.tree[tree].dof_count)
 
 
 @func

@@ -1,1 +1,1 @@
-"""Rotations, blocks of numbers, minimum and maximum."""
+"""Rotations, blocks and runs of numbers, minimum and maximum."""

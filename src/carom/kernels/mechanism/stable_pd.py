@@ -4,6 +4,7 @@ import math
 
 import warp as wp
 
+from carom.kernels.mechanism.cholesky import solve_damped
 from carom.kernels.mechanism.dynamics import (
     composite_inertia,
     first_rate,
@@ -75,40 +76,6 @@ def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Co
                 )
 
 
-@func
-def solve(sizes: MechanismSizes, mechanism: MechanismTable, control: Control, first: Int32, time_step: real):
-    """Fill `dof_acceleration` with the accelerations by `dof_torque`, with the controller's damping implicit.
-
-    By Cholesky decomposition; accelerations of dofs before `first`, and of dofs without inertia, are 0.
-    """
-    count = sizes.dofs
-    for row in range(first, count):
-        value = control.dof_torque[row] - mechanism.output[row]
-        for column in range(first, row + 1):
-            entry = mechanism.matrix[row * count + column]
-            if row == column:
-                entry += time_step * control.dof_kd[row]
-            for k in range(first, column):
-                entry -= control.entry_factor[row * count + k] * control.entry_factor[column * count + k]
-            pivot = control.entry_factor[column * count + column]
-            if row == column:
-                # Reciprocals are stored on the diagonal, 0 for dofs without inertia.
-                pivot = 0.0
-                if mechanism.matrix[row * count + row] + time_step * control.dof_kd[row] > 0.0:
-                    pivot = 1.0 / wp.sqrt(entry)
-                control.entry_factor[row * count + row] = pivot
-                control.dof_acceleration[row] = value * pivot
-            else:
-                control.entry_factor[row * count + column] = entry * pivot
-                value -= entry * pivot * control.dof_acceleration[column]
-    for behind in range(count - first):
-        row = count - 1 - behind
-        value = control.dof_acceleration[row]
-        for k in range(row + 1, count):
-            value -= control.entry_factor[k * count + row] * control.dof_acceleration[k]
-        control.dof_acceleration[row] = value * control.entry_factor[row * count + row]
-
-
 @kernel
 def stable_pd_kernel(
     sizes: MechanismSizes, mechanism: MechanismTable, control: Control, base_is_held: Int32, time_step: real
@@ -129,7 +96,11 @@ def stable_pd_kernel(
         place_in_base(mechanism, node)
     composite_inertia(sizes, mechanism)
     wanted_torques(sizes, mechanism, control, time_step)
-    solve(sizes, mechanism, control, base_is_held * sizes.base_dofs, time_step)
+    # Accelerations of a base that is held are 0.
+    solve_damped(
+        mechanism.matrix, control.dof_kd, time_step, control.dof_torque, mechanism.output,
+        control.entry_factor, control.dof_acceleration, base_is_held * sizes.base_dofs, sizes.dofs,
+    )  # fmt: skip
     for dof in range(sizes.base_dofs, sizes.dofs):
         torque = control.dof_torque[dof] - time_step * control.dof_kd[dof] * control.dof_acceleration[dof]
         most = control.dof_most[dof]
