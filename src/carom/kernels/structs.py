@@ -8,6 +8,8 @@ from carom.layouts import chain, contacts, images, mechanism, model, motor_comma
 if TYPE_CHECKING:
     from carom.layouts.chain import Chain, ChainSizes, Search
     from carom.layouts.contacts import (
+        Candidate,
+        CandidateRows,
         Contacts,
         ContactTerms,
         ManifoldBlock,
@@ -36,6 +38,8 @@ else:
     Chain = warp_type(chain.Chain)
     Search = warp_type(chain.Search)
     Shapes = warp_type(contacts.Shapes)
+    Candidate = warp_type(contacts.Candidate)
+    CandidateRows = warp_type(contacts.CandidateRows)
     Pairs = warp_type(contacts.Pairs)
     Contacts = warp_type(contacts.Contacts)
     UserConstraints = warp_type(contacts.UserConstraints)

@@ -114,6 +114,22 @@ class Shapes:
 
 
 @struct
+class Candidate:
+    """Possible contact of a pair of shapes; at most four of them become contacts."""
+
+    point: Vector3  # on shape b, in world axes
+    normal: Vector3  # on shape b, towards a
+    distance: real  # along the normal; negative: penetration
+    on_face: Int32  # on a triangle: 1 if it is on the triangle's face, 0 if at an edge
+
+
+if TYPE_CHECKING:
+    CandidateRows = Any
+else:
+    CandidateRows = ArrayType(Candidate, 2)
+
+
+@struct
 class Pairs:
     """Intermediate results of collision detection; lengths are in `engine.detection_capacity`."""
 
@@ -135,7 +151,7 @@ class Pairs:
     pair_shapes: Index4Rows  # shape a, shape b, 0, 0; sorted
     pair_found: Index4Rows  # the same in the order in which they were found
 
-    candidate_terms: Vector8Rows  # of contact candidates; columns as in `kernels/contact/candidates.py`
+    candidate: CandidateRows
     polygon_a: Vector3Rows  # corners of touching faces
     polygon_b: Vector3Rows
     polygon_clipped: Vector3Rows

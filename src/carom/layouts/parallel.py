@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from carom.layouts.contacts import TermsRows
+from carom.layouts.contacts import CandidateRows, TermsRows
 from carom.layouts.types import (
     ArrayType,
     Index4Rows,
@@ -12,7 +12,6 @@ from carom.layouts.types import (
     Type,
     Vector3Rows,
     Vector4Rows,
-    Vector8Rows,
     real,
     struct,
 )
@@ -85,9 +84,9 @@ class PairWork:
 
     world_kept: Ints  # first row of the saved contacts of the last substep, see `manifold.keep_previous`
     pair_found: Index4Rows  # first and end of its previous contacts; then as `find_candidates` returned
-    candidate_terms: Vector8Rows  # `MOST_CANDIDATES` for each pair
+    candidate: CandidateRows  # `MOST_CANDIDATES` for each pair
 
-    worker_candidates: Vector8Rows
+    worker_candidate: CandidateRows
     worker_polygon_a: Vector3Rows
     worker_polygon_b: Vector3Rows
     worker_polygon_clipped: Vector3Rows

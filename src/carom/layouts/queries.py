@@ -2,13 +2,13 @@
 
 from typing import TYPE_CHECKING, Any
 
+from carom.layouts.contacts import CandidateRows
 from carom.layouts.types import (
     ArrayType,
     IntRows,
     Ints,
     Reals,
     Type,
-    Vector8Rows,
     Vectors3,
     struct,
 )
@@ -73,7 +73,7 @@ class Searches:
     search_second: IntRows
     search_count: IntRows  # in the first entry: number of pairs found
     search_pair: IntRows  # index of each pair found
-    search_found: Vector8Rows  # columns as in `Pairs.candidate_terms`
+    search_found: CandidateRows  # shape b is the second
 
 
 @struct

@@ -4,12 +4,7 @@ import math
 
 import warp as wp
 
-from carom.kernels.contact.candidates import (
-    candidate_distance,
-    candidate_normal,
-    candidate_on_a,
-    candidate_point,
-)
+from carom.kernels.contact.candidates import candidate_on_a
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
@@ -195,8 +190,8 @@ def write_contact(
     """Write the geometry of a candidate to contact `row`; `keep_for_matching` writes its impulses."""
     link_a = shapes.shape_link[pair[0]]
     link_b = shapes.shape_link[pair[1]]
-    point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
-    point_b = candidate_point(pairs.candidate_terms, world, candidate)
+    point_a = candidate_on_a(pairs.candidate, world, candidate)
+    point_b = pairs.candidate[world, candidate].point
     write_place(
         contacts,
         world,
@@ -206,8 +201,8 @@ def write_contact(
         wp.transform_point(wp.transform_inverse(state.link_pose[world, link_b]), point_b),
         point_a,
         point_b,
-        candidate_normal(pairs.candidate_terms, world, candidate),
-        candidate_distance(pairs.candidate_terms, world, candidate),
+        pairs.candidate[world, candidate].normal,
+        pairs.candidate[world, candidate].distance,
     )
 
 
