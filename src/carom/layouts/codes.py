@@ -95,9 +95,9 @@ BASE_VELOCITIES = 6
 # Maximum number of solver rows of one constraint: three axes of a spherical joint.
 MAX_ROWS_PER_CONSTRAINT = 3
 
-# Columns of `State.dof_motor` (settings of motors) and of `State.dof_pd` (explicit PD control). These are rows of
-# numbers, not structs, because users see them as the arrays `World.motor` and `World.pd`, saved states contain them
-# as such, and a command writes several adjacent numbers at once (`scene.joint_motor`).
+# Columns of `State.dof_motor` (settings of motors) and of `State.dof_pd` (explicit PD control). Rows of
+# numbers, not structs: users see them as the arrays `World.motor` and `World.pd`, states are saved with them,
+# and a command writes several adjacent numbers at once (`scene.joint_motor`).
 MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
