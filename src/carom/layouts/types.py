@@ -161,6 +161,5 @@ else:
     Vector4Rows = Rows[Vector4]
     Vector6Rows = Rows[Vector6]
     Vector8Rows = Rows[Vector8]
-    QuaternionRows = Rows[Quaternion]
     Matrix3Rows = Rows[Matrix3]
     TransformRows = Rows[Transform]
