@@ -6,6 +6,7 @@ from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
 from carom.kernels.contact.candidates import exchange, keep_four
 from carom.kernels.shapes.convex import collide_convex, nearest_or_deepest
 from carom.kernels.shapes.cores import Core
+from carom.kernels.shapes.faces import triangle_normal
 from carom.kernels.shapes.triangles import (
     Region,
     first_cursor,
@@ -94,15 +95,6 @@ def drop_inner_edges(candidates: CandidateRows, world: Int32, count: Int32, thic
             exchange(candidates, world, kept, row)
             kept += 1
     return kept
-
-
-@func
-def triangle_normal(core: Core) -> Vector3:
-    """Unit normal of a triangle."""
-    a = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
-    b = Vector3(core.frame[0, 1], core.frame[1, 1], core.frame[2, 1])
-    c = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
-    return wp.normalize(wp.cross(b - a, c - a))
 
 
 @func

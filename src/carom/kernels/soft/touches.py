@@ -94,9 +94,7 @@ def keep_nearest(work: SoftWork, world: Int32, first: Int32, count: Int32, dista
 @func
 def find_node_touches(
     shapes: Shapes,
-    model: Model,
     state: State,
-    scratch: Scratch,
     pairs: Pairs,
     soft: SoftModel,
     work: SoftWork,
@@ -193,9 +191,7 @@ def find_touches(
             ):
                 near = Int32(0)
         if near == 1 and may_meet(shapes, model, settings, soft, body, shape):
-            find_node_touches(
-                shapes, model, state, scratch, pairs, soft, work, world, body, shape, dt, closing
-            )
+            find_node_touches(shapes, state, pairs, soft, work, world, body, shape, dt, closing)
 
 
 @func
