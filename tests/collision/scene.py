@@ -246,7 +246,8 @@ class Scene:
         found = table.numpy["search_count"][0, 0]
         nearest = np.zeros((count, 8))
         rows = table.numpy["search_pair"][0, :found]
-        nearest[rows] = table.numpy["search_found"][0, :found]
+        for part, columns in (("point", np.s_[:3]), ("normal", np.s_[3:6]), ("distance", 6)):
+            nearest[rows, columns] = table.numpy[f"search_found_{part}"][0, :found]
         nearest[rows, 7] = 1.0
         return nearest
 

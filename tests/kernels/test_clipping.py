@@ -21,14 +21,13 @@ from tests.kernels.convex_cores import Solid, box, hull, moved
 from carom.engine.detection_capacity import CANDIDATES
 from carom.kernels.shapes.clip import clip_faces
 from carom.kernels.shapes.cores import Core
+from carom.kernels.structs import Candidate, CandidateRows
 from carom.kernels.types import (
     Int32,
     Ints,
     RealRows,
     Vector3,
     Vector3Rows,
-    Vector8,
-    Vector8Rows,
     kernel,
     real,
 )
@@ -50,7 +49,7 @@ def clip_faces_kernel(
     reference_is_a: Int32,
     radii: RealRows,
     max_distance: real,
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     found: Ints,
 ):
     """Candidates of two faces, after one that is there already."""
@@ -83,7 +82,7 @@ def clip(
     reference_rows, incident_rows, clipped = (
         wp.array(polygon, dtype=Vector3, device="cpu") for polygon in polygons
     )
-    candidates = wp.zeros((1, CANDIDATES), dtype=Vector8, device="cpu")
+    candidates = wp.zeros((1, CANDIDATES), dtype=Candidate, device="cpu")
     found = wp.zeros(1, dtype=Int32, device="cpu")
     inputs = [
         core.core(), reference_rows, len(reference), Vector3(*outward), incident_rows, len(incident), clipped,
@@ -91,9 +90,10 @@ def clip(
         wp.array([radii], dtype=real, device="cpu"), max_distance, candidates, found,
     ]  # fmt: skip
     wp.launch(clip_faces_kernel, dim=1, inputs=inputs, device="cpu")
-    rows = candidates.numpy()[0]
+    left = candidates.numpy()[0]
+    rows = np.column_stack([left["point"], left["normal"], left["distance"]])
     assert not rows[0].any()
-    return rows[1 : found.numpy()[0], :7]
+    return rows[1 : found.numpy()[0]]
 
 
 def polygon(random: np.random.Generator, corners: int, radius: float, middle: np.ndarray) -> np.ndarray:

@@ -16,41 +16,42 @@ import warp as wp
 
 from carom.engine.detection_capacity import CANDIDATES
 from carom.kernels.contact.candidates import flip_candidates, keep_four
-from carom.kernels.types import Int32, Ints, Vector8, Vector8Rows, kernel
+from carom.kernels.structs import Candidate, CandidateRows
+from carom.kernels.types import Int32, Ints, kernel
 
 UP = (0.0, 0.0, 1.0)
 
 
 @kernel
-def keep_four_kernel(candidates: Vector8Rows, count: Int32, kept: Ints):
+def keep_four_kernel(candidates: CandidateRows, count: Int32, kept: Ints):
     """Choose four."""
     kept[0] = keep_four(candidates, 0, count)
 
 
 @kernel
-def flip_candidates_kernel(candidates: Vector8Rows, count: Int32):
+def flip_candidates_kernel(candidates: CandidateRows, count: Int32):
     """Exchange the two shapes."""
     flip_candidates(candidates, 0, count)
 
 
 def rows_of(points: np.ndarray, distances: np.ndarray) -> np.ndarray:
-    rows = np.zeros((1, CANDIDATES, 8))
-    rows[0, : len(points), :3] = points
-    rows[0, : len(points), 3:6] = UP
-    rows[0, : len(points), 6] = distances
+    rows = np.zeros((1, CANDIDATES), Candidate.numpy_dtype())
+    rows["point"][0, : len(points)] = points
+    rows["normal"][0, : len(points)] = UP
+    rows["distance"][0, : len(points)] = distances
     return rows
 
 
 def kept(points: np.ndarray, distances: np.ndarray | float = -0.01) -> np.ndarray:
     """The points that are kept, in their order (n, 3)."""
     rows = rows_of(points, np.broadcast_to(distances, len(points)))
-    candidates = wp.array(rows, dtype=Vector8, device="cpu", copy=True)
+    candidates = wp.array(rows, dtype=Candidate, device="cpu", copy=True)
     count = wp.zeros(1, dtype=Int32, device="cpu")
     wp.launch(keep_four_kernel, dim=1, inputs=[candidates, len(points), count], device="cpu")
     left = candidates.numpy()[0, : len(points)]
     # They change places, and nothing else about them changes.
-    assert {tuple(row) for row in left} == {tuple(row) for row in rows[0, : len(points)]}
-    return left[: count.numpy()[0], :3]
+    assert {row.tobytes() for row in left} == {row.tobytes() for row in rows[0, : len(points)]}
+    return left["point"][: count.numpy()[0]]
 
 
 def chosen(points: np.ndarray, distances: np.ndarray) -> list[np.ndarray]:
@@ -126,9 +127,10 @@ def test_no_point_is_kept_that_spans_nothing(points: list[list[float]], count: i
 def test_exchanging_the_shapes_moves_points_to_the_other() -> None:
     random = np.random.default_rng(4)
     rows = rows_of(random.normal(size=(5, 3)), random.normal(size=5))
-    candidates = wp.array(rows, dtype=Vector8, device="cpu", copy=True)
+    candidates = wp.array(rows, dtype=Candidate, device="cpu", copy=True)
     wp.launch(flip_candidates_kernel, dim=1, inputs=[candidates, 5], device="cpu")
     flipped = candidates.numpy()[0, :5]
-    np.testing.assert_allclose(flipped[:, :3], rows[0, :5, :3] + rows[0, :5, 6:7] * UP)
-    np.testing.assert_array_equal(flipped[:, 3:6], -rows[0, :5, 3:6])
-    np.testing.assert_array_equal(flipped[:, 6], rows[0, :5, 6])
+    before = rows[0, :5]
+    np.testing.assert_allclose(flipped["point"], before["point"] + before["distance"][:, None] * UP)
+    np.testing.assert_array_equal(flipped["normal"], -before["normal"])
+    np.testing.assert_array_equal(flipped["distance"], before["distance"])

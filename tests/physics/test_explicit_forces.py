@@ -90,16 +90,17 @@ def test_joint_damping_is_taken_at_the_rate_before_all_substeps():
     assert joint_state(body)[1] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("target", [0.8, -0.8])
 @pytest.mark.parametrize(
     ("kp", "kd", "max_force"), [(30.0, 0.0, 100.0), (30.0, 2.0, 100.0), (300.0, 2.0, 4.0), (0.0, 5.0, 1.0)]
 )
-def test_explicit_pd_is_a_bounded_spring_and_damper(kp, kd, max_force):
+def test_explicit_pd_is_a_bounded_spring_and_damper(kp, kd, max_force, target):
     body = loose_rod()
-    drive(body, 0.8, 0.3, kp, kd, max_force)
+    drive(body, target, 0.3, kp, kd, max_force)
     q, v = 0.1, -0.5
     place(body, q, v)
     for _ in range(20):
-        torque = kp * (0.8 - q) + kd * (0.3 - v)
+        torque = kp * (target - q) + kd * (0.3 - v)
         v = free_rate(q, v, max(-max_force, min(max_force, torque)))
         q += DT * v
         body.world.step()

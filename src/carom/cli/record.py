@@ -45,7 +45,6 @@ class _Watch:
     def __init__(self, world: World, seconds: float) -> None:
         self._world = world
         self._seconds = seconds
-        self.over = False
 
     def before_step(self) -> None:
         """Do nothing."""
@@ -54,7 +53,6 @@ class _Watch:
         """End the script if the simulated time is over."""
         if self._world.time < self._seconds:
             return
-        self.over = True
         if current_thread() is main_thread():
             raise _Enough
         # Real-time simulation steps in the background, while the script sleeps.
@@ -74,7 +72,6 @@ def record(take: Take) -> list[Path]:
     # As in continuous integration, no browser is opened, because there is no user.
     os.environ.setdefault("CI", "1")
     recorders: list[tuple[Path, ReplayRecorder]] = []
-    watches: list[_Watch] = []
     begin = World.__init__
 
     def begin_recorded(world: World, *arguments: Any, **keywords: Any) -> None:
@@ -85,8 +82,7 @@ def record(take: Take) -> list[Path]:
         title = take.script.stem if number == 1 else f"{take.script.stem} {number}"
         recorders.append((path, ReplayRecorder(world, path, fps=take.fps, title=title)))
         if take.seconds is not None:
-            watches.append(_Watch(world, take.seconds))
-            world.observers.append(watches[-1])
+            world.observers.append(_Watch(world, take.seconds))
 
     World.__init__ = begin_recorded  # pyright: ignore[reportAttributeAccessIssue]
     arguments = sys.argv

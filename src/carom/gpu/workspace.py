@@ -166,11 +166,10 @@ def _island_work(extent: Extent) -> dict[str, tuple[int, ...]]:
 def _pair_work(extent: Extent) -> dict[str, tuple[int, ...]]:
     """Shapes of the workspace of the narrow phase, which handles pairs in parallel."""
     room = scratch_capacity(extent.shapes, extent.contacts)
-    room["candidates"] = room["candidate"]
     shapes: dict[str, tuple[int, ...]] = {
         "world_kept": (extent.worlds,),
         "pair_found": (extent.worlds, max(1, extent.pairs)),
-        "candidate_terms": (extent.worlds, max(1, MOST_CANDIDATES * extent.pairs)),
+        "candidate": (extent.worlds, max(1, MOST_CANDIDATES * extent.pairs)),
     }
     for name in PairWork.fields:
         if name.startswith("worker_"):

@@ -1,72 +1,22 @@
 """The structs of `carom.layouts` as Warp structs, for device code to import."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from carom.kernels.warp_types import warp_type
 from carom.layouts import chain, contacts, images, mechanism, model, motor_commands, parallel, queries, soft
+from carom.layouts.types import Rows, Struct
 
 if TYPE_CHECKING:
-    from carom.layouts.chain import Chain, ChainSizes, Search
-    from carom.layouts.contacts import (
-        Contacts,
-        ContactTerms,
-        ManifoldBlock,
-        ManifoldBlocks,
-        ManifoldSide,
-        ManifoldSides,
-        PairRows,
-        Pairs,
-        Shapes,
-        TermsRows,
-        UserConstraints,
-    )
-    from carom.layouts.images import Lighting, Picture, Scene, View
-    from carom.layouts.mechanism import Control, Ends, MechanismSizes, MechanismTable
-    from carom.layouts.model import ConstraintRows, DofRows, Dofs, Model, Scratch, Settings, State, Trees
-    from carom.layouts.motor_commands import MotorCommands
-    from carom.layouts.parallel import IslandProgress, IslandWork, PairWork, RunWork
-    from carom.layouts.queries import ContactReport, Places, Rays, Searches, Touching
-    from carom.layouts.soft import SoftModel, SoftWork
+
+    def __getattr__(name: str) -> Any:
+        """Kernel code is checked by Warp, not by the Python type checker."""
+
 else:
-    IslandProgress = warp_type(parallel.IslandProgress)
-    IslandWork = warp_type(parallel.IslandWork)
-    PairWork = warp_type(parallel.PairWork)
-    RunWork = warp_type(parallel.RunWork)
-    ChainSizes = warp_type(chain.ChainSizes)
-    Chain = warp_type(chain.Chain)
-    Search = warp_type(chain.Search)
-    Shapes = warp_type(contacts.Shapes)
-    Pairs = warp_type(contacts.Pairs)
-    Contacts = warp_type(contacts.Contacts)
-    UserConstraints = warp_type(contacts.UserConstraints)
-    ManifoldBlock = warp_type(contacts.ManifoldBlock)
-    ManifoldSide = warp_type(contacts.ManifoldSide)
-    ContactTerms = warp_type(contacts.ContactTerms)
-    ManifoldBlocks = warp_type(contacts.ManifoldBlocks)
-    ManifoldSides = warp_type(contacts.ManifoldSides)
-    TermsRows = warp_type(contacts.TermsRows)
-    PairRows = warp_type(contacts.PairRows)
-    Scene = warp_type(images.Scene)
-    View = warp_type(images.View)
-    Lighting = warp_type(images.Lighting)
-    Picture = warp_type(images.Picture)
-    ConstraintRows = warp_type(model.ConstraintRows)
-    Settings = warp_type(model.Settings)
-    Trees = warp_type(model.Trees)
-    Dofs = warp_type(model.Dofs)
-    DofRows = warp_type(model.DofRows)
-    Model = warp_type(model.Model)
-    State = warp_type(model.State)
-    Scratch = warp_type(model.Scratch)
-    MotorCommands = warp_type(motor_commands.MotorCommands)
-    MechanismSizes = warp_type(mechanism.MechanismSizes)
-    Ends = warp_type(mechanism.Ends)
-    MechanismTable = warp_type(mechanism.MechanismTable)
-    Control = warp_type(mechanism.Control)
-    Places = warp_type(queries.Places)
-    ContactReport = warp_type(queries.ContactReport)
-    Searches = warp_type(queries.Searches)
-    Rays = warp_type(queries.Rays)
-    Touching = warp_type(queries.Touching)
-    SoftModel = warp_type(soft.SoftModel)
-    SoftWork = warp_type(soft.SoftWork)
+    for layout in (chain, contacts, images, mechanism, model, motor_commands, parallel, queries, soft):
+        for name, declared in vars(layout).items():
+            if isinstance(declared, type) and issubclass(declared, Struct):
+                globals()[name] = warp_type(declared)
+
+    CandidateRows = warp_type(Rows[contacts.Candidate])
+    ConstraintRows = warp_type(Rows[model.RowScratch])
+    DofRows = warp_type(Rows[model.DofScratch])

@@ -21,72 +21,15 @@ from carom.layouts import types
 start_warp()
 
 if TYPE_CHECKING:
-    # Kernel code is checked by Warp, not by the Python type checker.
     real = Any
-    Int32 = Any
-    Index4 = Any
-    Vector2 = Any
-    Vector3 = Any
-    Vector4 = Any
-    Vector6 = Any
-    Vector8 = Any
-    Quaternion = Any
-    Matrix3 = Any
-    Matrix4 = Any
-    Matrix43 = Any
-    Matrix8 = Any
-    Matrix48 = Any
-    Matrix84 = Any
-    Transform = Any
-    Ints = Any
-    Reals = Any
-    Vectors3 = Any
-    Vectors4 = Any
-    Quaternions = Any
-    Transforms = Any
-    IntRows = Any
-    Index4Rows = Any
-    RealRows = Any
-    Vector3Rows = Any
-    Vector4Rows = Any
-    Vector6Rows = Any
-    Vector8Rows = Any
-    QuaternionRows = Any
-    Matrix3Rows = Any
-    TransformRows = Any
+
+    def __getattr__(name: str) -> Any:
+        """Kernel code is checked by Warp, not by the Python type checker."""
+
 else:
-    real = warp_type(types.real)
-    Int32 = warp_type(types.Int32)
-    Index4 = warp_type(types.Index4)
-    Vector2 = warp_type(types.Vector2)
-    Vector3 = warp_type(types.Vector3)
-    Vector4 = warp_type(types.Vector4)
-    Vector6 = warp_type(types.Vector6)
-    Vector8 = warp_type(types.Vector8)
-    Quaternion = warp_type(types.Quaternion)
-    Matrix3 = warp_type(types.Matrix3)
-    Matrix4 = warp_type(types.Matrix4)
-    Matrix43 = warp_type(types.Matrix43)
-    Matrix8 = warp_type(types.Matrix8)
-    Matrix48 = warp_type(types.Matrix48)
-    Matrix84 = warp_type(types.Matrix84)
-    Transform = warp_type(types.Transform)
-    Ints = warp_type(types.Ints)
-    Reals = warp_type(types.Reals)
-    Vectors3 = warp_type(types.Vectors3)
-    Vectors4 = warp_type(types.Vectors4)
-    Quaternions = warp_type(types.Quaternions)
-    Transforms = warp_type(types.Transforms)
-    IntRows = warp_type(types.IntRows)
-    Index4Rows = warp_type(types.Index4Rows)
-    RealRows = warp_type(types.RealRows)
-    Vector3Rows = warp_type(types.Vector3Rows)
-    Vector4Rows = warp_type(types.Vector4Rows)
-    Vector6Rows = warp_type(types.Vector6Rows)
-    Vector8Rows = warp_type(types.Vector8Rows)
-    QuaternionRows = warp_type(types.QuaternionRows)
-    Matrix3Rows = warp_type(types.Matrix3Rows)
-    TransformRows = warp_type(types.TransformRows)
+    for name, declared in vars(types).items():
+        if isinstance(declared, types.Type | types.ArrayType):
+            globals()[name] = warp_type(declared)
 
 
 class _RealLiterals(ast.NodeTransformer):

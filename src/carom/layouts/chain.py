@@ -11,10 +11,8 @@ column of the Jacobian. A *coordinate* is a number of a joint's position; spheri
 four coordinates, a quaternion. A field's axis is the first word of its name.
 """
 
-from typing import TYPE_CHECKING, Any
-
 from carom.layouts.types import (
-    ArrayType,
+    Array,
     Int32,
     Ints,
     Matrix3,
@@ -26,11 +24,6 @@ from carom.layouts.types import (
     real,
     struct,
 )
-
-if TYPE_CHECKING:
-    Matrices3 = Any
-else:
-    Matrices3 = ArrayType(Matrix3)
 
 # Methods of a step of PyBullet's iteration: `step_kind` of the kernel.
 DAMPED, NULL_SPACE, SELECTIVE = 0, 1, 2
@@ -101,29 +94,15 @@ class ColumnChoice:
     held: Int32  # 1: at a bound that its step would pass
 
 
-if TYPE_CHECKING:
-    JointModels = Any
-    ColumnModels = Any
-    JointPlaces = Any
-    DofChoices = Any
-    ColumnChoices = Any
-else:
-    JointModels = ArrayType(JointModel)
-    ColumnModels = ArrayType(ColumnModel)
-    JointPlaces = ArrayType(JointPlace)
-    DofChoices = ArrayType(DofChoice)
-    ColumnChoices = ArrayType(ColumnChoice)
-
-
 @struct
 class Chain:
     """The joints that move the ends, parents before children; and the ends."""
 
-    joint: JointModels
+    joint: Array[JointModel]
     end_joint: Ints  # the joint whose child link carries the end, -1 for none
     end_offset: Vectors3  # in the frame of that joint
     end_turn: Quaternions
-    column: ColumnModels
+    column: Array[ColumnModel]
     dof_coordinate: Ints  # -1 for the dofs of spherical joints
 
 
@@ -140,18 +119,18 @@ class Search:
     end_given_rotation: Quaternions
     end_target_position: Vectors3
     end_target_rotation: Quaternions
-    dof: DofChoices
+    dof: Array[DofChoice]
 
     coordinate_start: Reals
     coordinate_now: Reals
     coordinate_trial: Reals
     coordinate_best: Reals  # the result
 
-    joint: JointPlaces
-    column: ColumnChoices
+    joint: Array[JointPlace]
+    column: Array[ColumnChoice]
     block_error: Vectors3
     block_solution: Vectors3
     entry_jacobian: Vectors3
-    square_matrix: Matrices3
+    square_matrix: Array[Matrix3]
     spectrum_matrix: Reals  # eigenvalue problem of the selective step, entry by entry
     spectrum_vectors: Reals

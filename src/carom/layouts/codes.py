@@ -95,7 +95,9 @@ BASE_VELOCITIES = 6
 # Maximum number of solver rows of one constraint: three axes of a spherical joint.
 MAX_ROWS_PER_CONSTRAINT = 3
 
-# Columns of `State.dof_motor` (settings of motors) and of `State.dof_pd` (explicit PD control).
+# Columns of `State.dof_motor` (settings of motors) and of `State.dof_pd` (explicit PD control). Rows of
+# numbers, not structs: users see them as the arrays `World.motor` and `World.pd`, states are saved with them,
+# and a command writes several adjacent numbers at once (`scene.joint_motor`).
 MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
@@ -108,37 +110,15 @@ ROW_SOFTNESS, ROW_FRICTION = 6, 7
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
 # Kernels read codes as Warp constants.
-REVOLUTE = int(JointCode.REVOLUTE)
-PRISMATIC = int(JointCode.PRISMATIC)
-SPHERICAL = int(JointCode.SPHERICAL)
-PLANAR = int(JointCode.PLANAR)
-FIXED = int(JointCode.FIXED)
-MOTOR = int(ConstraintKind.MOTOR)
-LIMIT = int(ConstraintKind.LIMIT)
-SPHERICAL_MOTOR = int(ConstraintKind.SPHERICAL_MOTOR)
-SPHERICAL_LIMIT = int(ConstraintKind.SPHERICAL_LIMIT)
-USER = int(ConstraintKind.USER)
-ACTIVE = int(Activity.ACTIVE)
-WANTS_SLEEP = int(Activity.WANTS_SLEEP)
-ASLEEP = int(Activity.ASLEEP)
-WOKEN = int(Activity.WOKEN)
-SPHERE = int(ShapeKind.SPHERE)
-BOX = int(ShapeKind.BOX)
-CAPSULE = int(ShapeKind.CAPSULE)
-CYLINDER = int(ShapeKind.CYLINDER)
-PLANE = int(ShapeKind.PLANE)
-HULL = int(ShapeKind.HULL)
-TRIANGLES = int(ShapeKind.TRIANGLES)
-HEIGHTFIELD = int(ShapeKind.HEIGHTFIELD)
+REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = map(int, JointCode)
+MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER = map(int, ConstraintKind)
+USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR = map(int, UserConstraintKind)
+ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
+SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)
 NO_ROLLING = int(Rolling.NONE)
 ROLLING_ABOUT_X = int(Rolling.ABOUT_X)
 ROLLING_ABOUT_ANY = int(Rolling.ABOUT_ANY)
 ROLLING_OFF_FACES = int(Rolling.OFF_FACES)
-
-USER_PRISMATIC = int(UserConstraintKind.PRISMATIC)
-USER_FIXED = int(UserConstraintKind.FIXED)
-USER_POINT_TO_POINT = int(UserConstraintKind.POINT_TO_POINT)
-USER_GEAR = int(UserConstraintKind.GEAR)
 
 # Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION = 0

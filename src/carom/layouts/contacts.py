@@ -4,10 +4,7 @@ As in `layouts.model`, a field's axis is the first word of its name. A *manifold
 of the same two shapes, in contiguous rows; manifolds are sorted by the lower, then by the higher shape row.
 """
 
-from typing import TYPE_CHECKING, Any
-
 from carom.layouts.types import (
-    ArrayType,
     Index4,
     Index4Rows,
     Int32,
@@ -21,6 +18,7 @@ from carom.layouts.types import (
     Quaternions,
     RealRows,
     Reals,
+    Rows,
     Transforms,
     Vector3,
     Vector3Rows,
@@ -114,6 +112,16 @@ class Shapes:
 
 
 @struct
+class Candidate:
+    """Possible contact of a pair of shapes; at most four of them become contacts."""
+
+    point: Vector3  # on shape b, in world axes
+    normal: Vector3  # on shape b, towards a
+    distance: real  # along the normal; negative: penetration
+    on_face: Int32  # on a triangle: 1 if it is on the triangle's face, 0 if at an edge
+
+
+@struct
 class Pairs:
     """Intermediate results of collision detection; lengths are in `engine.detection_capacity`."""
 
@@ -135,7 +143,7 @@ class Pairs:
     pair_shapes: Index4Rows  # shape a, shape b, 0, 0; sorted
     pair_found: Index4Rows  # the same in the order in which they were found
 
-    candidate_terms: Vector8Rows  # of contact candidates; columns as in `kernels/contact/candidates.py`
+    candidate: Rows[Candidate]
     polygon_a: Vector3Rows  # corners of touching faces
     polygon_b: Vector3Rows
     polygon_clipped: Vector3Rows
@@ -280,16 +288,6 @@ class ContactTerms:
     carried_spin: Vector3  # likewise the angular velocity
 
 
-if TYPE_CHECKING:
-    ManifoldBlocks = Any
-    ManifoldSides = Any
-    TermsRows = Any
-else:
-    ManifoldBlocks = ArrayType(ManifoldBlock, 2)
-    ManifoldSides = ArrayType(ManifoldSide, 2)
-    TermsRows = ArrayType(ContactTerms, 2)
-
-
 @struct
 class PairRows:
     """Constraint rows over up to two trees, manifold blocks, and islands: intermediate results."""
@@ -317,9 +315,9 @@ class PairRows:
     )
     unit_code: IntRows  # units of an island's sweep, in order: a contact, or -1 - manifold block
 
-    terms: TermsRows  # of the contacts of the unit whose rows are being written
-    manifold_block: ManifoldBlocks
-    side: ManifoldSides  # of each manifold block, body a, then body b
+    terms: Rows[ContactTerms]  # of the contacts of the unit whose rows are being written
+    manifold_block: Rows[ManifoldBlock]
+    side: Rows[ManifoldSide]  # of each manifold block, body a, then body b
     matrix_block: Vector4Rows  # see `kernels.solver.articulated_manifolds`
     entry_matrix: RealRows
 

@@ -5,10 +5,8 @@ one texture; a `chunk` is a run of parts processed by one launch; a `facet` is a
 be visible. Pixel coordinates have their origin at the centre of the top left pixel, y downwards.
 """
 
-from typing import TYPE_CHECKING, Any
-
 from carom.layouts.types import (
-    ArrayType,
+    Array,
     Colour,
     Float32,
     Index2,
@@ -28,27 +26,6 @@ from carom.layouts.types import (
     struct,
 )
 
-if TYPE_CHECKING:
-    Vectors2 = Any
-    Indices2 = Any
-    Indices3 = Any
-    Indices4 = Any
-    Colours = Any
-    Matrices3 = Any
-    Matrices4 = Any
-    UnsignedInts = Any
-    Floats = Any
-else:
-    Vectors2 = ArrayType(Vector2)
-    Indices2 = ArrayType(Index2)
-    Indices3 = ArrayType(Index3)
-    Indices4 = ArrayType(Index4)
-    Colours = ArrayType(Colour)
-    Matrices3 = ArrayType(Matrix3)
-    Matrices4 = ArrayType(Matrix4)
-    UnsignedInts = ArrayType(UInt32)
-    Floats = ArrayType(Float32)
-
 
 @struct
 class Scene:
@@ -56,8 +33,8 @@ class Scene:
 
     vertex_position: Vectors3  # in the inertial frame of the link
     vertex_normal: Vectors3
-    vertex_uv: Vectors2
-    triangle_corners: Indices3
+    vertex_uv: Array[Vector2]
+    triangle_corners: Array[Index3]
     triangle_part: Ints
     part_first_vertex: Ints  # number of parts + 1 entries, like the next
     part_first_triangle: Ints
@@ -69,8 +46,8 @@ class Scene:
     part_two_sided: Ints
     part_texture: Ints  # -1: none
     texture_first: Ints  # row of the texel at its lower left corner
-    texture_size: Indices2
-    texel: Colours
+    texture_size: Array[Index2]
+    texel: Array[Colour]
     chunk_first_part: Ints
 
 
@@ -81,13 +58,13 @@ class View:
     width: Int32
     height: Int32
     facing: Reals  # sign of the volume spanned by front faces; 0: draw both sides
-    link_to_pixel: Matrices4  # (x, y, z, 1) to (column w, row w, depth w, w), depth -1..1
+    link_to_pixel: Array[Matrix4]  # (x, y, z, 1) to (column w, row w, depth w, w), depth -1..1
     vertex_pixel: Vectors4
     facet_first: Vectors3  # weight of each corner, affine in (column, row)
     facet_second: Vectors3
     facet_third: Vectors3
     facet_depth: Vectors3
-    facet_box: Indices4  # lowest column and row, highest column and row
+    facet_box: Array[Index4]  # lowest column and row, highest column and row
     facet_triangle: Ints
     chunk_facet_count: Ints
     pixel_depth: Reals
@@ -110,20 +87,14 @@ class Lighting:
     projected: Int32  # 1: textures are projected by a projector
 
 
-if TYPE_CHECKING:
-    Lightings = Any
-else:
-    Lightings = ArrayType(Lighting)
-
-
 @struct
 class Picture:
     """Other inputs of one image, and its pixels."""
 
-    lighting: Lightings
-    link_rotation: Matrices3
-    link_to_projector: Matrices4  # (x, y, z, 1) to (u w, v w, ., w)
-    rgba: UnsignedInts  # red in the lowest byte
-    depth: Floats  # 0..1
-    distance: Floats  # along the viewing direction; infinite: background
+    lighting: Array[Lighting]
+    link_rotation: Array[Matrix3]
+    link_to_projector: Array[Matrix4]  # (x, y, z, 1) to (u w, v w, ., w)
+    rgba: Array[UInt32]  # red in the lowest byte
+    depth: Array[Float32]  # 0..1
+    distance: Array[Float32]  # along the viewing direction; infinite: background
     label: Ints  # -1: background

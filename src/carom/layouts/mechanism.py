@@ -11,9 +11,7 @@ linear acceleration minus gravity; for a Jacobian it begins with the point. Posi
 of the joints follow, as far as the kernel needs them.
 """
 
-from typing import TYPE_CHECKING, Any
-
-from carom.layouts.types import ArrayType, Int32, Matrix3, Reals, Vector3, real, struct
+from carom.layouts.types import Array, Int32, Matrix3, Reals, Vector3, real, struct
 
 BASE_MOTION = 9
 """Count of numbers in `input` before the positions."""
@@ -82,27 +80,15 @@ class NodeMotion:
     inertia: Matrix3
 
 
-if TYPE_CHECKING:
-    Nodes = Any
-    DofAxes = Any
-    Ends = Any
-    Motions = Any
-else:
-    Nodes = ArrayType(NodeModel)
-    DofAxes = ArrayType(DofAxis)
-    Ends = ArrayType(EndModel)
-    Motions = ArrayType(NodeMotion)
-
-
 @struct
 class MechanismTable:
     """One body, and the workspace of a call."""
 
-    node: Nodes
-    dof: DofAxes
-    axis: DofAxes  # the same in the base's frame, at its origin
-    end: Ends
-    motion: Motions
+    node: Array[NodeModel]
+    dof: Array[DofAxis]
+    axis: Array[DofAxis]  # the same in the base's frame, at its origin
+    end: Array[EndModel]
+    motion: Array[NodeMotion]
     input: Reals
     output: Reals
     matrix: Reals  # mass matrix, row-major

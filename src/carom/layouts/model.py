@@ -10,15 +10,14 @@ come first, angular before linear. *Active* dofs are those that dynamics may cha
 floating tree, the joint dofs of a fixed one; `tree_first_dof` is the first of them.
 """
 
-from typing import TYPE_CHECKING, Any
-
 from carom.layouts.types import (
-    ArrayType,
+    Array,
     Int32,
     IntRows,
     Matrix3,
     Quaternion,
     RealRows,
+    Rows,
     TransformRows,
     Vector3,
     Vector3Rows,
@@ -119,18 +118,6 @@ class ConstraintModel:
     link: Int32  # of a user constraint: its row in `UserConstraints`
 
 
-if TYPE_CHECKING:
-    Trees = Any
-    Links = Any
-    Dofs = Any
-    Constraints = Any
-else:
-    Trees = ArrayType(TreeModel)
-    Links = ArrayType(LinkModel)
-    Dofs = ArrayType(DofModel)
-    Constraints = ArrayType(ConstraintModel)
-
-
 @struct
 class Model:
     """Topology and parameters of every body.
@@ -140,10 +127,10 @@ class Model:
     one row for each world, or a single row shared by all worlds.
     """
 
-    tree: Trees
-    link: Links
-    dof: Dofs
-    constraint: Constraints
+    tree: Array[TreeModel]
+    link: Array[LinkModel]
+    dof: Array[DofModel]
+    constraint: Array[ConstraintModel]
 
     gravity_vector: Vector3Rows  # in the first entry [m/s²]
     tree_linear_damping: RealRows
@@ -247,26 +234,14 @@ class RowScratch:
     impulse: real
 
 
-if TYPE_CHECKING:
-    TreeRows = Any
-    LinkRows = Any
-    DofRows = Any
-    ConstraintRows = Any
-else:
-    TreeRows = ArrayType(TreeScratch, 2)
-    LinkRows = ArrayType(LinkScratch, 2)
-    DofRows = ArrayType(DofScratch, 2)
-    ConstraintRows = ArrayType(RowScratch, 2)
-
-
 @struct
 class Scratch:
     """Intermediate results of one step."""
 
-    tree: TreeRows
-    link: LinkRows
+    tree: Rows[TreeScratch]
+    link: Rows[LinkScratch]
     link_pose: TransformRows  # like `State.link_pose`, but for other coordinates or of the last substep
-    dof: DofRows
+    dof: Rows[DofScratch]
     position_start: RealRows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
@@ -279,7 +254,7 @@ class Scratch:
     entry_inverse_mass: RealRows
     entry_delta_velocity: RealRows
 
-    row: ConstraintRows
+    row: Rows[RowScratch]
 
 
 # Scratch arrays that are views of another array's blocks, entry by entry.

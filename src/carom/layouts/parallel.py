@@ -2,17 +2,16 @@
 
 from typing import TYPE_CHECKING, Any
 
-from carom.layouts.contacts import TermsRows
+from carom.layouts.contacts import Candidate, ContactTerms
 from carom.layouts.types import (
-    ArrayType,
     Index4Rows,
     Int32,
     IntRows,
     Ints,
+    Rows,
     Type,
     Vector3Rows,
     Vector4Rows,
-    Vector8Rows,
     real,
     struct,
 )
@@ -25,7 +24,10 @@ MOST_CANDIDATES = 4
 BEGIN, RESUME, STAY, GO_ON = 0, 1, 2, 3
 
 # Starts of the parts of an island's window, or their lengths; see `kernels.parallel.workspace`.
-Window = Type("int32", (8,), "vector")
+if TYPE_CHECKING:
+    Window = Any
+else:
+    Window = Type("int32", (8,), "vector")
 
 
 @struct
@@ -46,25 +48,17 @@ class IslandProgress:
     sweeps: Int32
 
 
-if TYPE_CHECKING:
-    WindowRows = Any
-    ProgressRows = Any
-else:
-    WindowRows = ArrayType(Window, 2)
-    ProgressRows = ArrayType(IslandProgress, 2)
-
-
 @struct
 class IslandWork:
     """Intermediate results of islands solved in parallel; an island uses the tree row of its root."""
 
-    tree_window: WindowRows  # starts of the parts of its window
-    tree_room: WindowRows  # their lengths
-    tree_progress: ProgressRows
+    tree_window: Rows[Window]  # starts of the parts of its window
+    tree_room: Rows[Window]  # their lengths
+    tree_progress: Rows[IslandProgress]
     # 1 + the tree, if its velocities were not finite before or after the solver; else 0.
     tree_free_fault: IntRows
     tree_motion_fault: IntRows
-    terms: TermsRows
+    terms: Rows[ContactTerms]
 
 
 @struct
@@ -85,9 +79,9 @@ class PairWork:
 
     world_kept: Ints  # first row of the saved contacts of the last substep, see `manifold.keep_previous`
     pair_found: Index4Rows  # first and end of its previous contacts; then as `find_candidates` returned
-    candidate_terms: Vector8Rows  # `MOST_CANDIDATES` for each pair
+    candidate: Rows[Candidate]  # `MOST_CANDIDATES` for each pair
 
-    worker_candidates: Vector8Rows
+    worker_candidate: Rows[Candidate]
     worker_polygon_a: Vector3Rows
     worker_polygon_b: Vector3Rows
     worker_polygon_clipped: Vector3Rows

@@ -1,23 +1,16 @@
 """Data of the kernels of queries: rays, nearest points, lists of contacts."""
 
-from typing import TYPE_CHECKING, Any
-
+from carom.layouts.contacts import Candidate
 from carom.layouts.types import (
-    ArrayType,
+    Array,
     IntRows,
     Ints,
     Reals,
-    Type,
-    Vector8Rows,
+    Rows,
+    Truth,
     Vectors3,
     struct,
 )
-
-if TYPE_CHECKING:
-    Truths = Any
-else:
-    # 0 or 1, NumPy's booleans.
-    Truths = ArrayType(Type("uint8"))
 
 # Link indices up to this one mean any link.
 ANY_LINK = -2
@@ -58,11 +51,11 @@ class Touching:
     link_place: Ints  # by link row: its index among the chosen links, or -1
     link_other: Ints  # by link row: 1 for one of the other links, else 0
     world_number: Ints  # number of contact points
-    world_touching: Truths  # whether one of them has a normal impulse
+    world_touching: Array[Truth]  # whether one of them has a normal impulse
     world_impulse: Vectors3  # total impulse on the chosen links, in world axes
     world_distance: Reals  # of the deepest point
     world_deepest: Vectors3  # that point on the chosen link, in world axes
-    place_touching: Truths  # by world, then chosen link: whether the link has a contact point
+    place_touching: Array[Truth]  # by world, then chosen link: whether the link has a contact point
 
 
 @struct
@@ -73,7 +66,7 @@ class Searches:
     search_second: IntRows
     search_count: IntRows  # in the first entry: number of pairs found
     search_pair: IntRows  # index of each pair found
-    search_found: Vector8Rows  # columns as in `Pairs.candidate_terms`
+    search_found: Rows[Candidate]  # shape b is the second
 
 
 @struct

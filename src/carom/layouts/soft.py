@@ -6,10 +6,8 @@ pose and velocity follow the nodes. As in `layouts.model`, a field's axis is the
 rows of each soft body are contiguous, and all worlds share the topology.
 """
 
-from typing import TYPE_CHECKING, Any
-
 from carom.layouts.types import (
-    ArrayType,
+    Array,
     Index4,
     Int32,
     IntRows,
@@ -92,32 +90,18 @@ class AnchorModel:
     pivot: Vector3  # in the inertial frame of the link
 
 
-if TYPE_CHECKING:
-    SoftBodies = Any
-    Springs = Any
-    Tetras = Any
-    Anchors = Any
-    Index4s = Any
-else:
-    SoftBodies = ArrayType(SoftBodyModel)
-    Springs = ArrayType(SpringModel)
-    Tetras = ArrayType(TetraModel)
-    Anchors = ArrayType(AnchorModel)
-    Index4s = ArrayType(Index4)
-
-
 @struct
 class SoftModel:
     """Topology and parameters of all soft bodies."""
 
-    soft: SoftBodies
-    spring: Springs
-    tetra: Tetras
-    anchor: Anchors
+    soft: Array[SoftBodyModel]
+    spring: Array[SpringModel]
+    tetra: Array[TetraModel]
+    anchor: Array[AnchorModel]
     node_inverse_mass: Reals  # 0: fixed in the world
     node_anchored: Ints  # 1: fixed to a link; it has no contacts with any shapes
     node_rest: Vectors3  # position as loaded, from its body's centre of mass [m]
-    face_nodes: Index4s  # three nodes, counter-clockwise from outside
+    face_nodes: Array[Index4]  # three nodes, counter-clockwise from outside
     count_soft: Ints  # columns: BODIES, ANCHORS
 
 

@@ -107,33 +107,16 @@ def struct(declaration: type) -> Any:
 
 
 if TYPE_CHECKING:
-    # The type checker does not know the types of fields.
-    real = Any
-    Float32 = Any
-    Int32 = Any
-    UInt32 = Any
-    Index2 = Any
-    Index3 = Any
-    Index4 = Any
-    Colour = Any
-    Vector2 = Any
-    Vector3 = Any
-    Vector4 = Any
-    Vector6 = Any
-    Vector8 = Any
-    Quaternion = Any
-    Matrix3 = Any
-    Matrix4 = Any
-    Matrix43 = Any
-    Matrix8 = Any
-    Matrix48 = Any
-    Matrix84 = Any
-    Transform = Any
+
+    def __getattr__(name: str) -> Any:
+        """The type checker does not know the types of fields."""
+
 else:
     real = Type("float64")
     Float32 = Type("float32")
     Int32 = Type("int32")
     UInt32 = Type("uint32")
+    Truth = Type("uint8")  # 0 or 1, NumPy's booleans
     Index2 = Type("int32", (2,), "vector")
     Index3 = Type("int32", (3,), "vector")
     Index4 = Type("int32", (4,), "vector")
@@ -152,40 +135,31 @@ else:
     Matrix84 = Type("float64", (8, 4), "matrix")
     Transform = Type("float64", (7,), "transform")
 
-if TYPE_CHECKING:
-    Ints = Any
-    Reals = Any
-    Vectors3 = Any
-    Vectors4 = Any
-    Quaternions = Any
-    Transforms = Any
-    IntRows = Any
-    Index4Rows = Any
-    RealRows = Any
-    Vector3Rows = Any
-    Vector4Rows = Any
-    Vector6Rows = Any
-    Vector8Rows = Any
-    QuaternionRows = Any
-    Matrix3Rows = Any
-    TransformRows = Any
-else:
-    # One entry per tree, link, coordinate...: shared by all worlds.
-    Ints = ArrayType(Int32)
-    Reals = ArrayType(real)
-    Vectors3 = ArrayType(Vector3)
-    Vectors4 = ArrayType(Vector4)
-    Quaternions = ArrayType(Quaternion)
-    Transforms = ArrayType(Transform)
+    class Array:
+        """`Array[X]` has one X per tree, link, coordinate...: shared by all worlds."""
 
-    # The same with a leading world axis.
-    IntRows = ArrayType(Int32, 2)
-    Index4Rows = ArrayType(Index4, 2)
-    RealRows = ArrayType(real, 2)
-    Vector3Rows = ArrayType(Vector3, 2)
-    Vector4Rows = ArrayType(Vector4, 2)
-    Vector6Rows = ArrayType(Vector6, 2)
-    Vector8Rows = ArrayType(Vector8, 2)
-    QuaternionRows = ArrayType(Quaternion, 2)
-    Matrix3Rows = ArrayType(Matrix3, 2)
-    TransformRows = ArrayType(Transform, 2)
+        def __class_getitem__(cls, entry: Any) -> ArrayType:
+            return ArrayType(entry)
+
+    class Rows:
+        """`Rows[X]` has a leading world axis in addition."""
+
+        def __class_getitem__(cls, entry: Any) -> ArrayType:
+            return ArrayType(entry, 2)
+
+    Ints = Array[Int32]
+    Reals = Array[real]
+    Vectors3 = Array[Vector3]
+    Vectors4 = Array[Vector4]
+    Quaternions = Array[Quaternion]
+    Transforms = Array[Transform]
+
+    IntRows = Rows[Int32]
+    Index4Rows = Rows[Index4]
+    RealRows = Rows[real]
+    Vector3Rows = Rows[Vector3]
+    Vector4Rows = Rows[Vector4]
+    Vector6Rows = Rows[Vector6]
+    Vector8Rows = Rows[Vector8]
+    Matrix3Rows = Rows[Matrix3]
+    TransformRows = Rows[Transform]

@@ -19,7 +19,8 @@ from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.question import Question
 from carom.queries.quick_queries import tell_search
 
-_ROW = Struct(f"8{np.dtype(NUMPY_REAL).char}")
+# Numbers of a `Candidate`: point, normal and distance; the rest is skipped.
+_CANDIDATE = Struct(f"7{np.dtype(NUMPY_REAL).char}8x")
 _INDEX = np.dtype(np.int32)
 # Maximum number of cached queries; scripts query the same links in each step.
 _MOST_REMEMBERED = 64
@@ -90,7 +91,7 @@ class PairSearch:
         found = self._count[0]
         if not found:
             return []
-        rows = zip(range(found), self._pair, _ROW.iter_unpack(self._found), strict=False)
+        rows = zip(range(found), self._pair, _CANDIDATE.iter_unpack(self._found), strict=False)
         return [
             (
                 *pairs.links[pair],
@@ -99,7 +100,7 @@ class PairSearch:
                 (nx, ny, nz),
                 distance,
             )
-            for _, pair, (x, y, z, nx, ny, nz, distance, _) in rows
+            for _, pair, (x, y, z, nx, ny, nz, distance) in rows
         ]
 
     def _find_pairs(self, first: Sequence[int], second: Sequence[int]) -> ShapePairs:

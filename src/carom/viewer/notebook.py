@@ -55,9 +55,9 @@ def _shown(picture: bytes | None) -> str:
     return f'<img alt="The simulation" src="data:image/png;base64,{b64encode(picture).decode()}">'
 
 
-def replay_frame(page: str, height: int = HEIGHT) -> str:
+def replay_frame(page: str) -> str:
     """HTML that contains the page of a replay and shows it."""
-    return f'<iframe srcdoc="{html.escape(page)}" style="width:100%;height:{height}px;border:0"></iframe>'
+    return f'<iframe srcdoc="{html.escape(page)}" style="width:100%;height:{HEIGHT}px;border:0"></iframe>'
 
 
 def in_notebook() -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from types import TracebackType
 
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
@@ -92,9 +91,7 @@ class Profile:
         self._engine.step_by(staged_program, [self._stepper])
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._engine.step_by(step_program)
 
 

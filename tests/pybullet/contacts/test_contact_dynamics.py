@@ -109,6 +109,21 @@ def test_what_has_a_swept_sphere_does_not_pass_through_thin_walls(
     assert p.getBasePositionAndOrientation(bullet)[0][0] < 1.0
 
 
+@pytest.mark.parametrize(("share", "looks_ahead"), [(0.48, False), (0.52, True)])
+def test_who_moves_by_more_than_half_its_swept_radius_looks_ahead(
+    client: int, share: float, looks_ahead: bool
+) -> None:
+    radius, gap = 0.05, 0.02
+    wall = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5, 1, 1])
+    p.createMultiBody(0, wall, basePosition=[0.5 + radius + gap, 0, 0])
+    ball = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=radius))
+    p.changeDynamics(ball, -1, ccdSweptSphereRadius=radius, linearDamping=0)
+    p.resetBaseVelocity(ball, [share * radius * 240, 0, 0])
+    p.stepSimulation()
+    # Other contacts are made only when the surfaces are nearer.
+    assert [point[8] for point in p.getContactPoints()] == pytest.approx([gap] * looks_ahead)
+
+
 def test_fast_bodies_with_swept_spheres_meet(client: int) -> None:
     ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.02)
     left, right = (p.createMultiBody(1, ball, basePosition=[x, 0, 0]) for x in (-1, 1))

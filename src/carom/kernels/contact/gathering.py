@@ -12,12 +12,7 @@ import math
 
 import warp as wp
 
-from carom.kernels.contact.candidates import (
-    candidate_distance,
-    candidate_normal,
-    candidate_on_a,
-    flip_candidates,
-)
+from carom.kernels.contact.candidates import candidate_on_a, flip_candidates
 from carom.kernels.contact.contact_margins import is_part_of_compound
 from carom.kernels.contact.manifold import keep_contact, keep_for_matching, sides_of, write_contact
 from carom.kernels.contact.narrow_phase import in_order
@@ -155,14 +150,13 @@ def find_new_point(
     if last > first:
         if not gathers(shapes, pairs, world, a, b, pairs.previous_normal[world, first]):
             return AT_ONCE
-    order = in_order(shapes, a, b)
-    found = nearest_convex(
-        shapes, pairs, world, order[0], order[1], core_of(shapes, pairs, world, order[0]), max_distance
-    )
-    if order[0] != a:
-        flip_candidates(pairs.candidate_terms, world, found)
+    first_shape, second_shape = in_order(shapes, a, b)
+    core = core_of(shapes, pairs, world, first_shape)
+    found = nearest_convex(shapes, pairs, world, first_shape, second_shape, core, max_distance)
+    if first_shape != a:
+        flip_candidates(pairs.candidate, world, found)
     if last == first and found > 0:
-        if not gathers(shapes, pairs, world, a, b, candidate_normal(pairs.candidate_terms, world, 0)):
+        if not gathers(shapes, pairs, world, a, b, pairs.candidate[world, 0].normal):
             return AT_ONCE
     return found
 
@@ -288,9 +282,9 @@ def gather(
     if found > 0:
         point = wp.transform_point(
             wp.transform_inverse(state.link_pose[world, shapes.shape_link[sides[0]]]),
-            candidate_on_a(pairs.candidate_terms, world, 0),
+            candidate_on_a(pairs.candidate, world, 0),
         )
-        distance = candidate_distance(pairs.candidate_terms, world, 0)
+        distance = pairs.candidate[world, 0].distance
         manifold = add_point(pairs, world, manifold, point, distance, far)
     if not compound:
         manifold = refresh(state, pairs, world, manifold, far)

@@ -4,12 +4,7 @@ import math
 
 import warp as wp
 
-from carom.kernels.contact.candidates import (
-    candidate_distance,
-    candidate_normal,
-    candidate_on_a,
-    candidate_point,
-)
+from carom.kernels.contact.candidates import candidate_on_a
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index4, Int32, Transform, Vector3, func, real
@@ -203,8 +198,8 @@ def sides_of(shapes: Shapes, state: State, world: Int32, pair: Index4) -> Sides:
 @func
 def write_contact(contacts: Contacts, pairs: Pairs, world: Int32, row: Int32, sides: Sides, candidate: Int32):
     """Write the geometry of a candidate to contact `row`; `keep_for_matching` writes its impulses."""
-    point_a = candidate_on_a(pairs.candidate_terms, world, candidate)
-    point_b = candidate_point(pairs.candidate_terms, world, candidate)
+    point_a = candidate_on_a(pairs.candidate, world, candidate)
+    point_b = pairs.candidate[world, candidate].point
     write_place(
         contacts,
         world,
@@ -214,8 +209,8 @@ def write_contact(contacts: Contacts, pairs: Pairs, world: Int32, row: Int32, si
         wp.transform_point(sides.to_b, point_b),
         point_a,
         point_b,
-        candidate_normal(pairs.candidate_terms, world, candidate),
-        candidate_distance(pairs.candidate_terms, world, candidate),
+        pairs.candidate[world, candidate].normal,
+        pairs.candidate[world, candidate].distance,
     )
 
 

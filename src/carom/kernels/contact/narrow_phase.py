@@ -11,7 +11,7 @@ from carom.kernels.shapes.planes import collide_plane, with_sharp_edges
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 
 
@@ -43,9 +43,7 @@ def collide_boxes(
             sharp_a.frame, sharp_a.size, sharp_b.frame, sharp_b.size, sharp_a.position, sharp_b.position,
             code, normal,
         )  # fmt: skip
-        count = add_candidate(
-            pairs.candidate_terms, world, 0, point_b, normal, wp.dot(point_a - point_b, normal)
-        )
+        count = add_candidate(pairs.candidate, world, 0, point_b, normal, wp.dot(point_a - point_b, normal))
     elif code != APART:
         count = collide_faces(shapes, pairs, world, a, b, sharp_a, sharp_b, normal, max_distance, 0)
     return count
@@ -80,20 +78,18 @@ def collide_simple(
             _normal, corners = face_towards(shapes, sharp, a, -normal, pairs.polygon_a, world)
         count = collide_plane(
             sharp, pairs.polygon_a, corners, shapes.vertex_position, pairs.shape_position[world, b],
-            normal, max_distance, pairs.candidate_terms, world,
+            normal, max_distance, pairs.candidate, world,
         )  # fmt: skip
     elif (kind_a == SPHERE or kind_a == CAPSULE) and (kind_b == SPHERE or kind_b == CAPSULE):
         core_b = core_of(shapes, pairs, world, b)
         count = collide_segments(
             core_a.position, segment_half(core_a), core_a.radius,
             core_b.position, segment_half(core_b), core_b.radius,
-            max_distance, pairs.candidate_terms, world,
+            max_distance, pairs.candidate, world,
         )  # fmt: skip
     elif kind_a == SPHERE and (kind_b == BOX or kind_b == CYLINDER):
         core_b = core_of(shapes, pairs, world, b)
-        count = collide_ball(
-            core_a.position, core_a.radius, core_b, max_distance, pairs.candidate_terms, world
-        )
+        count = collide_ball(core_a.position, core_a.radius, core_b, max_distance, pairs.candidate, world)
     return count
 
 
@@ -128,11 +124,11 @@ def rank(kind: Int32) -> Int32:
 
 
 @func
-def in_order(shapes: Shapes, a: Int32, b: Int32) -> Index4:
+def in_order(shapes: Shapes, a: Int32, b: Int32):
     """Two shapes in the order that the narrow phase expects."""
     if rank(shapes.shape_kind[a]) > rank(shapes.shape_kind[b]):
-        return Index4(b, a, 0, 0)
-    return Index4(a, b, 0, 0)
+        return b, a
+    return a, b
 
 
 @func
@@ -150,10 +146,10 @@ def collide_shapes(
         max_distance: Largest distance of a contact [m].
         around: Distance from the convex shape's bounds within which triangles are tested [m].
     """
-    order = in_order(shapes, a, b)
-    count = collide_in_order(shapes, pairs, world, order[0], order[1], max_distance, around)
+    first, second = in_order(shapes, a, b)
+    count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)
     if count > 4:
-        count = keep_four(pairs.candidate_terms, world, count)
-    if order[0] != a:
-        flip_candidates(pairs.candidate_terms, world, count)
+        count = keep_four(pairs.candidate, world, count)
+    if first != a:
+        flip_candidates(pairs.candidate, world, count)
     return count

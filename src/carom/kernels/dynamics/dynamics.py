@@ -74,15 +74,7 @@ def external_torque(state: State, world: Int32, link: Int32) -> Vector3:
 
 
 @func
-def link_bias_forces(
-    model: Model,
-    settings: Settings,
-    state: State,
-    scratch: Scratch,
-    world: Int32,
-    tree: Int32,
-    purpose: Int32,
-):
+def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, purpose: Int32):
     """Fill in the velocities and bias accelerations of the links, and the force each link needs for them.
 
     For the purpose `FREE_MOTION` that is the force for motion without joint acceleration, less gravity and

@@ -118,7 +118,7 @@ def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Second pass: add the wrenches caused by constraint forces to the sensors."""
-    link_bias_forces(model, settings, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+    link_bias_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)
     measure_joint_wrenches(model, settings, state, scratch, world, tree, 1)

@@ -41,7 +41,7 @@ def move_tree(
     forward_kinematics(model, state, state.link_pose, world, tree)
     motion_subspaces(model, state.link_pose, scratch, world, tree)
     link_inertias(model, scratch, world, tree)
-    link_bias_forces(model, settings, state, scratch, world, tree, FREE_MOTION)
+    link_bias_forces(model, state, scratch, world, tree, FREE_MOTION)
     generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
     composite_inertia(model, scratch, world, tree)
     factorise(model, scratch, world, tree)

@@ -82,7 +82,7 @@ def pair_candidates_kernel(
     while item < worlds * pairs.pair_shapes.shape[1]:
         world = item % worlds
         i = item // worlds
-        item += pair_work.worker_candidates.shape[0]
+        item += pair_work.worker_candidate.shape[0]
         if state.status_entry[world, STATUS] == WELL and i < pairs.count_pairs[world, PAIRS]:
             pair = pairs.pair_shapes[world, i]
             kept = pair_work.world_kept[world]
@@ -92,9 +92,7 @@ def pair_candidates_kernel(
             found, count = find_candidates(shapes, own, world, pair, first, last)
             pair_work.pair_found[world, i] = Index4(first, last, found, count)
             for candidate in range(wp.max(found, count)):
-                pair_work.candidate_terms[world, MOST_CANDIDATES * i + candidate] = own.candidate_terms[
-                    world, candidate
-                ]
+                pair_work.candidate[world, MOST_CANDIDATES * i + candidate] = own.candidate[world, candidate]
 
 
 @kernel

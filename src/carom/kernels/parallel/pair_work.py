@@ -2,8 +2,8 @@
 
 import warp as wp
 
-from carom.kernels.structs import Pairs, PairWork
-from carom.kernels.types import Index4Rows, Int32, Vector3Rows, Vector4Rows, Vector8Rows, func
+from carom.kernels.structs import CandidateRows, Pairs, PairWork
+from carom.kernels.types import Index4Rows, Int32, Vector3Rows, Vector4Rows, func
 from carom.layouts.parallel import MOST_CANDIDATES
 
 # C++ for a view of an array in which all worlds share the row of a worker: the stride over worlds is zero.
@@ -34,7 +34,7 @@ def own_vectors4(pool: Vector4Rows, worker: Int32) -> Vector4Rows:
 
 
 @wp.func_native(_ROW)
-def own_vectors8(pool: Vector8Rows, worker: Int32) -> Vector8Rows:
+def own_candidates(pool: CandidateRows, worker: Int32) -> CandidateRows:
     """The row of a worker, as the row of every world."""
     ...
 
@@ -44,7 +44,7 @@ def pairs_of_worker(pairs: Pairs, work: PairWork, worker: Int32) -> Pairs:
     """The arrays of collision detection, with a worker's own workspace for a pair."""
     own = Pairs()
     own = pairs
-    own.candidate_terms = own_vectors8(work.worker_candidates, worker)
+    own.candidate = own_candidates(work.worker_candidate, worker)
     own.polygon_a = own_vectors3(work.worker_polygon_a, worker)
     own.polygon_b = own_vectors3(work.worker_polygon_b, worker)
     own.polygon_clipped = own_vectors3(work.worker_polygon_clipped, worker)
@@ -61,5 +61,5 @@ def pairs_with_candidates(pairs: Pairs, work: PairWork, i: Int32) -> Pairs:
     """The arrays of collision detection, with the candidates of a pair."""
     own = Pairs()
     own = pairs
-    own.candidate_terms = work.candidate_terms[:, MOST_CANDIDATES * i : MOST_CANDIDATES * (i + 1)]
+    own.candidate = work.candidate[:, MOST_CANDIDATES * i : MOST_CANDIDATES * (i + 1)]
     return own

@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet, place_shapes
-from carom.kernels.contact.candidates import add_candidate, candidate_distance, exchange, flip_candidates
+from carom.kernels.contact.candidates import add_candidate, exchange, flip_candidates
 from carom.kernels.contact.narrow_phase import collide_simple, in_order
 from carom.kernels.shapes.convex import nearest_or_deepest
 from carom.kernels.shapes.cores import Core, core_of
@@ -34,15 +34,13 @@ def nearest_convex(
         # If a face is flat on the plane, Bullet takes a particular one of its corners.
         return collide_plane_deepest(
             with_sharp_edges(core_a), shapes.vertex_position, pairs.shape_position[world, b],
-            pairs.shape_frame[world, b] * shapes.shape_size[b], max_distance, pairs.candidate_terms, world,
+            pairs.shape_frame[world, b] * shapes.shape_size[b], max_distance, pairs.candidate, world,
         )  # fmt: skip
     count = collide_simple(shapes, pairs, world, a, b, core_a, max_distance)
     if count >= 0:
         for row in range(1, count):
-            if candidate_distance(pairs.candidate_terms, world, row) < candidate_distance(
-                pairs.candidate_terms, world, 0
-            ):
-                exchange(pairs.candidate_terms, world, 0, row)
+            if pairs.candidate[world, row].distance < pairs.candidate[world, 0].distance:
+                exchange(pairs.candidate, world, 0, row)
         return wp.min(count, 1)
     core_b = core_of(shapes, pairs, world, b)
     rounding = core_a.radius + core_b.radius
@@ -52,7 +50,7 @@ def nearest_convex(
     distance -= rounding
     if distance > max_distance:
         return 0
-    return add_candidate(pairs.candidate_terms, world, 0, on_b + normal * core_b.radius, normal, distance)
+    return add_candidate(pairs.candidate, world, 0, on_b + normal * core_b.radius, normal, distance)
 
 
 @func
@@ -70,7 +68,7 @@ def nearest_in_order(
         distance, normal, point = nearest_on_surface(shapes, pairs, world, a, b, core_a, max_distance)
         if distance > max_distance:
             return 0
-        return add_candidate(pairs.candidate_terms, world, 0, point, normal, distance)
+        return add_candidate(pairs.candidate, world, 0, point, normal, distance)
     return nearest_convex(shapes, pairs, world, a, b, core_a, max_distance)
 
 
@@ -86,10 +84,10 @@ def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_
         b: Row of the other shape; the normal points from b towards a.
         max_distance: Largest distance of interest [m].
     """
-    order = in_order(shapes, a, b)
-    count = nearest_in_order(shapes, pairs, world, order[0], order[1], max_distance)
-    if order[0] != a:
-        flip_candidates(pairs.candidate_terms, world, count)
+    first, second = in_order(shapes, a, b)
+    count = nearest_in_order(shapes, pairs, world, first, second, max_distance)
+    if first != a:
+        flip_candidates(pairs.candidate, world, count)
     return count
 
 
@@ -117,7 +115,7 @@ def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, coun
             max_distance,
         ):
             if nearest(shapes, pairs, world, a, b, max_distance) == 1:
-                searches.search_found[world, found] = pairs.candidate_terms[world, 0]
+                searches.search_found[world, found] = pairs.candidate[world, 0]
                 searches.search_pair[world, found] = i
                 found += 1
     searches.search_count[world, 0] = found

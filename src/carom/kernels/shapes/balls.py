@@ -4,7 +4,8 @@ import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
 from carom.kernels.shapes.cores import Core, toward
-from carom.kernels.types import Int32, Vector3, Vector8Rows, func, real, shared_func
+from carom.kernels.structs import CandidateRows
+from carom.kernels.types import Int32, Vector3, func, real, shared_func
 from carom.layouts.codes import BOX
 
 TINY = real(1.0e-15)
@@ -60,7 +61,7 @@ def nearest_in_cylinder(point: Vector3, radius: real, half_length: real):
 
 @shared_func
 def collide_ball(
-    center: Vector3, radius: real, core: Core, max_distance: real, candidates: Vector8Rows, world: Int32
+    center: Vector3, radius: real, core: Core, max_distance: real, candidates: CandidateRows, world: Int32
 ) -> Int32:
     """Write the candidate of a sphere, shape a, on the core of a box or cylinder, shape b.
 

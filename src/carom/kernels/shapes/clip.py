@@ -6,7 +6,8 @@ from carom.kernels.contact.candidates import add_candidate
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.boxes import main_axis
 from carom.kernels.shapes.cores import Core
-from carom.kernels.types import Int32, Vector3, Vector3Rows, Vector8Rows, func, real, shared_func
+from carom.kernels.structs import CandidateRows
+from carom.kernels.types import Int32, Vector3, Vector3Rows, func, real, shared_func
 from carom.layouts.codes import BOX
 
 
@@ -86,7 +87,7 @@ def clip_faces(
     radius_a: real,
     radius_b: real,
     max_distance: real,
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     world: Int32,
     found: Int32,
 ) -> Int32:

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.contact.candidates import add_candidate, candidate_distance
+from carom.kernels.contact.candidates import add_candidate
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.shapes.clip import clip_faces
 from carom.kernels.shapes.cores import Core, support, toward
@@ -138,14 +138,14 @@ def collide_faces(
             arrange_box_corners(core_b, normal_b, pairs.polygon_b, world)
         count = clip_faces(
             core_a, pairs.polygon_a, count_a, normal_a, pairs.polygon_b, count_b, pairs.polygon_clipped,
-            normal, 1, core_a.radius, core_b.radius, max_distance, pairs.candidate_terms, world, found,
+            normal, 1, core_a.radius, core_b.radius, max_distance, pairs.candidate, world, found,
         )  # fmt: skip
     elif flat_b > FLAT_ON:
         if core_a.kind == BOX:
             arrange_box_corners(core_a, normal_a, pairs.polygon_a, world)
         count = clip_faces(
             core_b, pairs.polygon_b, count_b, normal_b, pairs.polygon_a, count_a, pairs.polygon_clipped,
-            normal, 0, core_a.radius, core_b.radius, max_distance, pairs.candidate_terms, world, found,
+            normal, 0, core_a.radius, core_b.radius, max_distance, pairs.candidate, world, found,
         )  # fmt: skip
     return count
 
@@ -173,9 +173,9 @@ def collide_convex(
     count = collide_faces(shapes, pairs, world, a, b, core_a, core_b, normal, max_distance, found)
     deepest = distance + 2.0 * DEEPER
     for row in range(found, count):
-        deepest = minimum(deepest, candidate_distance(pairs.candidate_terms, world, row))
+        deepest = minimum(deepest, pairs.candidate[world, row].distance)
     if count == found or distance < deepest - DEEPER:
         count = add_candidate(
-            pairs.candidate_terms, world, count, point_b + normal * core_b.radius, normal, distance
+            pairs.candidate, world, count, point_b + normal * core_b.radius, normal, distance
         )
     return count

@@ -127,23 +127,27 @@ def hull_face(
 
 
 @func
+def triangle_normal(core: Core) -> Vector3:
+    """Unit normal of a triangle, on the side from which its corners are counter-clockwise."""
+    a = column(core.frame, 0)
+    return wp.normalize(wp.cross(column(core.frame, 1) - a, column(core.frame, 2) - a))
+
+
+@func
 def triangle_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32) -> Vector3:
     """Write a triangle's corners, counter-clockwise as seen from the side to which `direction` points.
 
     Returns:
         The unit normal on this side.
     """
-    a = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
-    b = Vector3(core.frame[0, 1], core.frame[1, 1], core.frame[2, 1])
-    c = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
-    normal = wp.normalize(wp.cross(b - a, c - a))
-    polygon[world, 0] = core.position + a
+    normal = triangle_normal(core)
+    polygon[world, 0] = core.position + column(core.frame, 0)
     if wp.dot(normal, direction) >= 0.0:
-        polygon[world, 1] = core.position + b
-        polygon[world, 2] = core.position + c
+        polygon[world, 1] = core.position + column(core.frame, 1)
+        polygon[world, 2] = core.position + column(core.frame, 2)
         return normal
-    polygon[world, 1] = core.position + c
-    polygon[world, 2] = core.position + b
+    polygon[world, 1] = core.position + column(core.frame, 2)
+    polygon[world, 2] = core.position + column(core.frame, 1)
     return -normal
 
 

@@ -4,7 +4,8 @@ import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
 from carom.kernels.shapes.cores import Core, support
-from carom.kernels.types import Int32, Vector3, Vector3Rows, Vector8Rows, Vectors3, func, real, shared_func
+from carom.kernels.structs import CandidateRows
+from carom.kernels.types import Int32, Vector3, Vector3Rows, Vectors3, func, real, shared_func
 from carom.layouts.codes import BOX, HULL
 
 
@@ -20,7 +21,7 @@ def with_sharp_edges(core: Core) -> Core:
 
 @func
 def add_on_plane(
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     world: Int32,
     count: Int32,
     point: Vector3,
@@ -43,7 +44,7 @@ def collide_plane_deepest(
     origin: Vector3,
     normal: Vector3,
     max_distance: real,
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     world: Int32,
 ) -> Int32:
     """As `collide_plane`, but with the deepest point only."""
@@ -60,7 +61,7 @@ def collide_plane(
     origin: Vector3,
     normal: Vector3,
     max_distance: real,
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     world: Int32,
 ) -> Int32:
     """Write the candidates of shape a, a core, on shape b, a plane.

@@ -3,7 +3,8 @@
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
-from carom.kernels.types import Int32, Vector3, Vector8Rows, func, real, shared_func
+from carom.kernels.structs import CandidateRows
+from carom.kernels.types import Int32, Vector3, func, real, shared_func
 
 # Squared sine of the angle below which segments count as parallel.
 PARALLEL = real(1.0e-12)
@@ -54,7 +55,7 @@ def nearest_places(offset: Vector3, half_a: Vector3, half_b: Vector3):
 
 @func
 def add_round_contact(
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     world: Int32,
     count: Int32,
     point_a: Vector3,
@@ -85,7 +86,7 @@ def collide_segments(
     half_b: Vector3,
     radius_b: real,
     max_distance: real,
-    candidates: Vector8Rows,
+    candidates: CandidateRows,
     world: Int32,
 ) -> Int32:
     """Write the candidates of two segments with radii: one, or two if they are parallel side by side."""

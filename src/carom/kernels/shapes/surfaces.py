@@ -3,15 +3,10 @@
 import warp as wp
 
 from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
-from carom.kernels.contact.candidates import (
-    candidate_distance,
-    candidate_normal,
-    candidate_point,
-    exchange,
-    keep_four,
-)
+from carom.kernels.contact.candidates import exchange, keep_four
 from carom.kernels.shapes.convex import collide_convex, nearest_or_deepest
 from carom.kernels.shapes.cores import Core
+from carom.kernels.shapes.faces import triangle_normal
 from carom.kernels.shapes.triangles import (
     Region,
     first_cursor,
@@ -21,12 +16,10 @@ from carom.kernels.shapes.triangles import (
     triangle_corners,
     triangle_from,
 )
-from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Int32, Vector3, Vector8Rows, func, real, shared_func
+from carom.kernels.structs import CandidateRows, Pairs, Shapes
+from carom.kernels.types import Int32, Vector3, func, real, shared_func
 from carom.layouts.codes import SPHERE, TRIANGLES
 
-# Column of a candidate: 1 if the candidate is on the face of its triangle, 0 if it is at an edge.
-FLAT = 7
 # A candidate is on a face if the cosine of the angle between the normals of both is at least this.
 ON_FACE = real(0.999999)
 # Height above a face up to which an edge belongs to the face, in addition to the margin [m].
@@ -70,17 +63,17 @@ def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vec
     """
     count = first
     for row in range(first, last):
-        along = wp.dot(candidate_normal(pairs.candidate_terms, world, row), normal)
-        flat = wp.abs(along) >= ON_FACE
-        if flat or candidate_distance(pairs.candidate_terms, world, row) <= 0.0:
-            pairs.candidate_terms[world, count] = pairs.candidate_terms[world, row]
-            pairs.candidate_terms[world, count][FLAT] = wp.where(flat, real(1.0), real(0.0))
+        along = wp.dot(pairs.candidate[world, row].normal, normal)
+        on_face = wp.abs(along) >= ON_FACE
+        if on_face or pairs.candidate[world, row].distance <= 0.0:
+            pairs.candidate[world, count] = pairs.candidate[world, row]
+            pairs.candidate[world, count].on_face = Int32(on_face)
             count += 1
     return count
 
 
 @shared_func
-def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickness: real) -> Int32:
+def drop_inner_edges(candidates: CandidateRows, world: Int32, count: Int32, thickness: real) -> Int32:
     """Drop candidates at edges that lie in the plane of a touched face; returns the number left.
 
     The face carries the contact. The edge, as a candidate of a triangle in the same plane or beyond the end
@@ -89,12 +82,12 @@ def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickn
     kept = Int32(0)
     for row in range(count):
         needed = Int32(1)
-        if candidates[world, row][FLAT] == 0.0:
-            point = candidate_point(candidates, world, row)
+        if candidates[world, row].on_face == 0:
+            point = candidates[world, row].point
             for other in range(count):
-                if candidates[world, other][FLAT] == 1.0:
-                    offset = point - candidate_point(candidates, world, other)
-                    height = wp.dot(offset, candidate_normal(candidates, world, other))
+                if candidates[world, other].on_face == 1:
+                    offset = point - candidates[world, other].point
+                    height = wp.dot(offset, candidates[world, other].normal)
                     if wp.abs(height) <= thickness:
                         needed = Int32(0)
         if needed == 1:
@@ -102,15 +95,6 @@ def drop_inner_edges(candidates: Vector8Rows, world: Int32, count: Int32, thickn
             exchange(candidates, world, kept, row)
             kept += 1
     return kept
-
-
-@func
-def triangle_normal(core: Core) -> Vector3:
-    """Unit normal of a triangle."""
-    a = Vector3(core.frame[0, 0], core.frame[1, 0], core.frame[2, 0])
-    b = Vector3(core.frame[0, 1], core.frame[1, 1], core.frame[2, 1])
-    c = Vector3(core.frame[0, 2], core.frame[1, 2], core.frame[2, 2])
-    return wp.normalize(wp.cross(b - a, c - a))
 
 
 @func
@@ -145,12 +129,12 @@ def collide_surface(
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         found = collide_convex(shapes, pairs, world, a, b, core, triangle, max_distance, count)
         count = mark_flat(pairs, world, count, found, triangle_normal(triangle))
-        if count + ROOM > pairs.candidate_terms.shape[1]:
-            count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
-            count = keep_four(pairs.candidate_terms, world, count)
+        if count + ROOM > pairs.candidate.shape[1]:
+            count = drop_inner_edges(pairs.candidate, world, count, thickness)
+            count = keep_four(pairs.candidate, world, count)
         cursor = triangle_from(shapes, region, b, following_cursor(shapes, b, cursor))
-    count = drop_inner_edges(pairs.candidate_terms, world, count, thickness)
-    return keep_four(pairs.candidate_terms, world, count)
+    count = drop_inner_edges(pairs.candidate, world, count, thickness)
+    return keep_four(pairs.candidate, world, count)
 
 
 @func

@@ -110,9 +110,7 @@ def face_normal(corners: Matrix3) -> Vector3:
 
 
 @func
-def note_face(
-    soft: SoftModel, work: SoftWork, world: Int32, node: Int32, face: Int32, side: real, distance: real
-):
+def note_face(work: SoftWork, world: Int32, node: Int32, face: Int32, side: real, distance: real):
     """Store a face among the nearest faces of a node, unless there is no room and all of them are nearer."""
     first = FACES_PER_NODE * node
     count = work.node_faces[world, node]
@@ -174,7 +172,7 @@ def look_at_node(
         side = sign_of(wp.dot(offset, normal))
         if closed:
             side = real(1.0)
-        note_face(soft, work, world, node, face, side, distance)
+        note_face(work, world, node, face, side, distance)
 
 
 @func

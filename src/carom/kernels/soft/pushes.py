@@ -22,7 +22,7 @@ from carom.kernels.structs import Model, PairRows, Scratch, Settings, SoftWork, 
 from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import ROW_INVERSE_MASS
 from carom.layouts.soft import PUSH_ROWS
-from carom.layouts.status import STATUS, WELL
+from carom.layouts.status import OVERFLOW, STATUS, WELL
 
 
 @func
@@ -93,8 +93,9 @@ def add_push_rows(
     link: Int32,
     point: Vector3,
     axes: Matrix3,
-    place: Index4,
-) -> Index4:
+    row: Int32,
+    block: Int32,
+):
     """Add three rows that push a link at a point along the columns of `axes`.
 
     Args:
@@ -107,18 +108,18 @@ def add_push_rows(
         link: Its link.
         point: The point in world axes [m].
         axes: Directions, as columns.
-        place: Next free row, next free block, 0, 0.
+        row: Next free row.
+        block: Next free block.
 
     Returns:
-        `place` after these rows; its third number is 1 if there was no room.
+        Next free row and block; if there was no room, the given ones, and an overflow in the world's status.
     """
-    row = place[0]
-    block = place[1]
     if (
         row + PUSH_ROWS > pair_rows.row_start.shape[1]
         or block + PUSH_ROWS * tree_blocks(model, tree) > pair_rows.jacobian_row.shape[1]
     ):
-        return Index4(row, block, 1, 0)
+        state.status_entry[world, STATUS] = OVERFLOW
+        return row, block
     for i in range(PUSH_ROWS):
         direction = Vector3(axes[0, i], axes[1, i], axes[2, i])
         inverse_mass, _velocity, block = write_pair_jacobian(
@@ -127,7 +128,7 @@ def add_push_rows(
         )  # fmt: skip
         pair_rows.row_terms[world, row][ROW_INVERSE_MASS] = inverse_mass
         row += 1
-    return Index4(row, block, place[2], 0)
+    return row, block
 
 
 @func

@@ -23,9 +23,9 @@ from carom.kernels.structs import (
     SoftWork,
     State,
 )
-from carom.kernels.types import Index4, Int32, Vector3, func, kernel, real
+from carom.kernels.types import Int32, Vector3, func, kernel, real
 from carom.layouts.soft import BODIES
-from carom.layouts.status import OVERFLOW, STATUS, WELL
+from carom.layouts.status import STATUS, WELL
 
 # Largest phase of the fastest vibration in one small step [rad], as long as the number of small steps stays
 # within its limit.
@@ -176,15 +176,14 @@ def write_rows(
     world: Int32,
 ):
     """Write the rows of all touches and anchors; the status of the world tells if they do not fit."""
-    place = Index4(0, 0, 0, 0)
+    row = Int32(0)
+    block = Int32(0)
     for body in range(soft.count_soft[BODIES]):
-        place = write_touches(
-            settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, place
+        row, block = write_touches(
+            settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, row, block
         )
-    place = write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, place)
+    write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, row, block)
     wake_held(model, state, soft, world)
-    if place[2] != 0:
-        state.status_entry[world, STATUS] = OVERFLOW
 
 
 @func

@@ -22,7 +22,7 @@ from carom.kernels.structs import (
     SoftWork,
     State,
 )
-from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
 # Distance beyond the margin at which nodes of any speed have touches, as a share of the margin.
@@ -94,9 +94,7 @@ def keep_nearest(work: SoftWork, world: Int32, first: Int32, count: Int32, dista
 @func
 def find_node_touches(
     shapes: Shapes,
-    model: Model,
     state: State,
-    scratch: Scratch,
     pairs: Pairs,
     soft: SoftModel,
     work: SoftWork,
@@ -193,9 +191,7 @@ def find_touches(
             ):
                 near = Int32(0)
         if near == 1 and may_meet(shapes, model, settings, soft, body, shape):
-            find_node_touches(
-                shapes, model, state, scratch, pairs, soft, work, world, body, shape, dt, closing
-            )
+            find_node_touches(shapes, state, pairs, soft, work, world, body, shape, dt, closing)
 
 
 @func
@@ -210,12 +206,12 @@ def write_touches(
     work: SoftWork,
     world: Int32,
     body: Int32,
-    place: Index4,
-) -> Index4:
+    row: Int32,
+    block: Int32,
+):
     """Complete the touches that have been found for a body, with rows over the trees that they push.
 
-    Returns:
-        Next free row, next free block, 1 if there was no room, 0.
+    Rows are written from `row` and `block` on. Returns the next free row and block.
     """
     own = model.tree[soft.soft[body].tree].first_link
     first = soft.soft[body].first_node
@@ -240,11 +236,11 @@ def write_touches(
                 work.touch_velocity[world, touch] = point_velocity(
                     model, state, scratch, world, tree, link, point
                 )
-                work.touch_row[world, touch] = place[0]
-                place = add_push_rows(
-                    model, state, scratch, pair_rows, world, tree, link, point, tangents(normal), place
+                work.touch_row[world, touch] = row
+                row, block = add_push_rows(
+                    model, state, scratch, pair_rows, world, tree, link, point, tangents(normal), row, block
                 )
-    return place
+    return row, block
 
 
 @func
@@ -256,9 +252,10 @@ def write_anchors(
     soft: SoftModel,
     work: SoftWork,
     world: Int32,
-    place: Index4,
-) -> Index4:
-    """Write the anchors, with rows over the trees that they push; returns the same as `write_touches`."""
+    row: Int32,
+    block: Int32,
+):
+    """Write the anchors, with rows over the trees that they push, from `row` and `block` on."""
     for anchor in range(soft.count_soft[ANCHORS]):
         tree = soft.anchor[anchor].tree
         link = soft.anchor[anchor].link
@@ -272,8 +269,7 @@ def write_anchors(
             work.anchor_velocity[world, anchor] = point_velocity(
                 model, state, scratch, world, tree, link, point
             )
-            work.anchor_row[world, anchor] = place[0]
-            place = add_push_rows(
-                model, state, scratch, pair_rows, world, tree, link, point, wp.identity(3, real), place
+            work.anchor_row[world, anchor] = row
+            row, block = add_push_rows(
+                model, state, scratch, pair_rows, world, tree, link, point, wp.identity(3, real), row, block
             )
-    return place

@@ -87,9 +87,9 @@ int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
     return count;
 }
 
-PyObject* contact(int body_a, int body_b, int link_a, int link_b, const double* found) {
-    const Vector on_b = vector_at(found), normal = vector_at(found + 3), none = {0.0, 0.0, 0.0};
-    const double distance = found[6];
+PyObject* contact(int body_a, int body_b, int link_a, int link_b, const Candidate& found) {
+    const Vector on_b = vector_at(found.point), normal = vector_at(found.normal), none = {0.0, 0.0, 0.0};
+    const double distance = found.distance;
     Row row(14);
     row.add(0L);
     row.add(static_cast<long>(body_a));
@@ -144,15 +144,14 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
         nearest.first[i] = pairs[i].shape_a, nearest.second[i] = pairs[i].shape_b;
     }
     int found = 0, of[MOST_PAIRS];
-    double points[MOST_PAIRS][8];
+    Candidate points[MOST_PAIRS];
     if (count) {
         const Instead<int32_t> asked(nearest.count, count);
         const Instead<double> reach(nearest.max_distance, in[2] < FAR ? in[2] : FAR);
         run(nearest.search);
         for (found = 0; found < *nearest.found; ++found) {
             of[found] = nearest.pairs[found];
-            for (int k = 0; k < 8; ++k)
-                points[found][k] = nearest.points[8 * found + k];
+            points[found] = nearest.points[found];
         }
     }
     for (int i = 0; i < count; ++i)

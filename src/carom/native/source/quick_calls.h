@@ -65,6 +65,12 @@ struct Placement {
     int64_t has_bare_links;                    // there are links without shapes
 };
 
+// The struct of this name in `carom.layouts.contacts`: shape b is the second of a pair.
+struct Candidate {
+    double point[3], normal[3], distance;
+    int32_t on_face;
+};
+
 // The kernel that finds nearest points, its query, and the arrays of its results.
 struct PairSearch {
     KernelCall search;
@@ -73,7 +79,7 @@ struct PairSearch {
     int32_t *first, *second;
     int64_t room;
     const int32_t *found, *pairs;
-    const double* points;  // eight numbers for each pair: point on the second shape, normal, distance, unused
+    const Candidate* points;
 };
 
 // A step of the world with one substep.

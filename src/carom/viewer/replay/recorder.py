@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from threading import RLock
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from carom.checks import positive
@@ -77,9 +76,7 @@ class ReplayRecorder:
     def __enter__(self) -> ReplayRecorder:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()
 
     def look_from(

@@ -43,10 +43,10 @@ class PauseControl:
             self._origin = None
             self._changed.notify_all()
 
-    def let_through(self, steps: int = 1) -> None:
-        """Allows some steps, and stays paused after them."""
+    def let_through(self) -> None:
+        """Allows a step, and stays paused after it."""
         with self._changed:
-            self._steps += steps
+            self._steps += 1
             self._changed.notify_all()
 
     def set_speed(self, speed: float | None) -> None:
