@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.kernels.warp_types import warp_type
 from carom.layouts import chain, contacts, images, mechanism, model, motor_commands, parallel, queries, soft
-from carom.layouts.types import Rows, Struct
+from carom.layouts.types import Array, Rows, Struct
 
 if TYPE_CHECKING:
 
@@ -19,4 +19,5 @@ else:
 
     CandidateRows = warp_type(Rows[contacts.Candidate])
     ConstraintRows = warp_type(Rows[model.RowScratch])
+    Dofs = warp_type(Array[model.DofModel])
     DofRows = warp_type(Rows[model.DofScratch])
