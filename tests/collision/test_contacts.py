@@ -19,6 +19,12 @@ def turned(angle, axis=(0, 0, 1)):
     return (*(axis * np.sin(angle / 2)), np.cos(angle / 2))
 
 
+def product(first, second):
+    """Quaternion of the second turn, then the first."""
+    u, s, v, t = np.array(first[:3]), first[3], np.array(second[:3]), second[3]
+    return (*(s * v + t * u + np.cross(u, v)), s * t - u @ v)
+
+
 def sorted_rows(points):
     return np.array(sorted(np.round(points, 9).tolist()))
 
@@ -81,13 +87,27 @@ def test_a_box_turned_on_another_keeps_four_of_eight_points_that_span_the_overla
     assert area > 0.55
 
 
+def test_of_the_corners_of_two_boxes_the_deepest_stays():
+    turn = product(turned(0.002, (1, 0.3, 0)), turned(np.pi / 4))
+    scene = collided(box((0.5, 0.5, 0.5)), box((0.5, 0.5, 0.5), position=(0, 0, 0.997), orientation=turn))
+    points, distances = scene.contacts("point_b"), scene.contacts("distance")
+    assert len(points) == 4
+    # The upper box leans down where y is least; the first to be kept is the deepest.
+    assert np.argmin(distances) == 0
+    assert_allclose(points[0, 1], -0.5, atol=1e-4)
+    # The others are a quarter, half and three quarters around from it.
+    angles = np.arctan2(points[:, 1], points[:, 0])
+    assert_allclose(np.cos(angles - angles[0] - np.arange(4) * np.pi / 2), 1.0, atol=0.1)
+
+
 def test_crossed_box_edges_touch_in_one_point():
     first = box((2, 0.5, 0.5), orientation=turned(np.pi / 4, (1, 0, 0)))
     height = 2 * np.sqrt(0.5) - 0.001
     second = box((0.5, 2, 0.5), position=(0, 0, height), orientation=turned(np.pi / 4, (0, 1, 0)))
     scene = collided(first, second)
-    assert_allclose(scene.contacts("distance"), [-0.001], atol=1e-9)
-    assert_allclose(scene.contacts("point_a"), [[0, 0, np.sqrt(0.5)]], atol=1e-9)
+    # Edges count as deeper by 1e-5 times the half widths of both boxes, as in PyBullet.
+    assert_allclose(scene.contacts("distance"), [-0.00102], atol=1e-9)
+    assert_allclose(scene.contacts("point_a"), [[0, 0, np.sqrt(0.5) + 2e-5]], atol=1e-9)
     assert_allclose(scene.contacts("normal"), [[0, 0, -1]], atol=1e-9)
 
 

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, plane
 
 from carom.layouts.codes import Rolling
+from carom.layouts.contacts import HOLDING
 from carom.layouts.status import CONTACTS_WANTED
 
 RADIUS, HALF_LENGTH, BREAKING = 0.1, 0.15, 0.004
@@ -179,15 +180,52 @@ def test_a_cube_that_does_not_lie_flat_gathers_its_points(ground: str, tilt: flo
     assert len(scene.contacts("distance")) == points
 
 
-def test_a_box_that_rocks_on_a_plane_gathers_its_corners() -> None:
+@pytest.mark.parametrize(("ground", "counts"), [("plane", [1, 2, 3, 4]), ("box", [2, 4, 4, 4])])
+def test_a_box_that_rocks_gathers_its_corners(ground: str, counts: list[int]) -> None:
+    """On a plane one at a time; on a box those that touch, while those of before have not parted."""
     half = 0.05
-    scene = Scene([box((half, half, half), breaking=BREAKING), GROUNDS["plane"]])
+    scene = Scene([box((half, half, half), breaking=BREAKING), GROUNDS[ground]])
     found = []
     for roll, pitch in ((2e-3, 1e-3), (-2e-3, 1e-3), (-2e-3, -1e-3), (2e-3, -1e-3)):
-        scene.place(0, (0, 0, half), product(turn(0, roll), turn(1, pitch)))
+        # About one axis alone it touches boxes with two corners.
+        orientation = product(turn(0, roll), turn(1, pitch)) if ground == "plane" else turn(0, roll)
+        scene.place(0, (0, 0, half), orientation)
         scene.collide()
         found.append(len(scene.contacts("distance")))
-    assert found == [1, 2, 3, 4]
+    assert found == counts
+
+
+def _boxes_at_rest(holding: bool) -> Scene:
+    """Two cubes, the upper one turned by 0.2 on the lower; their contacts held before, or did not."""
+    half = 0.05
+    scene = Scene([box((half, half, half), breaking=BREAKING) for _ in range(2)])
+    scene.place(1, (0, 0, 2 * half - 1e-5), turn(2, 0.2))
+    scene.collide()
+    assert len(scene.contacts("distance")) == 4
+    scene.contacts("warm_start")[:] = HOLDING if holding else 1.0
+    return scene
+
+
+@pytest.mark.parametrize("holding", [True, False])
+def test_boxes_at_rest_keep_their_points(holding: bool) -> None:
+    scene = _boxes_at_rest(holding)
+    places = scene.contacts("local_a").copy()
+    # It leans a little the other way, so that another corner is the deepest.
+    scene.place(1, (0, 0, 0.1 - 1e-5), product(turn(1, 1e-5), turn(2, 0.2)))
+    scene.collide()
+    stayed = np.abs(scene.contacts("local_a") - places).max() < 1e-12
+    assert stayed == holding
+    # A point that replaces another one does not end warm starting.
+    assert scene.contacts("warm_start").min() >= 1.0
+
+
+def test_boxes_at_rest_that_turn_together_get_new_normals() -> None:
+    scene = _boxes_at_rest(holding=True)
+    together = turn(0, 1e-3)
+    for row, height in enumerate((0.0, 0.1 - 1e-5)):
+        scene.place(row, matrix(together) @ (0, 0, height), product(together, turn(2, 0.2 * row)))
+    scene.collide()
+    assert_allclose(scene.contacts("normal"), [matrix(together) @ (0, 0, -1)] * 4, atol=1e-9)
 
 
 def test_a_point_that_is_found_again_keeps_its_impulse_and_a_new_one_has_none() -> None:

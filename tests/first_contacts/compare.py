@@ -140,9 +140,8 @@ _DIFFERENCES = """
 On meshes and height fields PyBullet makes a point for each triangle it comes across; Carom leaves out what
 inner edges would only push sideways. So normals lean in PyBullet where here they are upright, points are
 more, and forces are shared out in another way, while their sum and the gap are the same.
-[Differences](../differences.md#contact) has what comes of it. On other shapes two cases are left: a cylinder
-that lands flat on a box has all its points at once here, and one more in each step in PyBullet; a tilted box
-meets the edge of another with two points, in PyBullet with one.
+[Differences](../differences.md#contact) has what comes of it. On other shapes one case is left: a cylinder
+that lands flat on a box has all its points at once here, and one more in each step in PyBullet.
 
 | case | steps later | gap here, there [mm] | points here, there | force here, there [N] |
 |---|---:|---:|---:|---:|"""

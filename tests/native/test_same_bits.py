@@ -14,11 +14,11 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "746268d82545f5a5",
-    "tied": "2a3a54cf08b535dd",
+    "stack": "049fea720f82e3e6",
+    "tied": "faf01227efb44600",
     "questions": "54d8874ff3d1bde4",
-    "images": "48d8e2adf97e0616",
-    "robots": "ddb089f9206e801e",
+    "images": "0523cd29c8d7021a",
+    "robots": "457b7ecf4d5579e5",
     "meshes": "75971d4db0801db0",
     "soft": "6306db71c491c0cb",
 }

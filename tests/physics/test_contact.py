@@ -111,7 +111,8 @@ def test_a_push_wakes_up_a_calm_stack() -> None:
         stack = [add_box(world, (0.0, 0.0, HALF + 2 * HALF * i)) for i in range(3)]
         world.step(240)
         stack[1].set_base_velocity((1.5, 0.0, 0.0), (0.0, 0.0, 0.0))
-        world.step(120)
+        # Later the upper box lands on an edge, and rounding decides which corner touches first.
+        world.step(60)
         places.append([place(box) for box in stack])
     assert places[0][1][0] > 0.02
     np.testing.assert_allclose(places[1], places[0], atol=2e-3)

@@ -33,6 +33,24 @@ def test_a_stack_at_rest_is_still_and_takes_hardly_a_sweep(height: int) -> None:
     assert max(np.abs(motion(box)).max() for box in stack) < 2e-5
 
 
+@pytest.mark.parametrize("turn", [1e-4, 0.02, 0.5])
+def test_a_stack_of_turned_boxes_is_still_and_takes_hardly_a_sweep(turn: float) -> None:
+    world = earth()
+    stack = _stack(world, 5)
+    for i, box in enumerate(stack):
+        angle = turn * math.sin(5.0 * i)
+        box.set_base_pose(place(box).tolist(), (0.0, 0.0, math.sin(angle / 2), math.cos(angle / 2)))
+    world.step(480)
+    start = [place(box) for box in stack]
+    taken = []
+    for _ in range(480):
+        world.step()
+        taken.append(_sweeps(world))
+    assert np.mean(taken) <= 2.0
+    assert max(np.abs(motion(box)).max() for box in stack) < 2e-5
+    np.testing.assert_allclose([place(box) for box in stack], start, atol=1e-6)
+
+
 def _pushed(box: Body, force: tuple[float, float, float], steps: int) -> None:
     for _ in range(steps):
         box.links[BASE].apply_force(force)

@@ -47,6 +47,9 @@ STALE, PLACED, IN_HIERARCHY = 0, 1, 2
 RADIX = 256
 # Column of `Contacts.count_contacts`: number of contacts.
 THERE = 0
+# Value of `Contacts.contact_warm_start` for contacts whose manifold held in the last step; others have at
+# most 1.
+HOLDING = 2.0
 # Maximum number of rows of a contact or a user constraint.
 ROWS_PER_PAIR = 6
 # Maximum number of vertices of EPA's polytope; it has up to twice as many faces.

@@ -211,18 +211,37 @@ def contact_with_substeps(p: Any) -> dict[str, Any]:
 
 @scenario()
 def boxes_tumble(p: Any) -> dict[str, Any]:
-    """Boxes thrown on an infinite plane, flat, tumbling and turning."""
+    """Boxes thrown on a plane and on a block, flat and tumbling, and others that fall on them turned."""
     results: dict[str, Any] = {}
-    for name, turn, spin in (
-        ("flat", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
-        ("tumbling", (0.1, 0.2, 0.3), (3.0, 2.0, 1.0)),
-        ("turning", (0.02, 0.01, 0.1), (0.0, 0.0, 5.0)),
-    ):
-        p.resetSimulation()
-        p.setGravity(0, 0, -10)
-        p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
-        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.12, 0.08])
-        box = p.createMultiBody(1.0, shape, -1, [0.0, 0.0, 0.12], p.getQuaternionFromEuler(turn))
-        p.resetBaseVelocity(box, [1.0, 0.2, -0.5], spin)
-        results |= under(name, simulate(p, 0.2, lambda b=box: base_motion(p, b), stride=1))
+    for ground in ("plane", "block"):
+        for name, turn, spin in (
+            ("flat", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+            ("tumbling", (0.1, 0.2, 0.3), (3.0, 2.0, 1.0)),
+            ("turned", (0.02, 0.01, 0.1), (0.0, 0.0, 5.0)),
+        ):
+            p.resetSimulation()
+            p.setGravity(0, 0, -10)
+            block = p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 0.5])
+            plane = p.createCollisionShape(p.GEOM_PLANE)
+            if ground == "plane":
+                p.createMultiBody(0, plane)
+            else:
+                p.createMultiBody(0, block, -1, [0, 0, -0.5])
+            shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.12, 0.08])
+            orientation = p.getQuaternionFromEuler(turn)
+            tilted = p.getQuaternionFromEuler([0.05, -0.03, 0.4])
+            lower = p.createMultiBody(1.0, shape, -1, [0.0, 0.0, 0.12], orientation)
+            upper = p.createMultiBody(1.0, shape, -1, [0.03, 0.02, 0.36], tilted)
+            p.resetBaseVelocity(lower, [0.5, 0.2, -0.5], spin)
+            p.resetBaseVelocity(upper, [0.4, 0.2, -1.0], [0.0, 0.0, 2.0])
+            motion = simulate(p, 0.2, lambda b=(lower, upper): _both(p, b), stride=1)
+            results |= under(f"{ground}/{name}", motion)
     return results
+
+
+def _both(p: Any, bodies: tuple[int, int]) -> dict[str, Any]:
+    return {
+        "position": [p.getBasePositionAndOrientation(body)[0] for body in bodies],
+        "orientation": [p.getBasePositionAndOrientation(body)[1] for body in bodies],
+        "velocity": [p.getBaseVelocity(body)[0] for body in bodies],
+    }

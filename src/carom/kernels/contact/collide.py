@@ -12,7 +12,8 @@ from carom.kernels.contact.contact_margins import (
     meets_beside,
     region_margin,
 )
-from carom.kernels.contact.gathering import AT_ONCE, find_new_point, gather
+from carom.kernels.contact.gathering import AT_ONCE, find_new_points
+from carom.kernels.contact.growing import gather
 from carom.kernels.contact.manifold import keep_previous, sides_of, skip_contacts, write_new_contact
 from carom.kernels.contact.narrow_phase import collide_shapes
 from carom.kernels.contact.sides import in_order_of_sides
@@ -112,7 +113,7 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, fi
     """Write the candidates of a pair, whose contacts of the last substep are [first, last).
 
     Returns:
-        The result of `find_new_point`, and the number of candidates if that result is `AT_ONCE`, else 0.
+        The result of `find_new_points`, and the number of candidates if that result is `AT_ONCE`, else 0.
     """
     if last == first and not (
         meets_beside(shapes, pairs, world, pair[0], pair[1])
@@ -121,7 +122,7 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, fi
         return Int32(AT_ONCE), Int32(0)
     max_distance = contact_margin(shapes, pairs, world, pair[0], pair[1], last > first)
     sides = in_order_of_sides(shapes, pair)
-    found = find_new_point(shapes, pairs, world, sides, max_distance, first, last)
+    found = find_new_points(shapes, pairs, world, sides, max_distance, first, last)
     count = Int32(0)
     if found == AT_ONCE:
         around = region_margin(shapes, pairs, world, pair[0], pair[1], last > first)

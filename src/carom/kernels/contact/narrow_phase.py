@@ -1,52 +1,45 @@
 """Narrow phase: contact candidates of a pair of shapes, by the kinds of the two."""
 
-import warp as wp
-
 from carom.kernels.contact.candidates import add_candidate, flip_candidates, keep_four
 from carom.kernels.shapes.balls import collide_ball
-from carom.kernels.shapes.boxes import APART, EDGES, box_axis, box_edge_points
-from carom.kernels.shapes.convex import collide_convex, collide_faces, face_towards
+from carom.kernels.shapes.box_faces import box_face_points
+from carom.kernels.shapes.boxes import APART, EDGES, FACE_A, box_axis, box_edge_point
+from carom.kernels.shapes.convex import collide_convex, face_towards
 from carom.kernels.shapes.cores import Core, core_of, segment_half
 from carom.kernels.shapes.planes import collide_plane, with_sharp_edges
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Int32, func, real
+from carom.kernels.types import Index4, Int32, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 
 
 @func
 def collide_boxes(
-    shapes: Shapes,
-    pairs: Pairs,
-    world: Int32,
-    a: Int32,
-    b: Int32,
-    core_a: Core,
-    core_b: Core,
-    max_distance: real,
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real
 ) -> Int32:
-    """Write the candidates of two boxes with sharp edges."""
-    sharp_a = with_sharp_edges(core_a)
-    sharp_b = with_sharp_edges(core_b)
-    code, normal, _gap = box_axis(
-        sharp_a.frame,
-        sharp_a.size,
-        sharp_b.frame,
-        sharp_b.size,
-        sharp_b.position - sharp_a.position,
-        max_distance,
-    )
-    count = Int32(0)
+    """Write the candidates of two boxes, whose edges are sharp."""
+    frame_a = pairs.shape_frame[world, a]
+    frame_b = pairs.shape_frame[world, b]
+    half_a = shapes.shape_size[a]
+    half_b = shapes.shape_size[b]
+    position_a = pairs.shape_position[world, a]
+    position_b = pairs.shape_position[world, b]
+    code, normal, gap = box_axis(frame_a, half_a, frame_b, half_b, position_b - position_a, max_distance)
+    if code == APART:
+        return 0
     if code >= EDGES:
-        point_a, point_b = box_edge_points(
-            sharp_a.frame, sharp_a.size, sharp_b.frame, sharp_b.size, sharp_a.position, sharp_b.position,
-            code, normal,
+        point_b = box_edge_point(frame_a, half_a, frame_b, half_b, position_a, position_b, code, normal)
+        return add_candidate(pairs.candidate, world, 0, point_b, normal, gap)
+    if code == FACE_A:
+        return box_face_points(
+            frame_a, half_a, position_a, -normal, frame_b, half_b, position_b, 1, max_distance,
+            pairs.polygon_a, pairs.polygon_clipped, pairs.candidate, world,
         )  # fmt: skip
-        count = add_candidate(pairs.candidate, world, 0, point_b, normal, wp.dot(point_a - point_b, normal))
-    elif code != APART:
-        count = collide_faces(shapes, pairs, world, a, b, sharp_a, sharp_b, normal, max_distance, 0)
-    return count
+    return box_face_points(
+        frame_b, half_b, position_b, normal, frame_a, half_a, position_a, 0, max_distance,
+        pairs.polygon_a, pairs.polygon_clipped, pairs.candidate, world,
+    )  # fmt: skip
 
 
 @func
@@ -89,7 +82,9 @@ def collide_simple(
         )  # fmt: skip
     elif kind_a == SPHERE and (kind_b == BOX or kind_b == CYLINDER):
         core_b = core_of(shapes, pairs, world, b)
-        count = collide_ball(core_a.position, core_a.radius, core_b, max_distance, pairs.candidate, world)
+        count = collide_ball(
+            core_a.position, core_a.radius, core_b, max_distance, pairs.candidate, world
+        )
     return count
 
 
@@ -103,6 +98,8 @@ def collide_in_order(
     if kind_a == PLANE or kind_a >= TRIANGLES:
         # Surfaces and planes make no contacts with each other.
         return 0
+    if kind_a == BOX and kind_b == BOX:
+        return collide_boxes(shapes, pairs, world, a, b, max_distance)
     core_a = core_of(shapes, pairs, world, a)
     if kind_b >= TRIANGLES:
         return collide_surface(shapes, pairs, world, a, b, core_a, max_distance, around)
@@ -110,8 +107,6 @@ def collide_in_order(
     if count >= 0:
         return count
     core_b = core_of(shapes, pairs, world, b)
-    if kind_a == BOX and kind_b == BOX:
-        return collide_boxes(shapes, pairs, world, a, b, core_a, core_b, max_distance)
     return collide_convex(shapes, pairs, world, a, b, core_a, core_b, max_distance, 0)
 
 
@@ -124,11 +119,11 @@ def rank(kind: Int32) -> Int32:
 
 
 @func
-def in_order(shapes: Shapes, a: Int32, b: Int32):
+def in_order(shapes: Shapes, a: Int32, b: Int32) -> Index4:
     """Two shapes in the order that the narrow phase expects."""
     if rank(shapes.shape_kind[a]) > rank(shapes.shape_kind[b]):
-        return b, a
-    return a, b
+        return Index4(b, a, 0, 0)
+    return Index4(a, b, 0, 0)
 
 
 @func
@@ -146,10 +141,10 @@ def collide_shapes(
         max_distance: Largest distance of a contact [m].
         around: Distance from the convex shape's bounds within which triangles are tested [m].
     """
-    first, second = in_order(shapes, a, b)
-    count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)
+    order = in_order(shapes, a, b)
+    count = collide_in_order(shapes, pairs, world, order[0], order[1], max_distance, around)
     if count > 4:
         count = keep_four(pairs.candidate, world, count)
-    if first != a:
+    if order[0] != a:
         flip_candidates(pairs.candidate, world, count)
     return count

@@ -1,11 +1,12 @@
 """Separating axis test of two boxes with sharp edges: finds the axis along which they overlap least."""
 
+import math
+
 import warp as wp
 
-from carom.kernels.maths.min_max import greatest_entry, least_entry, lower_corner
+from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import toward
-from carom.kernels.shapes.segments import nearest_places
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
 
 # Result of `box_axis`: the normal of a face of a, or of b; boxes too far apart; or 3 + 3 i + j for the edges
@@ -13,15 +14,17 @@ from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
 FACE_A, FACE_B, APART, EDGES = 0, 1, 2, 3
 # The gap of an edge axis must exceed that of a face axis by this share, so that contacts do not alternate.
 EDGE_SHARE = real(0.05)
-# It must be larger by this share of the smallest half extent as well: where boxes just touch, all gaps are
-# equal.
-EDGE_SIZE_SHARE = real(1.0e-4)
+# Edges reach further than they do by this share of the boxes' half extents: where boxes just touch, all gaps
+# are equal.
+EDGE_REACH = real(1.0e-5)
 # The gap of a face axis of b must exceed that of a face axis of a by this share.
 FACE_SHARE = real(1.0e-6)
 # Tolerance on the largest gap, as a share of the boxes' size: rounding must not decide whether boxes touch.
 TOUCHING_SHARE = real(1.0e-12)
 # Squared sine of the angle below which edges are parallel; the face axes are then sufficient.
-PARALLEL = real(1.0e-8)
+PARALLEL_SQ = real(math.ulp(1.0) ** 2)
+# Squared sine of the angle up to which edges have no nearest points.
+NEARLY_PARALLEL = real(1.0e-4)
 
 
 @func
@@ -84,8 +87,6 @@ def box_axis(
     if best > max_distance + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
         return Int32(APART), normal, best
 
-    thinnest = least_entry(lower_corner(half_a, half_b))
-    needed = best + EDGE_SHARE * wp.abs(best) + EDGE_SIZE_SHARE * thinnest
     pair = Int32(0)
     while pair < 9:
         i = pair // 3
@@ -94,22 +95,27 @@ def box_axis(
         j2 = (j + 2) % 3
         i1 = (i + 1) % 3
         i2 = (i + 2) % 3
-        length_sq = 1.0 - turn[i, j] * turn[i, j]
-        if length_sq > PARALLEL:
+        length_sq = turn[i1, j] * turn[i1, j] + turn[i2, j] * turn[i2, j]
+        if length_sq > PARALLEL_SQ:
             # Offset and extents of the boxes along the cross product of axis i of a with axis j of b.
             along = t[i2] * turn[i1, j] - t[i1] * turn[i2, j]
             max_distance_a = half_a[i1] * size[i2, j] + half_a[i2] * size[i1, j]
             max_distance_b = half_b[j1] * size[i, j2] + half_b[j2] * size[i, j1]
-            apart = wp.abs(along) - max_distance_a - max_distance_b
+            reach = max_distance_a + max_distance_b
+            reach += EDGE_REACH * (half_a[i1] + half_a[i2] + half_b[j1] + half_b[j2])
+            apart = wp.abs(along) - reach
+            # Gaps are negative where boxes overlap.
+            needed = best * (1.0 + EDGE_SHARE)
+            if best <= 0.0:
+                needed = best / (1.0 + EDGE_SHARE)
             # The length is at most 1: a negative gap is at most `apart`.
             if apart > needed or apart > 0.0:
-                gap = apart / wp.sqrt(length_sq)
-                if gap > needed:
-                    needed = gap
-                    best = gap
+                length = wp.sqrt(length_sq)
+                if apart / length > needed:
+                    best = apart / length
                     code = EDGES + pair
                     cross = wp.cross(column(frame_a, i), column(frame_b, j))
-                    normal = cross * (-toward(along, 1.0) / wp.sqrt(length_sq))
+                    normal = cross * (-toward(along, 1.0) / length)
         pair += 1
     if code >= EDGES and best > max_distance:
         return Int32(APART), normal, best
@@ -117,7 +123,7 @@ def box_axis(
 
 
 @shared_func
-def box_edge_points(
+def box_edge_point(
     frame_a: Matrix3,
     half_a: Vector3,
     frame_b: Matrix3,
@@ -126,8 +132,11 @@ def box_edge_points(
     center_b: Vector3,
     code: Int32,
     normal: Vector3,
-):
-    """Nearest points, on a and on b, of the edges that `box_axis` found."""
+) -> Vector3:
+    """Point on the edge of b that `box_axis` found, where it is nearest to the edge of a.
+
+    The middle of the edge of b, if the edges are nearly parallel.
+    """
     i = (code - EDGES) // 3
     j = (code - EDGES) % 3
     middle_a = center_a
@@ -139,7 +148,11 @@ def box_edge_points(
             middle_a += side_a * toward(-wp.dot(side_a, normal), half_a[k])
         if k != j:
             middle_b += side_b * toward(wp.dot(side_b, normal), half_b[k])
-    edge_a = column(frame_a, i) * half_a[i]
-    edge_b = column(frame_b, j) * half_b[j]
-    place_a, place_b = nearest_places(middle_a - middle_b, edge_a, edge_b)
-    return middle_a + edge_a * place_a, middle_b + edge_b * place_b
+    axis_a = column(frame_a, i)
+    axis_b = column(frame_b, j)
+    along = wp.dot(axis_a, axis_b)
+    sine_sq = 1.0 - along * along
+    if sine_sq <= NEARLY_PARALLEL:
+        return middle_b
+    offset = middle_a - middle_b
+    return middle_b + axis_b * ((wp.dot(axis_b, offset) - along * wp.dot(axis_a, offset)) / sine_sq)

@@ -19,7 +19,7 @@ from carom.kernels.solver.activity import is_asleep, squared_motion, stop
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
 from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.contacts import THERE
+from carom.layouts.contacts import HOLDING, THERE
 
 # Bits of `PairRows.tree_contacts`: the tree has contacts; some are not plain (see `is_plain`); some did not
 # hold in the last step; some are with links that cannot move (at the root: some of the whole island are).
@@ -44,8 +44,8 @@ RESTING_SWEEPS = 4
 NOT_RESTING, SOLVED, UNSOLVED, SOLVED_AND_HOLDS = 0, 1, 2, 3
 # Minimum squared ratio of friction to its bound for a contact that slides.
 SLIDING = real(1.0 - 1e-9)
-# Counter of a contact in a manifold block that holds; others have at most 1.
-HOLDS = real(2.0)
+# Counter of a contact in a manifold block that holds.
+HOLDS = real(HOLDING)
 # Number of steps without warm starting after one that did not converge.
 PAUSE = real(60.0)
 
