@@ -10,7 +10,7 @@ from carom.kernels.shapes.planes import collide_plane, with_sharp_edges
 from carom.kernels.shapes.segments import collide_segments
 from carom.kernels.shapes.surfaces import collide_surface
 from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, PLANE, SPHERE, TRIANGLES
 
 
@@ -119,11 +119,11 @@ def rank(kind: Int32) -> Int32:
 
 
 @func
-def in_order(shapes: Shapes, a: Int32, b: Int32) -> Index4:
+def in_order(shapes: Shapes, a: Int32, b: Int32):
     """Two shapes in the order that the narrow phase expects."""
     if rank(shapes.shape_kind[a]) > rank(shapes.shape_kind[b]):
-        return Index4(b, a, 0, 0)
-    return Index4(a, b, 0, 0)
+        return b, a
+    return a, b
 
 
 @func
@@ -141,10 +141,10 @@ def collide_shapes(
         max_distance: Largest distance of a contact [m].
         around: Distance from the convex shape's bounds within which triangles are tested [m].
     """
-    order = in_order(shapes, a, b)
-    count = collide_in_order(shapes, pairs, world, order[0], order[1], max_distance, around)
+    first, second = in_order(shapes, a, b)
+    count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)
     if count > 4:
         count = keep_four(pairs.candidate, world, count)
-    if order[0] != a:
+    if first != a:
         flip_candidates(pairs.candidate, world, count)
     return count
