@@ -19,7 +19,6 @@ def add_contact_rows(
     state: State,
     scratch: Scratch,
     shapes: Shapes,
-    contacts: Contacts,
     pair_rows: PairRows,
     terms: ContactTerms,
     world: Int32,

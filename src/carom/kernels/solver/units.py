@@ -119,8 +119,8 @@ def write_units(
             if pair_rows.terms[world, 0].friction[1] > 0.0 or pair_rows.terms[world, 0].friction[2] > 0.0:
                 torsion = Int32(1)
             row, block = add_contact_rows(
-                settings, model, state, scratch, shapes, contacts, pair_rows, pair_rows.terms[world, 0],
-                world, contact, row, block,
+                settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
+                row, block,
             )  # fmt: skip
             pair_rows.unit_code[world, units] = contact
         units += 1
