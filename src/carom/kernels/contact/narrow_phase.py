@@ -82,9 +82,7 @@ def collide_simple(
         )  # fmt: skip
     elif kind_a == SPHERE and (kind_b == BOX or kind_b == CYLINDER):
         core_b = core_of(shapes, pairs, world, b)
-        count = collide_ball(
-            core_a.position, core_a.radius, core_b, max_distance, pairs.candidate, world
-        )
+        count = collide_ball(core_a.position, core_a.radius, core_b, max_distance, pairs.candidate, world)
     return count
 
 
