@@ -101,12 +101,6 @@ class Interpreter(Stepper):
         self.run: Callable[[], None] = partial(library().perform, ctypes.byref(self._asked))
         self.address = ctypes.addressof(self._asked)
 
-    @property
-    def addresses(self) -> tuple[int, int]:
-        """The addresses of `carom_perform` and of its argument; valid while this interpreter exists."""
-        perform = ctypes.cast(library().perform, ctypes.c_void_p).value or 0
-        return perform, ctypes.addressof(self._asked)
-
     def load(self, program: Program) -> None:  # noqa: D102
         # Launches are updated in place when arrays move, so they usually stay the same.
         if program == self.program:

@@ -53,7 +53,7 @@ class QuickScene:
 
     def forget_detection(self) -> None:
         """Forget the addresses that detect collisions: settings may change before the next time."""
-        self.record.detection.perform = None
+        self.record.detection.run = None
 
     def forget_step(self) -> None:
         """Forget the addresses for steps."""
@@ -121,9 +121,8 @@ class QuickScene:
         called.function, called.bounds, called.arguments = find_poses.addresses()
         record.poses, record.poses_before = addressof(c_char.from_buffer(poses)), poses_before.ctypes.data
         record.pose_count, record.status = len(poses_before), status.ctypes.data
-        # The function last: without it the other addresses are not used.
-        perform, record.run = detector.addresses
-        record.perform = perform
+        # Last: without it the other addresses are not used.
+        record.run = detector.address
 
     def keep(self, *what: Any) -> None:
         """Keep the memory that addresses in the record point to, until they are forgotten."""

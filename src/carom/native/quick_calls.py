@@ -80,7 +80,6 @@ class Detection(ctypes.Structure):
     """Collision detection at the current coordinates of all bodies."""
 
     _fields_ = (
-        ("perform", ctypes.c_void_p),
         ("run", ctypes.c_void_p),
         ("find_poses", KernelCall),
         ("poses", ctypes.c_void_p),

@@ -42,7 +42,7 @@ def _boxes(client: int, count: int) -> list[int]:
 
 
 def _is_quick(client: int) -> bool:
-    return bool(clients[client].world.quick.record.detection.perform)
+    return bool(clients[client].world.quick.record.detection.run)
 
 
 def _found(client: int) -> Any:

@@ -16,7 +16,7 @@ import math
 import warp as wp
 
 from carom.kernels.contact.candidates import flip_candidates
-from carom.kernels.contact.narrow_phase import collide_shapes, in_order
+from carom.kernels.contact.narrow_phase import collide_boxes, in_order
 from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.queries.closest import nearest_convex
 from carom.kernels.shapes.cores import core_of
@@ -179,7 +179,7 @@ def find_new_points(
         if keeps_points(pairs, world, a, b, first, last):
             return 0
         # Only points that touch are new; previous ones stay up to the breaking distance.
-        return collide_shapes(shapes, pairs, world, a, b, 0.0, 0.0)
+        return collide_boxes(shapes, pairs, world, a, b, 0.0)
     if last > first:
         if not gathers(shapes, pairs, world, a, b, pairs.previous_normal[world, first]):
             return AT_ONCE

@@ -88,14 +88,14 @@ extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const C
 extern "C" CAROM_EXPORT int carom_detect_collisions(const double*, double*, const Call* call) {
     const Detection& detection = call->client->scene->detection;
     const Lock lock(*call->client);
-    if (!lock.is_held || !detection.perform)
+    if (!lock.is_held || !detection.run)
         return 0;
     const uint64_t bytes = detection.pose_count * sizeof(double);
     // Detection starts from the present poses. After a step the others are those at the start of its last substep,
     // which other functions have to return.
     __builtin_memcpy(detection.poses_before, detection.poses, bytes);
     detection.find_poses.function(detection.find_poses.bounds, detection.find_poses.arguments);
-    detection.perform(detection.run);
+    carom_perform(detection.run);
     __builtin_memcpy(detection.poses, detection.poses_before, bytes);
     return *detection.status == 0;
 }

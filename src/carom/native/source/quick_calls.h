@@ -36,8 +36,7 @@ struct KernelCall {
 
 // Collision detection at the current coordinates of all bodies.
 struct Detection {
-    void (*perform)(const void* run);  // null if the other fields are not filled
-    const void* run;
+    Run* run;  // null if the other fields are not filled
     KernelCall find_poses;
     double *poses, *poses_before;  // of all links; they are restored afterwards
     int64_t pose_count;
