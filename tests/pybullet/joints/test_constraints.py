@@ -211,3 +211,32 @@ def test_the_auxiliary_link_of_a_gear_is_reported_as_0_when_there_is_none(client
     assert driver == pytest.approx(2 * driven, abs=1e-9)
     p.changeConstraint(gear, gearAuxLink=1)
     assert p.getConstraintInfo(gear)[12] == 1
+
+
+def test_a_gear_corrects_its_error_less_the_position_of_the_auxiliary_joint(client: int) -> None:
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    arm = p.createMultiBody(
+        0,
+        linkMasses=[1.0] * 3,
+        linkCollisionShapeIndices=[ball] * 3,
+        linkVisualShapeIndices=[-1] * 3,
+        linkPositions=[[0, 0, 0.5]] * 3,
+        linkOrientations=[[0, 0, 0, 1]] * 3,
+        linkInertialFramePositions=[[0, 0, 0]] * 3,
+        linkInertialFrameOrientations=[[0, 0, 0, 1]] * 3,
+        linkParentIndices=[0] * 3,
+        linkJointTypes=[p.JOINT_REVOLUTE] * 3,
+        linkJointAxis=[[0, 0, 1]] * 3,
+    )
+    p.setJointMotorControlArray(arm, range(3), p.VELOCITY_CONTROL, forces=[0, 0, 0])
+    gear = p.createConstraint(arm, 0, arm, 1, p.JOINT_GEAR, [0, 0, 1], [0, 0, 0], [0, 0, 0])
+    p.changeConstraint(gear, gearRatio=1, gearAuxLink=2, relativePositionTarget=0.1, erp=0.1, maxForce=1000)
+    p.resetJointState(arm, 0, 0.2)
+    p.resetJointState(arm, 2, 0.3)
+    p.setJointMotorControl2(arm, 2, p.POSITION_CONTROL, 0.3, force=1000)
+    for _ in range(240):
+        p.stepSimulation()
+    # PyBullet's positions: 0.2 + 0 - 0.3 has become nearly 0.1.
+    assert [p.getJointState(arm, joint)[0] for joint in range(3)] == pytest.approx(
+        [0.299216, 0.099216, 0.3], abs=1e-6
+    )
