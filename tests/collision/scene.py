@@ -117,7 +117,7 @@ class Scene:
         }
         self.tables["shapes"].reserve({"shape": count, "link": count})
         self.tables["model"].reserve({"link": count, "tree": count})
-        self.tables["state"].reserve({"link": count})
+        self.tables["state"].reserve({"link": count, "tree": count})
         self.tables["scratch"].reserve({"link": count})
         self.tables["contacts"].reserve({"contact": contact_room})
         self.grow_scratch(count, pair_room)
