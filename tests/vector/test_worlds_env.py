@@ -152,6 +152,8 @@ def test_pictures_are_those_of_the_single_environment():
     expected = single.render().astype(int)
     # The light is another; where things are is not.
     assert np.corrcoef(second.astype(int).ravel(), expected.ravel())[0, 1] > 0.8
+    single.close()
+    many.close()
 
 
 def test_gymnasiums_wrappers_work_on_it():
