@@ -201,18 +201,18 @@ def test_a_handle_is_shifted_carried_and_turned(page: Page, viewer: Viewer):
     tip = knob("shift", 0)
     aim = [tip[0] + 0.25, tip[1], tip[2]]
     drag(page, page.page.evaluate(pixel, tip), page.page.evaluate(pixel, aim))
-    wait_for(lambda: handle.position[0] == pytest.approx(0.45, abs=0.01), page)
+    wait_for(lambda: handle.position == pytest.approx((0.45, 0.1, 0.3), abs=0.01), page)
     assert handle.position[1:] == pytest.approx((0.1, 0.3), abs=1e-9)
     middle = page.page.evaluate(pixel, knob("carry", None))
     drag(page, middle, [middle[0], middle[1] - 60])
-    wait_for(lambda: handle.position[2] > 0.35, page)
+    wait_for(lambda: handle.position[2] > 0.35 and handle.position == tuple(knob("carry", None)), page)
     # A quarter of a turn about the upward axis.
     spoke = knob("turn", 2)
     arm = [spoke[0] - handle.position[0], spoke[1] - handle.position[1]]
     aim = [handle.position[0] - arm[1], handle.position[1] + arm[0], spoke[2]]
     drag(page, page.page.evaluate(pixel, spoke), page.page.evaluate(pixel, aim))
-    wait_for(lambda: handle.orientation[3] < 0.9, page)
-    assert handle.orientation == pytest.approx((0, 0, math.sqrt(0.5), math.sqrt(0.5)), abs=0.03)
+    half = math.sqrt(0.5)
+    wait_for(lambda: handle.orientation == pytest.approx((0, 0, half, half), abs=0.03), page)
     assert page.page.evaluate("app.camera.yaw") == yaw
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,8 @@ class Watcher:
     """
 
     def __init__(self, address: str, **options: Any) -> None:
-        self._socket = connect(socket_address(address), **options)
+        self._closing = ExitStack()
+        self._socket = self._closing.enter_context(connect(socket_address(address), **options))
         self.shown: dict[tuple[str, Any], dict[str, Any]] = {}
         self.payloads: dict[tuple[str, Any], bytes] = {}
         self.frame: dict[str, Any] = {}
@@ -48,7 +50,7 @@ class Watcher:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._socket.close()
+        self._closing.close()
 
     def tell(self, kind: str, **facts: Any) -> None:
         self._socket.send(json.dumps({"type": kind, **facts}))
