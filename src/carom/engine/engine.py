@@ -315,14 +315,17 @@ class Engine:
 
     # Other tasks in all worlds
 
-    def task(self, make_launches: Callable[[KernelStructs], list[Launch]]) -> Task:
+    def task(
+        self, make_launches: Callable[[KernelStructs], list[Launch]], worlds_per_thread: int = 1
+    ) -> Task:
         """A task that runs in all worlds when it is called.
 
         Args:
             make_launches: Makes its launches over a thread's structs; it is called again after arrays have
                 moved. Each launch has an argument `first_world`.
+            worlds_per_thread: Each further thread has to have so many worlds.
         """
-        return Task(self, make_launches, self._make_task_interpreters())
+        return Task(self, make_launches, self._make_task_interpreters(), worlds_per_thread)
 
     def spread(self, table: str, field: str) -> None:
         """Give each world its own value of a parameter that was shared.
@@ -380,7 +383,7 @@ class Engine:
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
         """Run programs on some worlds, None for all; then restore the settings that `run_prepared` needs."""
-        if worlds is None and not scalars and len(interpreters) == 1:
+        if worlds is None and not scalars and self._counter is None:
             interpreters[0].run()
             return
         worlds = self._all_worlds if worlds is None else worlds
@@ -409,10 +412,12 @@ class Task:
         engine: Engine,
         make_launches: Callable[[KernelStructs], list[Launch]],
         interpreters: list[Stepper],
+        worlds_per_thread: int,
     ) -> None:
         self._engine = engine
         self._make_launches = make_launches
         self._interpreters = interpreters
+        self._worlds_per_thread = worlds_per_thread
         self._made_at = -1
 
     def renew(self) -> None:
@@ -424,7 +429,9 @@ class Task:
         if self._made_at != self._engine.changes:
             self._engine.load(self._interpreters, self._program)
             self._made_at = self._engine.changes
-        self._engine.run(self._interpreters, worlds)
+        count = self._engine.arrays.world_count if worlds is None else len(worlds)
+        threads = max(1, count // self._worlds_per_thread)
+        self._engine.run(self._interpreters[:threads], worlds)
 
     def _program(self, structs: KernelStructs) -> Program:
         return Program(begin=[], detection=self._make_launches(structs), motion=[], end=[], abandon=[])

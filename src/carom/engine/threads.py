@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from concurrent.futures import ThreadPoolExecutor
 
+# To wake up another thread takes about as long as the kinematics of so many worlds.
+WORLDS_PER_THREAD = 64
+
 
 class Threads:
     """Runs functions that release the GIL, each in a thread of its own.

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from carom.checks import Array
 from carom.engine.engine import Engine
+from carom.engine.threads import WORLDS_PER_THREAD
 from carom.layouts.queries import Touching
 from carom.native.kernels import touching_kernel
 from carom.native.launch import KernelStructs, Launch
@@ -47,7 +48,7 @@ class ContactFinder:
         self._anything = False
         # The two groups of links of the last query.
         self._asked: tuple[bytes, bytes] | None = None
-        self._find = engine.task(self._launches)
+        self._find = engine.task(self._launches, WORLDS_PER_THREAD)
 
     def summary(self, first: np.ndarray, second: np.ndarray | None, substep_time: float) -> ContactSummary:
         """Summary of the contacts of some links with others.

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.engine.engine import Engine
+from carom.engine.engine import Engine, Task
+from carom.engine.threads import WORLDS_PER_THREAD
 from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
+from carom.native.launch import Kernel, KernelStructs, Launch
 
 
 class PoseFinder:
@@ -19,13 +21,16 @@ class PoseFinder:
     def __init__(self, engine: Engine, tree: int) -> None:
         self._state = engine.arrays.state.numpy
         scalars = {"tree": tree, "first_world": 0}
-        self._place = engine.task(lambda structs: [structs.launch(forward_kinematics_kernel, **scalars)])
-        self._twist = engine.task(lambda structs: [structs.launch(link_twist_kernel, **scalars)])
-        self._move = engine.task(
-            lambda structs: [
-                structs.launch(kernel, **scalars) for kernel in (forward_kinematics_kernel, link_twist_kernel)
-            ]
-        )
+
+        def task(*kernels: Kernel) -> Task:
+            def launches(structs: KernelStructs) -> list[Launch]:
+                return [structs.launch(kernel, **scalars) for kernel in kernels]
+
+            return engine.task(launches, WORLDS_PER_THREAD)
+
+        self._place = task(forward_kinematics_kernel)
+        self._twist = task(link_twist_kernel)
+        self._move = task(forward_kinematics_kernel, link_twist_kernel)
 
     def update(self, worlds: np.ndarray) -> None:
         """Update `State.link_pose` of the tree in some worlds."""
