@@ -36,8 +36,12 @@ def main() -> None:
     matplotlib.rcParams["svg.hashsalt"] = "carom"
     import matplotlib.pyplot as plt
 
-    figure, panels = plt.subplots(1, len(asked.panels), figsize=(4.5 * len(asked.panels), 3.2), squeeze=False)
-    for panel, words in zip(panels[0], asked.panels, strict=True):
+    columns = min(len(asked.panels), 2)
+    rows = -(-len(asked.panels) // columns)
+    figure, panels = plt.subplots(rows, columns, figsize=(4.5 * columns, 3.2 * rows), squeeze=False)
+    for empty in panels.flat[len(asked.panels) :]:
+        empty.remove()
+    for panel, words in zip(panels.flat, asked.panels, strict=False):
         name, _, files = words.partition("=")
         for file, engine, colour in zip(files.split(","), ENGINES, COLOURS, strict=True):
             panel.plot(*curve_of(Path(file)), label=engine, color=colour)
