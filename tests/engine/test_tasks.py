@@ -30,4 +30,4 @@ def test_kinematics_of_few_worlds_wake_up_no_thread(
     alone.joint_positions[:] = batch.joint_positions[-1]
     assert np.array_equal(poses[-1], alone.link_poses[0])
     worlds.step()
-    assert used[-1] == 3
+    assert used[-1] == min(3, count)
