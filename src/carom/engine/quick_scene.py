@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
     from carom.engine.engine import Engine
     from carom.engine.interpreter import Interpreter
+    from carom.engine.parameters import EngineParameters
     from carom.model.builder import WorldArrays
     from carom.native.launch import Launch as KernelLaunch
     from carom.native.launch import TreeLaunch
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 # Names of attributes are interned.
 _NAMES = [intern(name) for name in SURFACE]
+# Without contacts, a step of so few links ends within some microseconds.
+_FEW_LINKS, _FEW_SWEEPS = 32, 100
 _MASS, _INERTIA, _FIXED_BASE = intern("mass"), intern("inertia"), intern("fixed_base")
 
 
@@ -83,18 +86,25 @@ class QuickScene:
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]
         _know(self.record.find_poses, launch)
 
-    def know_step(self, engine: Engine, time: c_double, observers: list[Any]) -> None:
+    def know_step(
+        self, engine: Engine, time: c_double, observers: list[Any], parameters: EngineParameters
+    ) -> None:
         """Set the addresses for steps of one substep.
 
         Args:
             engine: The engine, prepared.
             time: Simulated time [s], which steps advance.
             observers: The objects that are told of each step; while there are any, Python performs steps.
+            parameters: Parameters of the world.
         """
-        self._stepped = engine, time, observers
+        contacts = engine.contact_arrays.contacts.struct()
+        self._stepped = engine, time, observers, contacts
         record = self.record.step
         run, record.status, record.duration = engine.step_addresses()
         record.time, record.observers = addressof(time), id(observers)
+        sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations
+        is_small = engine.arrays.used["link"] <= _FEW_LINKS and not engine.contact_arrays.soft.bodies
+        record.contact_count = contacts.count_contacts.data if is_small and sweeps <= _FEW_SWEEPS else None
         # Last: without it the other addresses are not used.
         record.run = run
 

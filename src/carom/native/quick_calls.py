@@ -126,7 +126,10 @@ class PairSearch(ctypes.Structure):
 class Step(ctypes.Structure):
     """A step of the world with one substep, as `carom.engine.interpreter` performs it."""
 
-    _fields_ = tuple((name, ctypes.c_void_p) for name in ("run", "status", "duration", "time", "observers"))
+    _fields_ = tuple(
+        (name, ctypes.c_void_p)
+        for name in ("run", "status", "duration", "time", "observers", "contact_count")
+    )
 
 
 class Scene(ctypes.Structure):
@@ -250,7 +253,7 @@ class Client(ctypes.Structure):
         ("without_waiting", ctypes.c_void_p),
         ("connection", ctypes.c_void_p),
         ("time_step_name", ctypes.c_void_p),
-        ("analytics_name", ctypes.c_void_p),
+        ("reports_analytics", ctypes.c_int64),
         ("world_bodies", ctypes.c_void_p),
         ("joint_count_name", ctypes.c_void_p),
         ("encoded_names_name", ctypes.c_void_p),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = 7 * _DOUBLE, 6 * _DOUBLE, 8 * _DOUBLE
 # CPython interns names of attributes.
-_TIME_STEP, _ANALYTICS = sys.intern("time_step"), sys.intern("report_analytics")
+_TIME_STEP = sys.intern("time_step")
 _JOINT_COUNT, _NAMES = sys.intern("joint_count"), sys.intern("_encoded_names")
 _FIRST_ROOM = 16
 # Python handles bodies whose id is not less than this.
@@ -60,7 +60,7 @@ class QuickBodies:
             without_waiting=id(self._kept[3]),
             connection=id(client),
             time_step_name=id(_TIME_STEP),
-            analytics_name=id(_ANALYTICS),
+            reports_analytics=client.report_analytics,
             world_bodies=id(client.world.bodies),
             joint_count_name=id(_JOINT_COUNT),
             encoded_names_name=id(_NAMES),
@@ -72,6 +72,10 @@ class QuickBodies:
         if self._number is not None:
             self._clients[self._number] = None
             self._number = None
+
+    def report_analytics(self, value: bool) -> None:
+        """Tell the native library whether steps return statistics of the solver."""
+        self._record.reports_analytics = value
 
     # A script may end, or unload the module, without disconnecting.
     __del__ = close

@@ -43,7 +43,6 @@ class Client:
         origins: The calls that loaded bodies from files, by body id.
         plugins: Plugins the script has loaded.
         real_time: `useRealTimeSimulation` as the script set it.
-        report_analytics: Whether `stepSimulation` returns the statistics of the solver.
         server: The server for other processes, if there is one.
         search_path: Additional search directory of this connection.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all
@@ -58,6 +57,7 @@ class Client:
     """
 
     __slots__ = (
+        "_report_analytics",
         "bodies",
         "clock",
         "deformable",
@@ -67,7 +67,6 @@ class Client:
         "origins",
         "plugins",
         "real_time",
-        "report_analytics",
         "search_path",
         "server",
         "shapes",
@@ -80,13 +79,13 @@ class Client:
     latest_search_path: ClassVar[Path | None] = None
 
     def __init__(self, method: int, world: World, bodies: BodyTable, window: Window) -> None:
+        self._report_analytics = False
         self.method = method
         self.world = world
         self.bodies = bodies
         self.window = window
         self.time_step = world.parameters.time_step
         self.real_time = 0
-        self.report_analytics = False
         self.deformable = False
         self.search_path: Path | None = None
         self.shapes = ShapeRegistry()
@@ -98,6 +97,17 @@ class Client:
         self.server: Served | None = None
         self.lock = RLock()
         bodies.client = self
+
+    @property
+    def report_analytics(self) -> bool:
+        """Whether `stepSimulation` returns the statistics of the solver."""
+        return self._report_analytics
+
+    @report_analytics.setter
+    def report_analytics(self, value: bool) -> None:
+        self._report_analytics = value
+        if self.bodies.quick is not None:
+            self.bodies.quick.report_analytics(value)
 
     def body(self, body_id: Any) -> Body | None:
         """The body with an id, or None; raises `TypeError` if the id is not an integer."""

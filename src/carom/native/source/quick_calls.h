@@ -88,6 +88,7 @@ struct Step {
     const double* duration;
     double* time;         // of the world
     PyObject* observers;  // the list of objects that Python tells of steps
+    const int32_t* contact_count;  // in a world of few links; null in others
 };
 
 // Data derived from the bodies and arrays of a world; functions are null if their data are missing.
@@ -179,7 +180,8 @@ struct Client {
     // Two methods of the lock that is held while the world changes, and the arguments of `acquire`.
     PyObject *acquire, *release, *without_waiting;
     // An object, and the name of its attribute with the duration of a step.
-    PyObject *connection, *time_step_name, *analytics_name;
+    PyObject *connection, *time_step_name;
+    int64_t reports_analytics;  // 1 if steps return statistics of the solver, which Python makes
     // A dictionary with the Python objects of the bodies, by number, and names of attributes of these.
     PyObject *world_bodies, *joint_count_name, *encoded_names_name;
 };

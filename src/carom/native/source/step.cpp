@@ -12,14 +12,15 @@ struct Kept {
     PyObject* object;
 };
 
-bool reports_analytics(const Client& client) {
-    PyObject* value = python.PyObject_GetAttr(client.connection, client.analytics_name);
-    if (!value) {
-        python.PyErr_Clear();
-        return true;
+// Performs a step. Other threads run meanwhile, unless the step ends before they could begin.
+void perform(const Step& step) {
+    if (step.contact_count && !*step.contact_count) {
+        carom_perform(step.run);
+        return;
     }
-    python.Py_DecRef(value);
-    return value != python.False;
+    void* thread = python.PyEval_SaveThread();
+    carom_perform(step.run);
+    python.PyEval_RestoreThread(thread);
 }
 
 }  // namespace
@@ -31,12 +32,10 @@ extern "C" CAROM_EXPORT PyObject* carom_step(const double* in, const Call* call)
     const Kept connection(client.connection);
     const Lock lock(client);
     const Step& step = client.scene->step;
-    if (!lock.is_held || !step.run || python.PyList_Size(step.observers) || reports_analytics(client))
+    if (!lock.is_held || !step.run || python.PyList_Size(step.observers) || client.reports_analytics)
         return nullptr;
     const Instead<int32_t> repeatable(&step.run->repeatable, 1);
-    void* thread = python.PyEval_SaveThread();
-    carom_perform(step.run);
-    python.PyEval_RestoreThread(thread);
+    perform(step);
     if (*step.status)
         return nullptr;
     *step.time += *step.duration;
