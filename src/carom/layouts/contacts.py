@@ -5,6 +5,7 @@ of the same two shapes, in contiguous rows; manifolds are sorted by the lower, t
 """
 
 from carom.layouts.types import (
+    Index2Rows,
     Index4,
     Index4Rows,
     Int32,
@@ -143,8 +144,8 @@ class Pairs:
     node_upper: Vector3Rows
     bucket_end: IntRows  # of a radix sort
 
-    pair_shapes: Index4Rows  # shape a, shape b, 0, 0; sorted
-    pair_found: Index4Rows  # the same in the order in which they were found
+    pair_shapes: Index2Rows  # the lower and the higher shape row; sorted
+    pair_found: Index2Rows  # the same in the order in which they were found
 
     candidate: Rows[Candidate]
     polygon_a: Vector3Rows  # corners of touching faces
