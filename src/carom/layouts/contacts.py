@@ -26,7 +26,6 @@ from carom.layouts.types import (
     Vector4,
     Vector4Rows,
     Vector8,
-    Vector8Rows,
     Vectors3,
     Vectors4,
     real,
@@ -293,12 +292,26 @@ class ContactTerms:
 
 
 @struct
+class RowTerms:
+    """Data of a row over two trees."""
+
+    share: real  # impulse that would cause the whole requested change of rate if there were no others
+    effective_mass: real
+    inverse_mass: real
+    lower: real  # bounds of the impulse
+    upper: real
+    impulse: real
+    softness: real  # share of the impulse by which the row yields
+    friction: real  # coefficient
+
+
+@struct
 class PairRows:
     """Constraint rows over up to two trees, manifold blocks, and islands: intermediate results."""
 
     row_place: Index4Rows  # first block in `delta_velocity` and number of blocks, of a and of b
     row_start: IntRows  # first block of the row in `jacobian_row`: blocks of a, then blocks of b
-    row_terms: Vector8Rows  # see the ROW_ columns in `codes`
+    row_terms: Rows[RowTerms]
     row_bound: IntRows  # row whose impulse bounds that of this row, -1 for none
     jacobian_row: Vector4Rows
     jacobian_response: Vector4Rows  # inverse mass matrix times the transposed row
