@@ -1,7 +1,7 @@
 """Bounds of friction by themselves: what one relaxation of a contact's rows makes of their impulses."""
 
 # Kernel code is checked by Warp, not by the Python type checker.
-# pyright: reportCallIssue=false, reportAttributeAccessIssue=false
+# pyright: reportCallIssue=false, reportAttributeAccessIssue=false, reportArgumentType=false
 
 from __future__ import annotations
 
