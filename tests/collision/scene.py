@@ -281,7 +281,7 @@ class Scene:
     @property
     def pairs(self) -> list[tuple[int, int]]:
         count = self.numpy("pairs")["count_pairs"][0, 0]
-        return [tuple(pair[:2]) for pair in self.numpy("pairs")["pair_shapes"][0, :count].tolist()]
+        return [tuple(pair) for pair in self.numpy("pairs")["pair_shapes"][0, :count].tolist()]
 
     def contacts(self, name: str) -> np.ndarray:
         """A field of the present contacts, without `contact_`."""

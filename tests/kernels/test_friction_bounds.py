@@ -1,7 +1,7 @@
 """Bounds of friction by themselves: what one relaxation of a contact's rows makes of their impulses."""
 
 # Kernel code is checked by Warp, not by the Python type checker.
-# pyright: reportCallIssue=false, reportAttributeAccessIssue=false
+# pyright: reportCallIssue=false, reportAttributeAccessIssue=false, reportArgumentType=false
 
 from __future__ import annotations
 
@@ -18,19 +18,9 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 import warp as wp
 
 from carom.kernels.solver.sweeps import relax_contact_friction
-from carom.kernels.structs import PairRows, Scratch, Settings
-from carom.kernels.types import Index4, Int32, RealRows, Vector4, Vector8, kernel, real
-from carom.layouts.codes import (
-    LATERAL_ROW,
-    ROLLING_ROW,
-    ROW_EFFECTIVE_MASS,
-    ROW_FRICTION,
-    ROW_IMPULSE,
-    ROW_INVERSE_MASS,
-    ROW_SHARE,
-    ROW_SOFTNESS,
-    SPINNING_ROW,
-)
+from carom.kernels.structs import PairRows, RowTerms, Scratch, Settings
+from carom.kernels.types import Index4, Int32, RealRows, Vector4, kernel, real
+from carom.layouts.codes import LATERAL_ROW, ROLLING_ROW, SPINNING_ROW
 
 # Rows of the only contact: its normal, two lateral, two rolling, one spinning.
 FIRST = {LATERAL_ROW: 1, ROLLING_ROW: 3, SPINNING_ROW: 5}
@@ -50,7 +40,7 @@ class Rows:
     """Six rows on one body of four freedoms.
 
     Attributes:
-        terms: (6, 8), as `PairRows.row_terms`.
+        terms: (6,), as `PairRows.row_terms`.
         jacobian: (6, 4).
         response: (6, 4), what an impulse does to the velocities.
         velocity: (4,), what has been changed so far.
@@ -66,7 +56,7 @@ class Rows:
         setting, scratch, pair_rows = Settings(), Scratch(), PairRows()
         setting.cone_friction = int(cone)
         answers = np.zeros((1, 1))
-        terms = array(self.terms, Vector8)
+        terms = array(self.terms, RowTerms)
         velocity = array(self.velocity[None], Vector4)
         pair_rows.row_terms = terms
         pair_rows.row_place = array(np.tile([0, 1, 0, 0], (6, 1)), Index4)
@@ -79,7 +69,7 @@ class Rows:
         rows = wp.array2d(answers, dtype=real, device="cpu", copy=False)
         inputs = [setting, scratch, pair_rows, kind, rows]
         wp.launch(relax_contact_friction_kernel, dim=1, inputs=inputs, device="cpu")
-        return terms.numpy()[0, :, ROW_IMPULSE], velocity.numpy()[0, 0], answers[0, 0]
+        return terms.numpy()["impulse"][0], velocity.numpy()[0, 0], answers[0, 0]
 
 
 def array(rows: np.ndarray, dtype: Any) -> Any:
@@ -91,16 +81,16 @@ def random_rows(seed: int, normal_impulse: float) -> Rows:
     random = np.random.default_rng(seed)
     jacobian = random.normal(size=(6, 4))
     response = jacobian * random.uniform(0.1, 2.0)
-    terms = np.zeros((6, 8))
-    terms[:, ROW_INVERSE_MASS] = (jacobian * response).sum(axis=1)
-    terms[:, ROW_EFFECTIVE_MASS] = 1.0 / terms[:, ROW_INVERSE_MASS]
-    terms[:, ROW_SHARE] = random.normal(size=6)
-    terms[:, ROW_SOFTNESS] = random.uniform(0.0, 0.5, 6)
-    terms[:, ROW_IMPULSE] = random.normal(size=6) * 0.2
-    terms[:, ROW_FRICTION] = random.uniform(0.0, 1.0, 6)
+    terms = np.zeros(6, dtype=RowTerms.numpy_dtype())
+    terms["inverse_mass"] = (jacobian * response).sum(axis=1)
+    terms["effective_mass"] = 1.0 / terms["inverse_mass"]
+    terms["share"] = random.normal(size=6)
+    terms["softness"] = random.uniform(0.0, 0.5, 6)
+    terms["impulse"] = random.normal(size=6) * 0.2
+    terms["friction"] = random.uniform(0.0, 1.0, 6)
     # The two of a pair have one coefficient.
-    terms[[2, 4], ROW_FRICTION] = terms[[1, 3], ROW_FRICTION]
-    terms[0, ROW_IMPULSE] = normal_impulse
+    terms["friction"][[2, 4]] = terms["friction"][[1, 3]]
+    terms["impulse"][0] = normal_impulse
     return Rows(terms, jacobian, response, random.normal(size=4) * 0.1)
 
 
@@ -108,9 +98,9 @@ def wanted(rows: Rows, row: int, velocity: np.ndarray) -> float:
     """Impulse that a row would have without bounds."""
     terms = rows.terms[row]
     return float(
-        terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
-        + terms[ROW_SHARE]
-        - rows.jacobian[row] @ velocity * terms[ROW_EFFECTIVE_MASS]
+        terms["impulse"] * (1.0 - terms["softness"])
+        + terms["share"]
+        - rows.jacobian[row] @ velocity * terms["effective_mass"]
     )
 
 
@@ -124,9 +114,9 @@ def test_no_more_than_the_coefficient_times_the_normal_impulse(
     seed: int, normal: float, kind: int, cone: bool
 ) -> None:
     rows = random_rows(seed, normal)
-    before = rows.terms[:, ROW_IMPULSE].copy()
+    before = rows.terms["impulse"].copy()
     impulses, velocity, _ = rows.relax(kind, cone)
-    bound = rows.terms[FIRST[kind], ROW_FRICTION] * normal
+    bound = rows.terms["friction"][FIRST[kind]] * normal
     own = impulses[ROWS[kind]]
     size = np.linalg.norm(own) if cone else np.abs(own).max()
     assert size <= bound * (1.0 + 1e-12)
@@ -145,10 +135,10 @@ def test_in_the_cone_both_directions_are_cut_alike(seed: int, normal: float, kin
     impulses, _, change = rows.relax(kind, cone=True)
     first = FIRST[kind]
     free = np.array([wanted(rows, first + i, rows.velocity) for i in range(2)])
-    bound = rows.terms[first, ROW_FRICTION] * normal
+    bound = rows.terms["friction"][first] * normal
     expected = free * min(1.0, bound / np.linalg.norm(free))
     np.testing.assert_allclose(impulses[ROWS[kind]], expected, atol=1e-12)
-    changes = (expected - rows.terms[ROWS[kind], ROW_IMPULSE]) * rows.terms[ROWS[kind], ROW_INVERSE_MASS]
+    changes = (expected - rows.terms["impulse"][ROWS[kind]]) * rows.terms["inverse_mass"][ROWS[kind]]
     assert change == pytest.approx(changes.sum() ** 2, rel=1e-9, abs=1e-14)
 
 
@@ -157,15 +147,15 @@ def test_in_the_cone_both_directions_are_cut_alike(seed: int, normal: float, kin
 def test_without_the_cone_each_direction_is_cut_by_itself(seed: int, normal: float, kind: int) -> None:
     rows = random_rows(seed, normal)
     impulses, _, change = rows.relax(kind, cone=False)
-    bound = rows.terms[FIRST[kind], ROW_FRICTION] * normal
+    bound = rows.terms["friction"][FIRST[kind]] * normal
     velocity, changes = rows.velocity.copy(), []
     for row in range(6)[ROWS[kind]]:
         # The second feels what the first has done.
         expected = np.clip(wanted(rows, row, velocity), -bound, bound)
         assert impulses[row] == pytest.approx(expected, abs=1e-12)
-        step = expected - rows.terms[row, ROW_IMPULSE]
+        step = expected - rows.terms["impulse"][row]
         velocity += step * rows.response[row]
-        changes.append(abs(step * rows.terms[row, ROW_INVERSE_MASS]))
+        changes.append(abs(step * rows.terms["inverse_mass"][row]))
     assert change == pytest.approx(max(changes) ** 2, rel=1e-9, abs=1e-14)
 
 
@@ -174,7 +164,7 @@ def test_without_the_cone_each_direction_is_cut_by_itself(seed: int, normal: flo
 def test_what_is_not_pressed_is_not_relaxed(cone: bool, kind: int) -> None:
     rows = random_rows(1, 0.0)
     impulses, velocity, change = rows.relax(kind, cone)
-    np.testing.assert_array_equal(impulses, rows.terms[:, ROW_IMPULSE])
+    np.testing.assert_array_equal(impulses, rows.terms["impulse"])
     np.testing.assert_array_equal(velocity, rows.velocity)
     assert change == 0.0
 

@@ -20,7 +20,7 @@ from carom.kernels.contact.broad_phase import sort_pairs
 from carom.kernels.contact.hierarchy import sort_by_code
 from carom.kernels.solver.contact_order import sort_manifolds
 from carom.kernels.structs import PairRows, Pairs, Settings
-from carom.kernels.types import Index4, Int32, kernel
+from carom.kernels.types import Index2, Int32, kernel
 from carom.layouts.contacts import PAIRS, RADIX
 
 codes = st.lists(st.one_of(st.integers(0, 3), st.integers(0, 2**31 - 1)), max_size=300)
@@ -77,19 +77,19 @@ def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, in
     random.shuffle(rows)
     room = 80
     pairs = Pairs()
-    filled = np.zeros((1, room, 4), dtype=np.int32)
-    filled[0, : len(rows), :2] = np.array(rows).reshape(-1, 2)
+    filled = np.zeros((1, room, 2), dtype=np.int32)
+    filled[0, : len(rows)] = np.array(rows).reshape(-1, 2)
     counts = np.zeros((1, 8), dtype=np.int32)
     counts[0, PAIRS] = len(rows)
-    pairs.pair_found = wp.array(filled, dtype=Index4, device="cpu")
-    pairs.pair_shapes = wp.zeros((1, room), dtype=Index4, device="cpu")
+    pairs.pair_found = wp.array(filled, dtype=Index2, device="cpu")
+    pairs.pair_shapes = wp.zeros((1, room), dtype=Index2, device="cpu")
     pairs.shape_pair_end = integers([0] * 13)
     pairs.count_pairs = wp.array(counts, dtype=Int32, device="cpu")
     setting = Settings()
     setting.shape_count = 13
     wp.launch(sort_pairs_kernel, dim=1, inputs=[setting, pairs], device="cpu")
     kept = pairs.pair_shapes.numpy()[0]
-    assert [tuple(row[:2]) for row in kept[: len(rows)].tolist()] == sorted(rows)
+    assert [tuple(row) for row in kept[: len(rows)].tolist()] == sorted(rows)
     assert not kept[len(rows) :].any()
     # Where the pairs of each first shape end.
     ends = np.searchsorted([a for a, _ in sorted(rows)], range(13), side="right")

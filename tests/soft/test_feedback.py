@@ -43,13 +43,23 @@ def sleeping_box() -> int:
     return box
 
 
-def test_a_soft_body_wakes_what_it_hits(tmp_path: object) -> None:
-    box = sleeping_box()
+def place_after_hit(tmp_path: object, box: int) -> tuple[float, float, float]:
     cube = solid(tmp_path, [-0.6, 0, 0.25], 2.0)
     p.resetBaseVelocity(cube, [3, 0, 0])
     for _ in range(120):
         p.stepSimulation()
-    assert p.getBasePositionAndOrientation(box)[0][0] > 0.1
+    return p.getBasePositionAndOrientation(box)[0]
+
+
+def test_a_soft_body_wakes_what_it_hits(tmp_path: object) -> None:
+    assert place_after_hit(tmp_path, sleeping_box())[0] > 0.1
+
+
+def test_a_soft_body_does_not_wake_what_may_not_wake_up(tmp_path: object) -> None:
+    box = sleeping_box()
+    place = p.getBasePositionAndOrientation(box)[0]
+    p.changeDynamics(box, -1, activationState=p.ACTIVATION_STATE_DISABLE_WAKEUP)
+    assert place_after_hit(tmp_path, box) == place
 
 
 def test_a_soft_body_wakes_what_holds_it(tmp_path: object) -> None:

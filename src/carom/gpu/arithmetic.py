@@ -21,10 +21,6 @@ def _clip(value: Any, least: Any, greatest: Any) -> DeviceArray:
     return combine(LEAST, raised, here.real(greatest))
 
 
-def _broadcast_to(value: DeviceArray, shape: Sequence[int]) -> DeviceArray:
-    return value.spread(shape)
-
-
 def _concatenate(values: Sequence[Any], axis: int = 0) -> DeviceArray:
     arrays = [_any(*values).real(value) for value in values]
     axis %= arrays[0].ndim
@@ -49,7 +45,7 @@ def _cross(first: Any, second: Any) -> DeviceArray:
 NUMPY_FUNCTIONS.update(
     {
         np.clip: _clip,
-        np.broadcast_to: _broadcast_to,
+        np.broadcast_to: DeviceArray.spread,
         np.concatenate: _concatenate,
         np.cross: _cross,
     }

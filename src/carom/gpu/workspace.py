@@ -168,7 +168,7 @@ def _pair_work(extent: Extent) -> dict[str, tuple[int, ...]]:
     room = scratch_capacity(extent.shapes, extent.contacts)
     shapes: dict[str, tuple[int, ...]] = {
         "world_kept": (extent.worlds,),
-        "pair_found": (extent.worlds, max(1, extent.pairs)),
+        "pair_result": (extent.worlds, max(1, extent.pairs)),
         "candidate": (extent.worlds, max(1, MOST_CANDIDATES * extent.pairs)),
     }
     for name in PairWork.fields:

@@ -102,10 +102,6 @@ MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 
-# Columns of `PairRows.row_terms`, the data of rows over two trees. ROW_SHARE is the impulse that would
-# cause the whole requested change of rate if there were no other impulses.
-ROW_SHARE, ROW_EFFECTIVE_MASS, ROW_INVERSE_MASS, ROW_LOWER, ROW_UPPER, ROW_IMPULSE = 0, 1, 2, 3, 4, 5
-ROW_SOFTNESS, ROW_FRICTION = 6, 7
 # Columns of `PairRows.contact_rows`, the rows of a contact; -1 for none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 

@@ -5,6 +5,7 @@ of the same two shapes, in contiguous rows; manifolds are sorted by the lower, t
 """
 
 from carom.layouts.types import (
+    Index2Rows,
     Index4,
     Index4Rows,
     Int32,
@@ -25,7 +26,6 @@ from carom.layouts.types import (
     Vector4,
     Vector4Rows,
     Vector8,
-    Vector8Rows,
     Vectors3,
     Vectors4,
     real,
@@ -143,8 +143,8 @@ class Pairs:
     node_upper: Vector3Rows
     bucket_end: IntRows  # of a radix sort
 
-    pair_shapes: Index4Rows  # shape a, shape b, 0, 0; sorted
-    pair_found: Index4Rows  # the same in the order in which they were found
+    pair_shapes: Index2Rows  # the lower and the higher shape row; sorted
+    pair_found: Index2Rows  # the same in the order in which they were found
 
     candidate: Rows[Candidate]
     polygon_a: Vector3Rows  # corners of touching faces
@@ -292,12 +292,26 @@ class ContactTerms:
 
 
 @struct
+class RowTerms:
+    """Data of a row over two trees."""
+
+    share: real  # impulse that would cause the whole requested change of rate if there were no others
+    effective_mass: real
+    inverse_mass: real
+    lower: real  # bounds of the impulse
+    upper: real
+    impulse: real
+    softness: real  # share of the impulse by which the row yields
+    friction: real  # coefficient
+
+
+@struct
 class PairRows:
     """Constraint rows over up to two trees, manifold blocks, and islands: intermediate results."""
 
     row_place: Index4Rows  # first block in `delta_velocity` and number of blocks, of a and of b
     row_start: IntRows  # first block of the row in `jacobian_row`: blocks of a, then blocks of b
-    row_terms: Vector8Rows  # see the ROW_ columns in `codes`
+    row_terms: Rows[RowTerms]
     row_bound: IntRows  # row whose impulse bounds that of this row, -1 for none
     jacobian_row: Vector4Rows
     jacobian_response: Vector4Rows  # inverse mass matrix times the transposed row

@@ -70,6 +70,16 @@ class RunWork:
 
 
 @struct
+class PairResult:
+    """Result of the narrow phase for a pair of shapes."""
+
+    first: Int32  # first of its contacts of the last substep, among the saved ones
+    end: Int32  # end of these
+    new_points: Int32  # results of `collide.find_candidates`
+    candidates: Int32
+
+
+@struct
 class PairWork:
     """Contact candidates of all pairs of all worlds, and workspace for finding them.
 
@@ -78,7 +88,7 @@ class PairWork:
     """
 
     world_kept: Ints  # first row of the saved contacts of the last substep, see `manifold.keep_previous`
-    pair_found: Index4Rows  # first and end of its previous contacts; then as `find_candidates` returned
+    pair_result: Rows[PairResult]
     candidate: Rows[Candidate]  # `MOST_CANDIDATES` for each pair
 
     worker_candidate: Rows[Candidate]

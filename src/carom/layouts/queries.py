@@ -1,16 +1,7 @@
 """Data of the kernels of queries: rays, nearest points, lists of contacts."""
 
 from carom.layouts.contacts import Candidate
-from carom.layouts.types import (
-    Array,
-    IntRows,
-    Ints,
-    Reals,
-    Rows,
-    Truth,
-    Vectors3,
-    struct,
-)
+from carom.layouts.types import Array, IntRows, Ints, Reals, Rows, Truth, Vectors3, struct
 
 # Link indices up to this one mean any link.
 ANY_LINK = -2

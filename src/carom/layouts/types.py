@@ -155,6 +155,7 @@ else:
     Transforms = Array[Transform]
 
     IntRows = Rows[Int32]
+    Index2Rows = Rows[Index2]
     Index4Rows = Rows[Index4]
     RealRows = Rows[real]
     Vector3Rows = Rows[Vector3]

@@ -55,12 +55,9 @@ class PairFilters:
                 rows = self._table.numpy[name]
                 rows[at + 1 : len(self._pairs) + 1] = rows[at : len(self._pairs)].copy()
             self._pairs.insert(at, pair)
-        self._write(at, pair, int(enabled))
-        return grown
-
-    def _write(self, at: int, pair: tuple[int, int], enabled: int) -> None:
-        for name, value in zip(_FIELDS, (*pair, enabled), strict=True):
+        for name, value in zip(_FIELDS, (*pair, int(enabled)), strict=True):
             self._table.numpy[name][at] = value
+        return grown
 
     def way_back(self) -> Callable[[], None]:
         """A function that restores the present rules."""

@@ -9,7 +9,7 @@ value, with which the function on the other side raises the same error as it wou
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from operator import index
 from typing import Any, SupportsFloat
 
@@ -179,9 +179,5 @@ def _number(value: SupportsFloat) -> float:
     return float(value)
 
 
-def _items(value: Iterable[Any]) -> list[Any]:
-    return list(value)
-
-
 # In this order, because arrays of one item can be converted to numbers, too, but must remain arrays.
-_CONVERSIONS: tuple[Callable[[Any], Any], ...] = (index, _numpy_array, _number, _items)
+_CONVERSIONS: tuple[Callable[[Any], Any], ...] = (index, _numpy_array, _number, list)

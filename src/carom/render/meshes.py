@@ -7,14 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from carom.description import (
-    ConvexHull,
-    Geometry,
-    Heightfield,
-    Mesh,
-    SignedDistanceField,
-    TriangleMesh,
-)
+from carom.description import ConvexHull, Geometry, Heightfield, Mesh, SignedDistanceField, TriangleMesh
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import cut_into_fans

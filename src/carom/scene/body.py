@@ -12,13 +12,7 @@ import numpy as np
 
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import Pose
-from carom.layouts.codes import (
-    BASE_POSITIONS,
-    BASE_VELOCITIES,
-    DOF_COUNT,
-    POSITION_COUNT,
-    Activity,
-)
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, DOF_COUNT, POSITION_COUNT, Activity
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.tables import NUMPY_REAL

@@ -11,8 +11,6 @@ from carom.model.body_spec import BASE
 from carom.model.inertia import mass_terms, moments_at
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from carom.description.pose import Vector3
     from carom.model.inertia import MassTerms
     from carom.scene.body import Body
@@ -117,7 +115,7 @@ def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Ca
         if name in changes:
             steps.append(partial(model[field][:, tree].fill, changes[name]))
     if _SLEEP_THRESHOLD in changes:
-        steps.append(partial(_put, model["tree_sleep_threshold"], tree, changes[_SLEEP_THRESHOLD]))
+        steps.append(partial(model["tree_sleep_threshold"].__setitem__, tree, changes[_SLEEP_THRESHOLD]))
     if _ACTIVATION in changes:
         steps.append(_activation_change(body, ActivationChange(changes[_ACTIVATION])))
     if "mass" in changes:
@@ -132,10 +130,6 @@ def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Ca
     if "joint_limit_force" in changes:
         steps.append(partial(_set_limit_force, body, link, changes["joint_limit_force"]))
     return steps
-
-
-def _put(array: np.ndarray, row: int, value: float) -> None:
-    array[row] = value
 
 
 def _activation_change(body: Body, change: ActivationChange) -> Callable[[], None]:

@@ -88,7 +88,8 @@ class PandaTask(WorldsEnv):
     def begin(self, worlds: np.ndarray) -> None:
         """Choose random positions of the joints, the cube and the goal."""
         turns = self.random.uniform(worlds, -_SPREAD, _SPREAD, _ARM)
-        pose = np.concatenate([_HOME + turns, np.full((len(worlds), _FINGERS), self._opening)], axis=1)
+        opening = _OPEN if self._uses_fingers else 0.0
+        pose = np.concatenate([_HOME + turns, np.full((len(worlds), _FINGERS), opening)], axis=1)
         self._wanted[worlds] = self._panda.joint_positions[worlds] = pose
         self.goals[worlds] = self.random.uniform(
             worlds, np.array(self._lowest_goal), np.array(self._highest_goal)
@@ -97,10 +98,6 @@ class PandaTask(WorldsEnv):
             places = self.random.uniform(worlds, np.array([0.4, -0.2]), np.array([0.6, 0.2]))
             on_floor = np.column_stack([places, np.full(len(worlds), _HALF_CUBE)])
             self._cube.set_base_poses(on_floor, where=worlds)
-
-    @property
-    def _opening(self) -> float:
-        return _OPEN if self._uses_fingers else 0.0
 
     def act(self, actions: np.ndarray) -> None:
         """Change the position targets of the joints."""

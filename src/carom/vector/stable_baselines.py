@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -77,7 +77,7 @@ class StableBaselinesEnv(VecEnv):
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
         """An attribute of the vector environment, once for each index."""
-        return [getattr(self.env, attr_name)] * len(list(self._chosen(indices)))
+        return [getattr(self.env, attr_name)] * len(list(self._get_indices(indices)))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         """Set an attribute of the vector environment; `indices` must select all environments."""
@@ -93,11 +93,8 @@ class StableBaselinesEnv(VecEnv):
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
         """False for all: there are no single environments to wrap."""
-        return [False] * len(list(self._chosen(indices)))
-
-    def _chosen(self, indices: Any) -> Iterable[int]:
-        return self._get_indices(indices)
+        return [False] * len(list(self._get_indices(indices)))
 
     def _require_all(self, indices: Any, name: str) -> None:
-        if len(list(self._chosen(indices))) != self.num_envs:
+        if len(list(self._get_indices(indices))) != self.num_envs:
             raise ValueError(f"{name} belongs to all environments at once; leave indices out")

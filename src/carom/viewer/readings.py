@@ -11,13 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.layouts.codes import (
-    MOTOR_KD,
-    MOTOR_KP,
-    MOTOR_MAX_IMPULSE,
-    MOTOR_POSITION,
-    MOTOR_VELOCITY,
-)
+from carom.layouts.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION, MOTOR_VELOCITY
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:

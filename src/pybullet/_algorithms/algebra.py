@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Sequence
 from math import inf
 from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
@@ -10,7 +11,7 @@ from pybullet._calls.arguments import Vector, check_rotation, integer, numbers, 
 from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of, clients
-from pybullet._clients.lookup import body_of
+from pybullet._clients.lookup import body_of, link_of
 from pybullet._maths.maths import getQuaternionFromEuler
 
 if TYPE_CHECKING:
@@ -221,8 +222,7 @@ def calculateJacobian(
             fail(_JACOBIAN_SIZES, f"{name} has {len(values[name])} values instead of {size}.")
     if freedoms == 0:
         fail(_JACOBIAN_SIZES, f"Body {body.id} ({body.name}) has no joint that moves.")
-    if not -1 <= link < body.joint_count:
-        fail("Internal error in calculateJacobian", f"Body {body.id} ({body.name}) has no link {link}.")
+    link_of(body, link, "linkIndex", "Internal error in calculateJacobian")
 
     from carom.algorithms import jacobian
 
@@ -287,14 +287,21 @@ def calculateMassMatrix(
 
 def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:
     """Joint positions as the engine stores them: quaternions of spherical joints instead of three angles."""
+    return converted_rotations(body, values, body.velocity_count, getQuaternionFromEuler)
+
+
+def converted_rotations(
+    body: Body, values: tuple[float, ...], counts: Sequence[int], convert: Callable[[Vector], Iterable[float]]
+) -> tuple[float, ...]:
+    """Joint positions with those of spherical joints converted; `counts` are the numbers of each joint."""
     if body.position_count == body.velocity_count:
         return values
     result: list[float] = []
     first = 0
-    for coordinates, freedoms in zip(body.position_count, body.velocity_count, strict=True):
-        own = values[first : first + freedoms]
-        result += getQuaternionFromEuler(own) if coordinates != freedoms else own
-        first += freedoms
+    for joint, count in enumerate(counts):
+        own = values[first : first + count]
+        result += own if body.position_count[joint] == body.velocity_count[joint] else convert(own)
+        first += count
     return tuple(result)
 
 

@@ -7,7 +7,7 @@ from functools import cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, overload
 
-from pybullet._algorithms.algebra import joint_coordinates
+from pybullet._algorithms.algebra import converted_rotations, joint_coordinates
 from pybullet._calls.arguments import (
     Indices,
     Vector,
@@ -25,7 +25,7 @@ from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.constants import IK_DLS, IK_SDLS
 from pybullet._calls.errors import fail, warn_once
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import body_of
+from pybullet._clients.lookup import body_of, link_of
 from pybullet._maths.maths import getEulerFromQuaternion
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ def calculateInverseKinematics(
         maxNumIterations,
         residualThreshold,
     )
-    _check_link(body, link)
+    link_of(body, link, "endEffectorLinkIndex", _PROBLEM)
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
         # Scripts that do not ask for accuracy may depend on PyBullet's result (trained policies, for
         # example). Each call brings them closer to the target, unless PyBullet's iteration is stuck.
@@ -250,7 +250,7 @@ def calculateInverseKinematics2(
         residualThreshold,
     )
     for link in links:
-        _check_link(body, link)
+        link_of(body, link, "endEffectorLinkIndices", _PROBLEM)
 
     with client.lock:
         return _result(body, _algorithm()(body, links, positions, **options))
@@ -344,19 +344,6 @@ def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...
     return result
 
 
-def _check_link(body: Body, link: int) -> None:
-    if not -1 <= link < body.joint_count:
-        fail(_PROBLEM, f"Body {body.id} ({body.name}) has no link {link}.")
-
-
 def _result(body: Body, coordinates: tuple[float, ...]) -> tuple[float, ...]:
     """Positions in PyBullet's form: roll, pitch and yaw of spherical joints instead of a quaternion."""
-    if body.position_count == body.velocity_count:
-        return coordinates
-    result: list[float] = []
-    first = 0
-    for count, freedoms in zip(body.position_count, body.velocity_count, strict=True):
-        own = coordinates[first : first + count]
-        result += getEulerFromQuaternion(own) if count != freedoms else own
-        first += count
-    return tuple(result)
+    return converted_rotations(body, coordinates, body.position_count, getEulerFromQuaternion)

@@ -10,7 +10,7 @@ from pybullet._calls.builtin import exported
 from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import no_body
+from pybullet._clients.lookup import BASE, link_of, no_body
 from pybullet._maths.camera_maths import cross
 from pybullet._maths.rotations import turned
 
@@ -25,7 +25,6 @@ __all__ = [
     "applyExternalTorque",
 ]
 
-_BASE = -1
 _FRAMES = (WORLD_FRAME, LINK_FRAME)
 _WRONG_FRAME = "flag has to be either WORLD_FRAME or LINK_FRAME"
 _WRONG_LINK = "Invalid link index, has to be -1 or larger"
@@ -105,7 +104,7 @@ def applyExternalTorque(
     """
     client = client_of(physicsClientId)
     torque = vector3(torqueObj, "torque needs a 3 coordinates [x,y,z].", "torqueObj")
-    if integer(linkIndex, "linkIndex") < _BASE:
+    if integer(linkIndex, "linkIndex") < BASE:
         fail(_WRONG_LINK, f"It is {linkIndex}.")
     frame = _frame(flags)
     access = _body(client, objectUniqueId, linkIndex, "applyExternalTorque")
@@ -122,12 +121,12 @@ def _push_node(body: Body, node_index: int, force: Vector3, frame: int) -> None:
 
     assert isinstance(body, SoftBody)
     node, forces = integer(node_index, "linkIndex"), body.node_forces
-    if not _BASE <= node < len(forces):
+    if not BASE <= node < len(forces):
         fail(_WRONG_LINK, f"It is {node}, and body {body.id} ({body.name}) has {len(forces)} nodes.")
     if frame == LINK_FRAME:
         x, y, z, w = body.world.position[body.first_position + 3 : body.first_position + 7].tolist()
         force = turned((x, y, z, w), force)
-    if node == _BASE:
+    if node == BASE:
         forces += [component / len(forces) for component in force]
     else:
         forces[node] += force
@@ -147,6 +146,5 @@ def _body(client: Client, body_id: int, link_index: int, function: str) -> BodyA
     if body is None:
         logger.warning("%s: %s", function, no_body(body_id))
         return None
-    if not _BASE <= link < body.joint_count:
-        fail(_WRONG_LINK, f"It is {link}, and body {body.id} ({body.name}) has {body.joint_count} links.")
+    link_of(body, link, "linkIndex", _WRONG_LINK)
     return client.bodies[body.id]

@@ -47,6 +47,25 @@ def body_of(client: Client, body_id: Any, problem: str) -> Body:
     return body
 
 
+def link_of(body: Body, link_index: Any, name: str, problem: str) -> int:
+    """The index of a link, -1 for the base.
+
+    Args:
+        body: The body.
+        link_index: The link.
+        name: Name of the argument, for the message.
+        problem: PyBullet's error message if there is no such link.
+
+    Raises:
+        pybullet.error: There is no such link.
+        TypeError: The index is not an integer.
+    """
+    link = integer(link_index, name)
+    if not BASE <= link < body.joint_count:
+        fail(problem, f"{name}: body {body.id} ({body.name}) has no link {link}.")
+    return link
+
+
 def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str) -> tuple[Body, int] | None:
     """A body and the index of one of its links; None, with a warning, if there is no such body or link.
 

@@ -8,11 +8,7 @@ from typing import Any
 from carom.errors import SimulationError
 from pybullet._calls.arguments import integer, quantity, real
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import (
-    DIRECT,
-    RESET_USE_DEFORMABLE_WORLD,
-    RESET_USE_REDUCED_DEFORMABLE_WORLD,
-)
+from pybullet._calls.constants import DIRECT, RESET_USE_DEFORMABLE_WORLD, RESET_USE_REDUCED_DEFORMABLE_WORLD
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.shape_registry import ShapeRegistry

@@ -12,7 +12,7 @@ from pybullet._calls.constants import JOINT_FIXED, JOINT_GEAR, JOINT_POINT2POINT
 from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
 from pybullet._clients.clients import Client, client_of
-from pybullet._clients.lookup import no_body
+from pybullet._clients.lookup import link_of, no_body
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
@@ -91,11 +91,11 @@ def createConstraint(
     """
     client = client_of(physicsClientId)
     parent = _body(client, parentBodyUniqueId, "parentBodyUniqueId")
-    parent_link = _link(parent, parentLinkIndex, "parentLinkIndex")
+    parent_link = link_of(parent, parentLinkIndex, "parentLinkIndex", _FAILED)
     child, child_link = None, integer(childLinkIndex, "childLinkIndex")
     if integer(childBodyUniqueId, "childBodyUniqueId") >= 0:
         child = _body(client, childBodyUniqueId, "childBodyUniqueId")
-        child_link = _link(child, childLinkIndex, "childLinkIndex")
+        child_link = link_of(child, childLinkIndex, "childLinkIndex", _FAILED)
     kind = integer(jointType, "jointType")
     if kind not in _KINDS:
         fail(_FAILED, f"jointType is {kind}; expected JOINT_POINT2POINT, _FIXED, _PRISMATIC or _GEAR.")
@@ -166,7 +166,7 @@ def changeConstraint(
         return
     with client.lock:
         if auxiliary >= 0:
-            constraint.gear_auxiliary_link = _link(
+            constraint.gear_auxiliary_link = link_of(
                 constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED
             )
         if pivot is not None or orientation is not None:
@@ -370,13 +370,6 @@ def _body(client: Client, number: int, name: str) -> Body:
     if body is None:
         fail(_FAILED, f"{name}: {no_body(number)}")
     return body
-
-
-def _link(body: Body, number: int, name: str, problem: str = _FAILED) -> int:
-    link = integer(number, name)
-    if not -1 <= link < body.joint_count:
-        fail(problem, f"{name} is {link}, but body {body.id} ({body.name}) has {body.joint_count} links.")
-    return link
 
 
 @cache

@@ -33,7 +33,7 @@ from pybullet._calls.constants import (
 )
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of, clients
-from pybullet._clients.lookup import BASE, body_of, no_body, no_joint
+from pybullet._clients.lookup import BASE, body_of, link_of, no_body
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -226,10 +226,8 @@ def getAABB(bodyUniqueId: int, linkIndex: int = -1, physicsClientId: int = 0) ->
 
 
 def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) -> tuple[Body, int]:
-    body, link = body_of(client, body_id, problem), integer(link_index, "linkIndex")
-    if not BASE <= link < body.joint_count:
-        fail(problem, no_joint(body, link))
-    return body, link
+    body = body_of(client, body_id, problem)
+    return body, link_of(body, link_index, "linkIndex", problem)
 
 
 def _collision_geometry(geometry: Geometry, implicit_cylinder: bool) -> tuple[int, Vector3, bytes] | None:

@@ -7,16 +7,7 @@ from math import hypot
 
 from carom.description.pose import Vector3
 from carom.description.transform import subtracted
-from pybullet._maths.camera_maths import (
-    Y_UP,
-    Z_UP,
-    Matrix16,
-    cross,
-    frustum,
-    look_at,
-    orbit,
-    unit,
-)
+from pybullet._maths.camera_maths import Y_UP, Z_UP, cross, frustum, look_at, orbit, unit
 
 _NEAR, _FAR = 0.01, 1000.0
 # Length of the image's edges as `getDebugVisualizerCamera` reports them, for rays through its pixels.
@@ -48,7 +39,7 @@ class DebugCamera:
             self.width,
             self.height,
             look_at(eye, self.target, up) or look_at(eye, self.target, upward) or (0.0,) * 16,
-            self._projection(aspect),
+            frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR),
             up,
             forward,
             _scaled(right, _RAY_PLANE * aspect),
@@ -58,9 +49,6 @@ class DebugCamera:
             self.distance,
             self.target,
         )
-
-    def _projection(self, aspect: float) -> Matrix16:
-        return frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR)
 
 
 @dataclass(slots=True)

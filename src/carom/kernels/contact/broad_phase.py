@@ -13,7 +13,7 @@ from carom.kernels.contact.contact_margins import bounds_margin
 from carom.kernels.contact.filters import SELF_COLLISION, may_collide
 from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.contacts import BOUNDED, LEAVES, PAIRS, PLANES, READINESS, STALE
 
 
@@ -25,7 +25,7 @@ def add_pair(
     if may_collide(shapes, model, settings, a, b):
         count = pairs.count_pairs[world, PAIRS]
         if count < pairs.pair_found.shape[1]:
-            pairs.pair_found[world, count] = Index4(wp.min(a, b), wp.max(a, b), 0, 0)
+            pairs.pair_found[world, count] = Index2(wp.min(a, b), wp.max(a, b))
         pairs.count_pairs[world, PAIRS] = count + 1
 
 

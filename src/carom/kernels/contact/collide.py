@@ -18,7 +18,7 @@ from carom.kernels.contact.manifold import keep_previous, sides_of, skip_contact
 from carom.kernels.contact.narrow_phase import collide_shapes
 from carom.kernels.contact.sides import in_order_of_sides
 from carom.kernels.structs import Contacts, Model, Pairs, Shapes, State
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.codes import ASLEEP
 from carom.layouts.contacts import PAIRS, THERE
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
@@ -55,7 +55,7 @@ def can_stay(
     state: State,
     contacts: Contacts,
     world: Int32,
-    pair: Index4,
+    pair: Index2,
     wanted: Int32,
     first: Int32,
     last: Int32,
@@ -109,7 +109,7 @@ def make_contacts(
 
 
 @func
-def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index4, first: Int32, last: Int32):
+def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index2, first: Int32, last: Int32):
     """Write the candidates of a pair, whose contacts of the last substep are [first, last).
 
     Returns:
@@ -137,7 +137,7 @@ def add_manifold(
     contacts: Contacts,
     pairs: Pairs,
     world: Int32,
-    pair: Index4,
+    pair: Index2,
     found: Int32,
     count: Int32,
     first: Int32,

@@ -21,7 +21,7 @@ from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.queries.closest import nearest_convex
 from carom.kernels.shapes.cores import core_of
 from carom.kernels.structs import Pairs, Shapes
-from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
+from carom.kernels.types import Index2, Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import (
     BOX,
     HULL,
@@ -148,7 +148,7 @@ def keeps_points(pairs: Pairs, world: Int32, a: Int32, b: Int32, first: Int32, l
 
 @func
 def find_new_points(
-    shapes: Shapes, pairs: Pairs, world: Int32, sides: Index4, max_distance: real, first: Int32, last: Int32
+    shapes: Shapes, pairs: Pairs, world: Int32, sides: Index2, max_distance: real, first: Int32, last: Int32
 ) -> Int32:
     """Write the new candidates of a manifold that gathers its points: the deepest; of two boxes up to four.
 

@@ -12,7 +12,7 @@ from carom.kernels.contact.gathering import are_boxes
 from carom.kernels.contact.manifold import keep_contact, keep_for_matching, sides_of, write_contact
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, Vector4, func, real
+from carom.kernels.types import Index2, Index4, Int32, Vector3, Vector4, func, real
 
 # Slots have rows of previous contacts, or for new points `NEW` minus the index of the candidate.
 NEW = wp.constant(-1)
@@ -148,7 +148,7 @@ def gather(
     pairs: Pairs,
     world: Int32,
     wanted: Int32,
-    sides: Index4,
+    sides: Index2,
     found: Int32,
     first: Int32,
     last: Int32,

@@ -7,7 +7,7 @@ import warp as wp
 from carom.kernels.contact.candidates import candidate_on_a
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
-from carom.kernels.types import Index4, Int32, Transform, Vector3, func, real
+from carom.kernels.types import Index2, Index4, Int32, Transform, Vector3, func, real
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, THERE
 
 _HALF_ROOT = real(math.sqrt(0.5))
@@ -91,7 +91,7 @@ def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
 
 
 @func
-def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index4, equal: Int32) -> Int32:
+def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index2, equal: Int32) -> Int32:
     """Skip previous contacts, which are sorted by pair, from row `first` on; returns the row reached.
 
     Args:
@@ -113,7 +113,7 @@ def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: In
 
 
 @func
-def comes_before(pairs: Pairs, world: Int32, row: Int32, pair: Index4, equal: Int32) -> bool:
+def comes_before(pairs: Pairs, world: Int32, row: Int32, pair: Index2, equal: Int32) -> bool:
     """Whether `skip_contacts` skips a previous contact."""
     shapes = pairs.previous_shapes[world, row]
     lower = wp.min(shapes[0], shapes[1])
@@ -186,7 +186,7 @@ def write_place(
 
 
 @func
-def sides_of(shapes: Shapes, state: State, world: Int32, pair: Index4) -> Sides:
+def sides_of(shapes: Shapes, state: State, world: Int32, pair: Index2) -> Sides:
     """The two sides of the contacts of a pair of shapes."""
     sides = Sides()
     sides.shapes = Index4(pair[0], pair[1], shapes.shape_link[pair[0]], shapes.shape_link[pair[1]])

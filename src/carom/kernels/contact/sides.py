@@ -7,7 +7,7 @@ import warp as wp
 
 from carom.kernels.contact.contact_margins import is_part_of_compound
 from carom.kernels.structs import Shapes
-from carom.kernels.types import Index4, Int32, func
+from carom.kernels.types import Index2, Int32, func
 from carom.layouts.codes import PLANE, TRIANGLES
 
 
@@ -21,8 +21,8 @@ def side_rank(shapes: Shapes, shape: Int32) -> Int32:
 
 
 @func
-def in_order_of_sides(shapes: Shapes, pair: Index4) -> Index4:
-    """Shapes of a pair as (a, b, 0, 0); shapes of equal rank keep their order."""
+def in_order_of_sides(shapes: Shapes, pair: Index2) -> Index2:
+    """Shapes of a pair as (a, b); shapes of equal rank keep their order."""
     if side_rank(shapes, pair[0]) > side_rank(shapes, pair[1]):
-        return Index4(pair[1], pair[0], 0, 0)
+        return Index2(pair[1], pair[0])
     return pair

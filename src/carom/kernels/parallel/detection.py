@@ -17,8 +17,18 @@ from carom.kernels.contact.collide import (
 )
 from carom.kernels.contact.manifold import comes_before, keep_previous
 from carom.kernels.parallel.pair_work import pairs_of_worker, pairs_with_candidates
-from carom.kernels.structs import Contacts, Model, Pairs, PairWork, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func, kernel
+from carom.kernels.structs import (
+    Contacts,
+    Model,
+    PairResult,
+    Pairs,
+    PairWork,
+    Scratch,
+    Settings,
+    Shapes,
+    State,
+)
+from carom.kernels.types import Index2, Int32, func, kernel
 from carom.layouts.contacts import PAIRS, THERE
 from carom.layouts.parallel import MOST_CANDIDATES
 from carom.layouts.status import STATUS, WELL
@@ -57,7 +67,7 @@ def world_pairs_kernel(
 
 
 @func
-def first_after(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index4, equal: Int32) -> Int32:
+def first_after(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index2, equal: Int32) -> Int32:
     """The same as `manifold.skip_contacts`, by binary search."""
     low = first + 0
     high = end + 0
@@ -77,7 +87,7 @@ def pair_candidates_kernel(
     """Find the contact candidates of each pair; a worker handles one pair after the other."""
     worker = wp.tid()
     own = pairs_of_worker(pairs, pair_work, worker)
-    worlds = pair_work.pair_found.shape[0]
+    worlds = pair_work.pair_result.shape[0]
     item = worker + 0
     while item < worlds * pairs.pair_shapes.shape[1]:
         world = item % worlds
@@ -89,9 +99,14 @@ def pair_candidates_kernel(
             end = kept + contacts.count_contacts[world, THERE]
             first = first_after(pairs, world, kept, end, pair, 0)
             last = first_after(pairs, world, first, end, pair, 1)
-            found, count = find_candidates(shapes, own, world, pair, first, last)
-            pair_work.pair_found[world, i] = Index4(first, last, found, count)
-            for candidate in range(wp.max(found, count)):
+            new_points, candidates = find_candidates(shapes, own, world, pair, first, last)
+            result = PairResult()
+            result.first = first
+            result.end = last
+            result.new_points = new_points
+            result.candidates = candidates
+            pair_work.pair_result[world, i] = result
+            for candidate in range(wp.max(new_points, candidates)):
                 pair_work.candidate[world, MOST_CANDIDATES * i + candidate] = own.candidate[world, candidate]
 
 
@@ -107,14 +122,14 @@ def world_contacts_kernel(
     wanted = Int32(0)
     for i in range(pairs.count_pairs[world, PAIRS]):
         pair = pairs.pair_shapes[world, i]
-        found = pair_work.pair_found[world, i]
-        first = found[0]
-        last = found[1]
-        if can_stay(shapes, model, state, contacts, world, pair, wanted, first - kept, last - kept):
-            wanted += last - first
+        result = pair_work.pair_result[world, i]
+        if can_stay(
+            shapes, model, state, contacts, world, pair, wanted, result.first - kept, result.end - kept
+        ):
+            wanted += result.end - result.first
         else:
             wanted = add_manifold(
-                shapes, state, contacts, pairs_with_candidates(pairs, pair_work, i), world, pair, found[2],
-                found[3], first, last, wanted,
+                shapes, state, contacts, pairs_with_candidates(pairs, pair_work, i), world, pair,
+                result.new_points, result.candidates, result.first, result.end, wanted,
             )  # fmt: skip
     accept_contacts(state, contacts, world, wanted)

@@ -20,7 +20,6 @@ from carom.kernels.solver.joint_solver import apply_delta_velocities, clear_delt
 from carom.kernels.solver.pair_rows import push_row, row_velocity_change, tree_blocks, write_pair_jacobian
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, SoftWork, State
 from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
-from carom.layouts.codes import ROW_INVERSE_MASS
 from carom.layouts.soft import PUSH_ROWS
 from carom.layouts.status import OVERFLOW, STATUS, WELL
 
@@ -126,7 +125,7 @@ def add_push_rows(
             model, state, scratch, pair_rows, world, row, block, Index4(tree, link, -1, -1), point, point,
             direction, Vector3(0.0, 0.0, 0.0),
         )  # fmt: skip
-        pair_rows.row_terms[world, row][ROW_INVERSE_MASS] = inverse_mass
+        pair_rows.row_terms[world, row].inverse_mass = inverse_mass
         row += 1
     return row, block
 
@@ -136,7 +135,7 @@ def row_mass(pair_rows: PairRows, world: Int32, row: Int32) -> real:
     """Effective inverse mass along a row [1/kg]; 0 for row -1, that of an immovable link."""
     if row < 0:
         return 0.0
-    return pair_rows.row_terms[world, row][ROW_INVERSE_MASS]
+    return pair_rows.row_terms[world, row].inverse_mass
 
 
 @func

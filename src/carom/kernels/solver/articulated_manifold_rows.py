@@ -21,35 +21,28 @@ def clear_matrices(pair_rows: PairRows, world: Int32, manifold_block: Int32):
 
 
 @func
-def write_normal_matrices(
-    pair_rows: PairRows, world: Int32, part: Index4, blocks: Int32, contact: Int32, mass: real, start: Int32
+def write_matrices(
+    pair_rows: PairRows,
+    world: Int32,
+    weighted: Int32,
+    responses: Int32,
+    width: Int32,
+    blocks: Int32,
+    row: Int32,
+    mass: real,
+    start: Int32,
 ):
-    """Copy a normal row's Jacobian (times `mass`) and response, at block `start`, to the matrices."""
-    block = Int32(0)
-    while block < blocks:
+    """Copy a row's Jacobian (times `mass`) and response, at block `start`, to the matrices.
+
+    These begin at the blocks `weighted` and `responses`, and have `width` times four rows; this is `row`.
+    """
+    for block in range(blocks):
         jacobian = pair_rows.jacobian_row[world, start + block]
         for i in range(4):
-            entry = 4 * (part[0] + 4 * block + i) + contact
+            entry = 4 * (weighted + width * (4 * block + i)) + row
             pair_rows.entry_matrix[world, entry] = mass * jacobian[i]
         response = pair_rows.jacobian_response[world, start + block]
-        pair_rows.matrix_block[world, part[2] + 4 * block + contact] = response
-        block += 1
-
-
-@func
-def write_friction_matrices(
-    pair_rows: PairRows, world: Int32, part: Index4, blocks: Int32, row: Int32, mass: real, start: Int32
-):
-    """As `write_normal_matrices`, for friction row `row` of eight."""
-    block = Int32(0)
-    while block < blocks:
-        jacobian = pair_rows.jacobian_row[world, start + block]
-        for i in range(4):
-            entry = 4 * (part[1] + 8 * block + 2 * i) + row
-            pair_rows.entry_matrix[world, entry] = mass * jacobian[i]
-        response = pair_rows.jacobian_response[world, start + block]
-        pair_rows.matrix_block[world, part[3] + 8 * block + row] = response
-        block += 1
+        pair_rows.matrix_block[world, responses + 4 * width * block + row] = response
 
 
 @func
@@ -130,10 +123,11 @@ def write_articulated_contact(
             # The parts of body b come after those of body a.
             own = part + Index4(4 * place[1], 8 * place[1], 4 * place[1], 8 * place[1]) * side
             jacobian = start + place[1] * side
+            blocks = place[2 * side + 1]
             if row == 0:
-                write_normal_matrices(pair_rows, world, own, place[2 * side + 1], contact, mass, jacobian)
+                write_matrices(pair_rows, world, own[0], own[2], 1, blocks, contact, mass, jacobian)
             else:
-                write_friction_matrices(pair_rows, world, own, place[2 * side + 1], line, mass, jacobian)
+                write_matrices(pair_rows, world, own[1], own[3], 2, blocks, line, mass, jacobian)
         if row == 0:
             write_normal_delassus(pair_rows, world, manifold_block, contact, mass, start)
         else:

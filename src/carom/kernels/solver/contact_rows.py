@@ -7,7 +7,7 @@ from carom.kernels.solver.pair_rows import write_pair_jacobian, write_row
 from carom.kernels.solver.warm_starting import NOT_RESTING
 from carom.kernels.structs import Contacts, ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
-from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, ROW_FRICTION, ROW_IMPULSE, SPINNING_ROW
+from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, SPINNING_ROW
 
 _UNBOUNDED = real(1e10)
 
@@ -90,9 +90,9 @@ def keep_contact_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32,
         contacts,
         world,
         contact,
-        pair_rows.row_terms[world, rows[NORMAL_ROW]][ROW_IMPULSE],
-        pair_rows.row_terms[world, rows[LATERAL_ROW]][ROW_IMPULSE],
-        pair_rows.row_terms[world, rows[LATERAL_ROW] + 1][ROW_IMPULSE],
-        pair_rows.row_terms[world, rows[LATERAL_ROW]][ROW_FRICTION],
+        pair_rows.row_terms[world, rows[NORMAL_ROW]].impulse,
+        pair_rows.row_terms[world, rows[LATERAL_ROW]].impulse,
+        pair_rows.row_terms[world, rows[LATERAL_ROW] + 1].impulse,
+        pair_rows.row_terms[world, rows[LATERAL_ROW]].friction,
         Int32(NOT_RESTING),
     )

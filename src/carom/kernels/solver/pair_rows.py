@@ -4,17 +4,8 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
-from carom.kernels.structs import Model, PairRows, Scratch, State
-from carom.kernels.types import Index4, Int32, Vector3, Vector8, func, real
-from carom.layouts.codes import (
-    ROW_EFFECTIVE_MASS,
-    ROW_IMPULSE,
-    ROW_INVERSE_MASS,
-    ROW_LOWER,
-    ROW_SHARE,
-    ROW_SOFTNESS,
-    ROW_UPPER,
-)
+from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, State
+from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.contacts import ROWS_PER_PAIR
 
 
@@ -125,16 +116,16 @@ def write_row(
     diagonal = real(0.0)
     if effective_mass > 0.0:
         diagonal = 1.0 / effective_mass
-    pair_rows.row_terms[world, row] = Vector8(
-        change * effective_mass,
-        effective_mass,
-        diagonal,
-        lower,
-        upper,
-        0.0,
-        softness * effective_mass,
-        friction,
-    )
+    terms = RowTerms()
+    terms.share = change * effective_mass
+    terms.effective_mass = effective_mass
+    terms.inverse_mass = diagonal
+    terms.lower = lower
+    terms.upper = upper
+    terms.impulse = 0.0
+    terms.softness = softness * effective_mass
+    terms.friction = friction
+    pair_rows.row_terms[world, row] = terms
 
 
 @func
@@ -168,13 +159,13 @@ def push_row(scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4,
 
 @func
 def wanted_impulse(
-    scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, terms: Vector8
+    scratch: Scratch, pair_rows: PairRows, world: Int32, place: Index4, start: Int32, terms: RowTerms
 ) -> real:
     """Impulse with which a row would reach its target, without bounds."""
     return (
-        terms[ROW_IMPULSE] * (1.0 - terms[ROW_SOFTNESS])
-        + terms[ROW_SHARE]
-        - row_velocity_change(scratch, pair_rows, world, place, start) * terms[ROW_EFFECTIVE_MASS]
+        terms.impulse * (1.0 - terms.softness)
+        + terms.share
+        - row_velocity_change(scratch, pair_rows, world, place, start) * terms.effective_mass
     )
 
 
@@ -191,17 +182,17 @@ def relax_within(
         impulse = lower
     if impulse > upper:
         impulse = upper
-    change = impulse - terms[ROW_IMPULSE]
-    pair_rows.row_terms[world, row][ROW_IMPULSE] = impulse
+    change = impulse - terms.impulse
+    pair_rows.row_terms[world, row].impulse = impulse
     push_row(scratch, pair_rows, world, place, start, change)
-    return change * terms[ROW_INVERSE_MASS]
+    return change * terms.inverse_mass
 
 
 @func
 def relax_pair_row(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32) -> real:
     """As `relax_within`, with the row's own bounds."""
     terms = pair_rows.row_terms[world, row]
-    return relax_within(scratch, pair_rows, world, row, terms[ROW_LOWER], terms[ROW_UPPER])
+    return relax_within(scratch, pair_rows, world, row, terms.lower, terms.upper)
 
 
 @func
@@ -221,13 +212,13 @@ def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: In
             scale = bound / wp.sqrt(square)
         first = first * scale
         second = second * scale
-    change1 = first - terms1[ROW_IMPULSE]
-    change2 = second - terms2[ROW_IMPULSE]
-    pair_rows.row_terms[world, row][ROW_IMPULSE] = first
-    pair_rows.row_terms[world, row + 1][ROW_IMPULSE] = second
+    change1 = first - terms1.impulse
+    change2 = second - terms2.impulse
+    pair_rows.row_terms[world, row].impulse = first
+    pair_rows.row_terms[world, row + 1].impulse = second
     push_row(scratch, pair_rows, world, place, start1, change1)
     push_row(scratch, pair_rows, world, place, start2, change2)
-    return change1 * terms1[ROW_INVERSE_MASS] + change2 * terms2[ROW_INVERSE_MASS]
+    return change1 * terms1.inverse_mass + change2 * terms2.inverse_mass
 
 
 @func

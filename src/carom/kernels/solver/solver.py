@@ -20,16 +20,7 @@ from carom.kernels.solver.warm_starting import (
     SOLVED,
     UNSOLVED,
 )
-from carom.kernels.structs import (
-    Contacts,
-    Model,
-    PairRows,
-    Scratch,
-    Settings,
-    Shapes,
-    State,
-    UserConstraints,
-)
+from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import USER
 from carom.layouts.status import OVERFLOW, STATUS

@@ -6,16 +6,7 @@ from carom.kernels.dynamics.step import free_motion, move_or_stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
 from carom.kernels.solver.link_forces import gather_link_forces
 from carom.kernels.solver.solver import solve_island
-from carom.kernels.structs import (
-    Contacts,
-    Model,
-    PairRows,
-    Scratch,
-    Settings,
-    Shapes,
-    State,
-    UserConstraints,
-)
+from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, kernel
 
 

@@ -9,7 +9,7 @@ from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, rela
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROW_FRICTION, ROW_IMPULSE, SPINNING_ROW
+from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
 
 
 @func
@@ -95,7 +95,7 @@ def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int
 def friction_bound(pair_rows: PairRows, world: Int32, row: Int32) -> real:
     """Maximum impulse of a friction row: its coefficient times the normal impulse."""
     normal = pair_rows.row_bound[world, row]
-    return pair_rows.row_terms[world, row][ROW_FRICTION] * pair_rows.row_terms[world, normal][ROW_IMPULSE]
+    return pair_rows.row_terms[world, row].friction * pair_rows.row_terms[world, normal].impulse
 
 
 @func

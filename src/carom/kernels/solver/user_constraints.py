@@ -8,7 +8,7 @@ from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.pair_rows import place_row, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
-from carom.layouts.codes import ROW_IMPULSE, USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
+from carom.layouts.codes import USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
 
 _PARALLEL = real(1e-6)
 
@@ -254,5 +254,5 @@ def keep_user_impulses(state: State, users: UserConstraints, pair_rows: PairRows
     for i in range(user_row_count(users.user_kind[user])):
         impulse = real(0.0)
         if users.user_enabled[world, user] != 0:
-            impulse = pair_rows.row_terms[world, first + i][ROW_IMPULSE]
+            impulse = pair_rows.row_terms[world, first + i].impulse
         state.user_impulse[world, user][i] = impulse

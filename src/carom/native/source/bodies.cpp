@@ -17,8 +17,6 @@ const double ROUNDING = 1e-15;  // rounding error of the squared length of a uni
 
 bool is_given(double number) { return number == number; }
 
-bool has_link(const Body& body, double link) { return -1.0 <= link && link < body.link_count; }
-
 struct Pose {
     Vector position;
     Quaternion orientation;
@@ -176,7 +174,7 @@ int put_link_state(double* out, const Body& body, int64_t index, bool with_veloc
 CAROM_QUICK(link_state) {
     const Body& body = *call->body;
     const bool with_velocity = in[2] != 0.0;
-    if (!(0.0 <= in[1] && in[1] < body.link_count) || !prepare_links(*call, with_velocity, in[3] != 0.0))
+    if (!has_joint(body, in[1]) || !prepare_links(*call, with_velocity, in[3] != 0.0))
         return 0;
     return put_link_state(out, body, static_cast<int64_t>(in[1]), with_velocity);
 }

@@ -17,7 +17,7 @@ Vector magnitudes(Vector v) { return {__builtin_fabs(v.x), __builtin_fabs(v.y), 
 // Arguments: body, link, connection.
 extern "C" CAROM_EXPORT int carom_link_box(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
-    if (!body.boxes || !(-1.0 <= in[1] && in[1] < body.link_count))
+    if (!body.boxes || !has_link(body, in[1]))
         return 0;
     const int64_t link = static_cast<int64_t>(in[1]);
     const Box& box = body.boxes[link + 1];

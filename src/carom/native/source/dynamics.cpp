@@ -160,7 +160,7 @@ extern "C" CAROM_EXPORT int carom_change_dynamics(const double* in, double* out,
     }
     const Client* client = find_client(in[CONNECTION]);
     const Body* body = client ? find_body(*client, in[BODY]) : nullptr;
-    const bool well = body && -1.0 <= in[LINK] && in[LINK] < body->link_count && change(in, *client, *body, moments);
+    const bool well = body && has_link(*body, in[LINK]) && change(in, *client, *body, moments);
     if (moments)
         python.Py_DecRef(moments);
     return well;

@@ -40,7 +40,7 @@ bool read_duration(const Call& call, double* seconds) {
 extern "C" CAROM_EXPORT int carom_joint_state(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
     double seconds;
-    if (!(0.0 <= in[1] && in[1] < body.link_count) || !read_duration(*call, &seconds))
+    if (!has_joint(body, in[1]) || !read_duration(*call, &seconds))
         return 0;
     const State state = state_of(body, static_cast<int64_t>(in[1]), seconds);
     *out++ = state.position;
@@ -87,7 +87,7 @@ extern "C" CAROM_EXPORT PyObject* carom_joint_states(const double* in, const Cal
 extern "C" CAROM_EXPORT int carom_reset_joint(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
-    if (!(0.0 <= in[1] && in[1] < body.link_count))
+    if (!has_joint(body, in[1]))
         return 0;
     const Joint joint = body.joints[static_cast<int64_t>(in[1])];
     const Lock lock(*call->client);

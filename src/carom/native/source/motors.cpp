@@ -41,7 +41,7 @@ bool are_those_of(const MotorGroup& group, PyObject* indices) {
 // `carom.scene.joint_motor.AxisMotor` does the same.
 extern "C" CAROM_EXPORT int carom_command_motor(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
-    if (!(0.0 <= in[1] && in[1] < body.link_count))
+    if (!has_joint(body, in[1]))
         return 0;
     const Joint& joint = body.joints[static_cast<int64_t>(in[1])];
     const double mode = in[2], position = in[3], velocity = in[4], force = in[5], kp = in[6], kd = in[7], clamp = in[8];

@@ -217,6 +217,12 @@ const Client* find_client(double number);
 // A body by its number; null if there is none, or it has no record yet.
 const Body* find_body(const Client& client, double number);
 
+// Whether a body has a link of this index; -1 is the base.
+inline bool has_link(const Body& body, double index) { return -1.0 <= index && index < body.link_count; }
+
+// Whether a body has a joint of this index. It is also the index of a link, the one that the joint moves.
+inline bool has_joint(const Body& body, double index) { return 0.0 <= index && has_link(body, index); }
+
 // Reads a Python integer that fits into 32 bits; false if it is none.
 bool read_integer(PyObject* value, double* number);
 
