@@ -71,7 +71,7 @@ class WorldArrays:
 
     def __init__(self, world_count: int = 1) -> None:
         self.world_count = world_count
-        self.model: ArrayTable = ArrayTable(Model)
+        self.model: ArrayTable = ArrayTable(Model, references=_INDEX_FIELDS)
         self.state: ArrayTable = ArrayTable(State, world_count)
         self.used: dict[str, int] = dict.fromkeys(
             ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node"), 0
@@ -293,8 +293,8 @@ class WorldArrays:
             A function that removes them; it can be called again if it was interrupted.
         """
         cuts = {axis: (rows.first[axis], count) for axis, count in rows.count.items() if count}
-        remove_model = self.model.removal(cuts, self.used, _INDEX_FIELDS)
-        remove_state = self.state.removal(cuts, self.used, {})
+        remove_model = self.model.removal(cuts, self.used)
+        remove_state = self.state.removal(cuts, self.used)
         used = {axis: self.used[axis] - count for axis, count in rows.count.items()}
         moved = [
             (other, {axis: first - rows.count[axis] for axis, first in other.first.items()})

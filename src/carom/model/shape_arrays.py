@@ -103,7 +103,7 @@ class ShapeArrays:
     """
 
     def __init__(self) -> None:
-        self.table: ArrayTable = ArrayTable(Shapes)
+        self.table: ArrayTable = ArrayTable(Shapes, references=_INDEX_FIELDS)
         self.filters: PairFilters = PairFilters(self.table)
         self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
         self.breaking_fraction: float = BREAKING_FRACTION
@@ -263,7 +263,7 @@ class ShapeArrays:
         count = {**body.count, "link": link_count}
         cuts = {axis: (body.first[axis], number) for axis, number in body.count.items() if number}
         cuts |= {"link": (first_link, link_count), "tree": (rows.tree, 1)}
-        remove_rows = self.table.removal(cuts, self.used, _INDEX_FIELDS)
+        remove_rows = self.table.removal(cuts, self.used)
         forget_rules = self.filters.removal(first_link, link_count)
         used = {axis: self.used[axis] - number for axis, number in count.items()}
         moved = [
