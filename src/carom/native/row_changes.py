@@ -1,4 +1,4 @@
-"""Rows of all arrays of a table, put in and taken out by one native call each.
+"""Rows of all arrays of one table or several, put in and taken out by one native call each.
 
 The functions are in `native/source/table_rows.cpp`, which has the same structs. They are called with the GIL
 held, so no signal handler runs between the first array and the last.
@@ -74,10 +74,10 @@ class _Table(ctypes.Structure):
 
 
 class RowChanges:
-    """Changes of the rows of a table, valid until one of its arrays is replaced.
+    """Changes of the rows of tables, valid until one of their arrays is replaced.
 
     Args:
-        fields: All arrays of the table.
+        fields: All arrays of the tables.
         references: Those of its fields that contain row numbers.
     """
 
@@ -85,6 +85,7 @@ class RowChanges:
         names = [field.axis for field in fields] + [reference.target for reference in references]
         self._axes = tuple(dict.fromkeys(names))
         place = {axis: number for number, axis in enumerate(self._axes)}
+        self._zeros = (0,) * len(self._axes)
         self._fields = fields
         field_records = (_Field * len(fields))()
         for record, (axis, array, per_world) in zip(field_records, fields, strict=True):
@@ -106,7 +107,6 @@ class RowChanges:
         self._kept = field_records, reference_records, table
         self._table = ctypes.addressof(table)
         self._pack = Struct(f"{len(self._axes)}q").pack
-        self._pack_cuts = Struct(f"{3 * len(self._axes)}q").pack
         self._put, self._take = _functions()
 
     def first_rows(self, count: Mapping[str, int]) -> bytes:
@@ -116,37 +116,31 @@ class RowChanges:
             for axis, array, per_world in self._fields
         )
 
-    def put(self, rows: bytes, first: Mapping[str, int], count: Mapping[str, int]) -> None:
-        """Put rows into unused places of every world, as `first_rows` returned them for an equal table.
+    def packed(self, numbers: Mapping[str, int]) -> bytes:
+        """A number for each axis, as the native functions take them."""
+        return self._pack(*map(numbers.get, self._axes, self._zeros))
+
+    def put(self, rows: bytes, first: Mapping[str, int], count: bytes) -> None:
+        """Put rows into unused places of every world, as `first_rows` returned them for equal tables.
 
         Args:
             rows: The rows, with row numbers as if no other rows were there.
             first: Where they go, by axis.
-            count: How many there are, by axis.
+            count: How many there are, `packed`.
         """
-        first_of, count_of, axes = first.get, count.get, self._axes
-        self._put(
-            self._table,
-            rows,
-            self._pack(*[first_of(axis, 0) for axis in axes]),
-            self._pack(*[count_of(axis, 0) for axis in axes]),
-        )
+        self._put(self._table, rows, self.packed(first), count)
 
-    def removal(self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int]) -> Callable[[], None]:
-        """Prepare to remove consecutive rows of some axes; see `ArrayTable.removal`."""
-        numbers: list[int] = []
-        for axis in self._axes:
-            first, count = cuts.get(axis, _NO_CUT)
-            numbers += (first, count, used.get(axis, 0))
-        packed, done = self._pack_cuts(*numbers), ctypes.c_int32()
+    def removal(
+        self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
+    ) -> Callable[[], None]:
+        """Prepare to remove rows; see `ArrayTable.removal`."""
+        cut = self.packed(first), self.packed(count), self.packed(used)
+        done = ctypes.c_int32()
 
         def remove() -> None:
-            self._take(self._table, packed, done)
+            self._take(self._table, *cut, done)
 
         return remove
-
-
-_NO_CUT = (0, 0)
 
 
 @cache
@@ -155,6 +149,6 @@ def _functions() -> tuple[Any, Any]:
     from carom.native.library import library
 
     symbols = library().symbols
-    put = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p)
-    take = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int32))
+    put = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, *[ctypes.c_char_p] * 3)
+    take = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, *[ctypes.c_char_p] * 3, ctypes.POINTER(ctypes.c_int32))
     return put(("carom_put_rows", symbols)), take(("carom_take_rows", symbols))

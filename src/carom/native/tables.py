@@ -292,33 +292,43 @@ class ArrayTable:
         memo[id(self)] = other = self.copy()
         return other
 
-    def removal(self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int]) -> Callable[[], None]:
+    def removal(
+        self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
+    ) -> Callable[[], None]:
         """Prepare to remove consecutive rows of some axes; later rows move up and the freed rows are zero.
 
         Args:
-            cuts: First row and number of rows, by axis.
+            first: First row to remove, by axis.
+            count: Number of rows to remove, by axis; other axes keep theirs.
             used: Rows in use, by axis.
 
         Returns:
             A function that removes the rows; it can be called again if it was interrupted.
         """
-        return self.row_changes.removal(cuts, used)
+        return self.row_changes.removal(first, count, used)
 
     @property
     def row_changes(self) -> RowChanges:
         """Changes of rows of all arrays at once."""
         if self._row_changes is None:
-            self._row_changes = RowChanges(
-                [
-                    RowsOfAxis(field.axis, self._memory[name], field.per_world)
-                    for name, field in self._fields.items()
-                ],
-                [
-                    RowNumbers(name.partition("_")[0], target, self.numpy[name])
-                    for name, target in self._references.items()
-                ],
-            )
+            self._row_changes = RowChanges(self.row_fields, self.row_numbers)
         return self._row_changes
+
+    @property
+    def row_fields(self) -> list[RowsOfAxis]:
+        """All arrays."""
+        return [
+            RowsOfAxis(field.axis, self._memory[name], field.per_world)
+            for name, field in self._fields.items()
+        ]
+
+    @property
+    def row_numbers(self) -> list[RowNumbers]:
+        """The fields that contain row numbers."""
+        return [
+            RowNumbers(name.partition("_")[0], target, self.numpy[name])
+            for name, target in self._references.items()
+        ]
 
     def _rows_along(self, axis: str) -> list[np.ndarray]:
         """All arrays of an axis, with their row axis first."""

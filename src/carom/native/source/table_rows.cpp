@@ -33,12 +33,6 @@ struct Table {
     int64_t reference_count;
 };
 
-struct Cut {
-    int64_t first;
-    int64_t count;
-    int64_t used;  // rows in use before the cut
-};
-
 }  // namespace
 
 // Put rows into unused places. `data` has the rows of each field in turn, as in a table without other rows; `first` and
@@ -66,32 +60,32 @@ extern "C" CAROM_EXPORT void carom_put_rows(
     }
 }
 
-// Take consecutive rows out of each axis; later rows move up, and the rows that become free are zero. Nothing happens if
-// `done` is set, as this function does.
-extern "C" CAROM_EXPORT void carom_take_rows(const Table* table, const Cut* cuts, int32_t* done) {
+// Take consecutive rows out of each axis, of the rows that are in use on it; later rows move up, and the rows that become
+// free are zero. Nothing happens if `done` is set, as this function does.
+extern "C" CAROM_EXPORT void carom_take_rows(
+    const Table* table, const int64_t* first, const int64_t* count, const int64_t* used, int32_t* done) {
     if (*done)
         return;
     for (int64_t i = 0; i < table->field_count; ++i) {
         const Field& field = table->fields[i];
-        const Cut cut = cuts[field.axis];
-        if (!cut.count)
-            continue;
-        const int64_t size = field.row_bytes, kept = cut.used - cut.count;
-        for (int64_t world = 0; world < field.worlds; ++world) {
+        const int64_t size = field.row_bytes, from = first[field.axis], gone = count[field.axis];
+        const int64_t kept = used[field.axis] - gone;
+        for (int64_t world = 0; gone && world < field.worlds; ++world) {
             char* rows = field.memory + world * field.world_bytes;
-            memmove(rows + cut.first * size, rows + (cut.first + cut.count) * size, (kept - cut.first) * size);
-            memset(rows + kept * size, 0, cut.count * size);
+            memmove(rows + from * size, rows + (from + gone) * size, (kept - from) * size);
+            memset(rows + kept * size, 0, gone * size);
         }
     }
     for (int64_t i = 0; i < table->reference_count; ++i) {
         const Reference& reference = table->references[i];
-        const Cut rows = cuts[reference.axis], cut = cuts[reference.target];
+        const int64_t gone = count[reference.target], after = first[reference.target] + gone;
+        const int64_t kept = used[reference.axis] - count[reference.axis];
         char* row = reference.memory;
-        for (int64_t k = rows.count; cut.count && k < rows.used; ++k, row += reference.row_bytes) {
+        for (int64_t k = 0; gone && k < kept; ++k, row += reference.row_bytes) {
             int32_t* numbers = reinterpret_cast<int32_t*>(row);
             for (int64_t n = 0; n < reference.numbers; ++n)
-                if (numbers[n] >= cut.first + cut.count)
-                    numbers[n] -= static_cast<int32_t>(cut.count);
+                if (numbers[n] >= after)
+                    numbers[n] -= gone;
         }
     }
     *done = 1;
