@@ -109,6 +109,7 @@ def _without_scheme(name: str) -> str:
 
 def _is_file(path: str) -> bool:
     try:
-        return os.path.isfile(path)
+        # Most places that are searched have no such file, and this says so in less than half the time.
+        return os.access(path, os.F_OK) and os.path.isfile(path)
     except ValueError:  # embedded NUL characters
         return False

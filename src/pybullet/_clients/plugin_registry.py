@@ -68,14 +68,16 @@ class Plugins:
             additional: The directory of `setAdditionalSearchPath`.
             last: Directory that is searched last.
         """
-        places = [self.places[slot] for slot in sorted(self.places)]
-        folders = [place if isinstance(place, Path) else place.folder for place in places]
-        if last is not None and last != additional:
-            folders.append(last)
+        folders: tuple[Path, ...] = ()
+        if self.places:
+            places = [self.places[slot] for slot in sorted(self.places)]
+            folders = tuple([place if isinstance(place, Path) else place.folder for place in places])
+        if last is not None and last is not additional and last != additional:
+            folders = (*folders, last)
         search = self._search
-        if search is None or (search.additional, search.folders) != (additional, tuple(folders)):
+        if search is None or (search.additional, search.folders) != (additional, folders):
             from carom.formats.search import AssetSearch
 
             # The same object as long as possible, because files are cached by it.
-            search = self._search = AssetSearch(additional, tuple(folders))
+            search = self._search = AssetSearch(additional, folders)
         return search
