@@ -4,6 +4,7 @@ import logging
 import os
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -205,3 +206,34 @@ def test_flags_and_fixed_bases_are_told_apart(tmp_path: Path) -> None:
         bare = world.load_urdf(path, flags=LoadFlags.IGNORE_COLLISION_SHAPES)
         assert not bare.spec.base.collisions
         assert width(world, world.load_urdf(path, scale=3.0)) == pytest.approx(3.0)
+
+
+def test_a_copy_of_the_world_gets_bodies_of_its_own(tmp_path: Path) -> None:
+    path, world = write_cube(tmp_path / "cube.urdf"), World()
+    first, *_ = [world.load_urdf(path, (float(number), 0.0, 0.0)) for number in range(3)]
+    copy = world.copy()
+    before = {name: array.copy() for name, array in content(world).items()}
+    copy.remove(first.id)
+    copy.load_urdf("r2d2.urdf")
+    copy.load_urdf(path)
+    for name, array in content(world).items():
+        np.testing.assert_array_equal(array, before[name], err_msg=name)
+    assert copy.arrays.used["link"] == sum(1 + body.joint_count for body in copy.bodies.values())
+    for body in copy.bodies.values():
+        assert copy.arrays.model.numpy["tree_first_link"][body.rows.tree] == body.first_link
+
+
+def test_threads_load_the_same_file(tmp_path: Path) -> None:
+    path = write_cube(tmp_path / "cube.urdf")
+
+    def cycle(number: int) -> list[float]:
+        world = World()
+        for _ in range(60):
+            world.load_urdf(path, (float(number), 0.0, 0.0))
+            world.load_urdf(path, (0.0, float(number), 0.0), fixed_base=True)
+            world.remove(next(iter(world.bodies)))
+        return world.position[: world.arrays.used["position"]].tolist()
+
+    with ThreadPoolExecutor(4) as threads:
+        found = list(threads.map(cycle, range(8)))
+    assert found == [cycle(number) for number in range(8)]
