@@ -2,7 +2,6 @@
 // signal can interrupt. `carom.native.row_changes` has the same structs.
 
 #include <stdint.h>
-#include <string.h>
 
 #include "export.h"
 
@@ -44,7 +43,7 @@ extern "C" CAROM_EXPORT void carom_put_rows(
         const int64_t bytes = count[field.axis] * field.row_bytes;
         char* memory = field.memory + first[field.axis] * field.row_bytes;
         for (int64_t world = 0; world < field.worlds; ++world)
-            memcpy(memory + world * field.world_bytes, data, bytes);
+            __builtin_memcpy(memory + world * field.world_bytes, data, bytes);
         data += bytes;
     }
     for (int64_t i = 0; i < table->reference_count; ++i) {
@@ -60,8 +59,8 @@ extern "C" CAROM_EXPORT void carom_put_rows(
     }
 }
 
-// Take consecutive rows out of each axis, of the rows that are in use on it; later rows move up, and the rows that become
-// free are zero. Nothing happens if `done` is set, as this function does.
+// Take consecutive rows out of each axis, of the rows in use on it; later rows move up, and the rows that become free
+// are zero. Nothing happens if `done` is set, as this function does.
 extern "C" CAROM_EXPORT void carom_take_rows(
     const Table* table, const int64_t* first, const int64_t* count, const int64_t* used, int32_t* done) {
     if (*done)
@@ -72,8 +71,8 @@ extern "C" CAROM_EXPORT void carom_take_rows(
         const int64_t kept = used[field.axis] - gone;
         for (int64_t world = 0; gone && world < field.worlds; ++world) {
             char* rows = field.memory + world * field.world_bytes;
-            memmove(rows + from * size, rows + (from + gone) * size, (kept - from) * size);
-            memset(rows + kept * size, 0, gone * size);
+            __builtin_memmove(rows + from * size, rows + (from + gone) * size, (kept - from) * size);
+            __builtin_memset(rows + kept * size, 0, gone * size);
         }
     }
     for (int64_t i = 0; i < table->reference_count; ++i) {
