@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
     import logging
@@ -14,9 +14,14 @@ class Logger:
 
     Args:
         name: The logger's name.
+
+    Attributes:
+        count: Number of messages of all loggers so far.
     """
 
     __slots__ = ("_name",)
+
+    count: ClassVar[int] = 0
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -41,4 +46,5 @@ class Logger:
     def _logger(self) -> logging.Logger:
         from logging import getLogger
 
+        Logger.count += 1
         return getLogger(self._name)

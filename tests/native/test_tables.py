@@ -90,7 +90,7 @@ def test_deleted_rows_close_up_and_leave_zeros(table, start, count, used):
     other[:] = 5
     kept = np.delete(view[:used], np.s_[start : start + count], axis=0)
     expected = np.concatenate([kept, 0 * view[:count], view[used:]])
-    table.removal({"link": (start, count)}, {"link": used}, {})()
+    table.removal({"link": start}, {"link": count}, {"link": used})()
     np.testing.assert_array_equal(view, expected)
     assert (other == 5).all()
 
@@ -202,7 +202,7 @@ def test_rows_that_are_removed_leave_zeros_in_every_world(first, table):
         for row in range(5):
             array[row] = row + 2
     before = {name: array.copy() for name, array in arrays.items()}
-    remove = table.removal({"link": (first, 2)}, {"link": 5}, {})
+    remove = table.removal({"link": first}, {"link": 2}, {"link": 5})
     for _ in range(2):
         remove()
         for name, array in arrays.items():

@@ -109,17 +109,21 @@ def transposed(m: Matrix3) -> Matrix3:
 
 def matrix_product(a: Matrix3, b: Matrix3) -> Matrix3:
     """Product of two 3x3 matrices."""
-    columns = transposed(b)
+    # Written out: twelve calls take three times as long.
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = a
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = b
     return (
-        (dot(a[0], columns[0]), dot(a[0], columns[1]), dot(a[0], columns[2])),
-        (dot(a[1], columns[0]), dot(a[1], columns[1]), dot(a[1], columns[2])),
-        (dot(a[2], columns[0]), dot(a[2], columns[1]), dot(a[2], columns[2])),
+        (ax * xx + ay * yx + az * zx, ax * xy + ay * yy + az * zy, ax * xz + ay * yz + az * zz),
+        (bx * xx + by * yx + bz * zx, bx * xy + by * yy + bz * zy, bx * xz + by * yz + bz * zz),
+        (cx * xx + cy * yx + cz * zx, cx * xy + cy * yy + cz * zy, cx * xz + cy * yz + cz * zz),
     )
 
 
 def matrix_vector(m: Matrix3, v: Vector3) -> Vector3:
     """Product of a 3x3 matrix and a vector."""
-    return (dot(m[0], v), dot(m[1], v), dot(m[2], v))
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = m
+    x, y, z = v
+    return (ax * x + ay * y + az * z, bx * x + by * y + bz * z, cx * x + cy * y + cz * z)
 
 
 def dot(a: Vector3, b: Vector3) -> float:

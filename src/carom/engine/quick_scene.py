@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.native.kernels import forward_kinematics_kernel
+from carom.native.launch import KernelStructs, TreeLaunch
 from carom.native.quick_calls import DAMPING, REPORT_ARRAYS, REPORT_SCALARS, SURFACE, Launch, Scene
 
 if TYPE_CHECKING:
@@ -19,7 +21,6 @@ if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
     from carom.model.builder import WorldArrays
     from carom.native.launch import Launch as KernelLaunch
-    from carom.native.launch import TreeLaunch
     from carom.queries.question import Question
 
 
@@ -37,22 +38,30 @@ class QuickScene:
         record: The addresses; unknown functions are null.
     """
 
-    __slots__ = ("_kept", "_stepped", "record")
+    __slots__ = ("_is_empty", "_kept", "_posed", "_posing", "_stepped", "record")
 
     def __init__(self) -> None:
         self.record = Scene()
         # The objects that the addresses point to.
         self._kept: list[Any] = []
         self._stepped: tuple[Any, ...] = ()
+        # The last launch that updates link poses, and the structs that it and other addresses are made for.
+        self._posing: TreeLaunch | None = None
+        self._posed: tuple[Any, ...] = ()
+        # Nothing was set since everything was forgotten.
+        self._is_empty = True
 
     def forget(self) -> None:
         """Forget all addresses: the world has changed."""
+        if self._is_empty:
+            return
         self.record.find_poses.function = None
         self.record.find_twists.function = None
         self.forget_step()
         self.forget_queries()
         self.forget_detection()
         self._kept.clear()
+        self._is_empty = True
 
     def forget_detection(self) -> None:
         """Forget the addresses that detect collisions: settings may change before the next time."""
@@ -70,11 +79,28 @@ class QuickScene:
         self.record.placement.changes = -1
         self.record.nearest.search.function = None
 
-    def know_poses(self, launch: TreeLaunch, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Set the addresses that update the link poses of a body, and those of contacts and surfaces."""
+    def know_poses(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> TreeLaunch:
+        """Set the addresses that update the link poses of a body, and those of contacts and surfaces.
+
+        Returns:
+            A launch that updates the link poses of a body.
+        """
         contacts, shapes = contact_arrays.contacts.struct(), contact_arrays.shapes.table.struct()
-        model = arrays.model.struct()
-        self._kept += (launch, contacts, shapes, model)
+        structs = arrays.model.struct(), arrays.state.struct(), contacts, shapes
+        launch = self._posing
+        # Structs are the same objects until arrays are replaced; most changes of a scene leave them there.
+        if launch is None or structs != self._posed:
+            self._posing = None
+            launch = self._address_poses(*structs, contact_arrays)
+            self._posed, self._posing = structs, launch
+        self._is_empty = False
+        _know(self.record.find_poses, launch)
+        return launch
+
+    def _address_poses(
+        self, model: Any, state: Any, contacts: Any, shapes: Any, contact_arrays: ContactArrays
+    ) -> TreeLaunch:
+        """Set the addresses that depend on these structs only, and return their launch."""
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
         self.record.surface_names[:] = [id(name) for name in _NAMES]
         self.record.damping[:] = [getattr(model, field).data for field in DAMPING]
@@ -84,7 +110,7 @@ class QuickScene:
         self.record.contact_count = contacts.count_contacts.data
         self.record.contact_warm_starts = contacts.contact_warm_start.data
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]
-        _know(self.record.find_poses, launch)
+        return TreeLaunch(forward_kinematics_kernel, KernelStructs(model=model, state=state))
 
     def know_step(
         self, engine: Engine, time: c_double, observers: list[Any], parameters: EngineParameters
@@ -99,6 +125,7 @@ class QuickScene:
         """
         contacts = engine.contact_arrays.contacts.struct()
         self._stepped = engine, time, observers, contacts
+        self._is_empty = False
         record = self.record.step
         run, record.status, record.duration = engine.step_addresses()
         record.time, record.observers = addressof(time), id(observers)
@@ -110,7 +137,7 @@ class QuickScene:
 
     def know_twists(self, launch: TreeLaunch) -> None:
         """Set the addresses that update the link velocities of a body."""
-        self._kept.append(launch)
+        self.keep(launch)
         _know(self.record.find_twists, launch)
 
     def know_detection(
@@ -125,7 +152,7 @@ class QuickScene:
             status: The status of the world.
         """
         poses_before = np.empty(poses.nbytes // 8)
-        self._kept += (detector, find_poses, poses, poses_before, status)
+        self.keep(detector, find_poses, poses, poses_before, status)
         record = self.record.detection
         called = record.find_poses
         called.function, called.bounds, called.arguments = find_poses.addresses()
@@ -136,6 +163,7 @@ class QuickScene:
 
     def keep(self, *what: Any) -> None:
         """Keep the memory that addresses in the record point to, until they are forgotten."""
+        self._is_empty = False
         self._kept += what
 
     def know_contacts(self, question: Question, there: int, keep: Any) -> None:
@@ -148,7 +176,7 @@ class QuickScene:
         """
         report = question.arrays.struct()
         launch = question.launch
-        self._kept += (launch, report, keep)
+        self.keep(launch, report, keep)
         record = self.record.report
         # The function last: without it the other addresses are not used.
         function, record.bounds, record.arguments, *asked = launch.addresses(*REPORT_SCALARS)

@@ -43,23 +43,24 @@ class FileStamp(NamedTuple):
         status = os.stat(file)
         return cls(status.st_mtime_ns, status.st_size, status.st_ino, time.time_ns())
 
-    def same_file(self, other: FileStamp) -> bool:
-        """Whether both stamps certainly belong to the same content."""
+    def is_of(self, file: Path) -> bool:
+        """Whether a file certainly has the same content as when the stamp was taken."""
+        status = os.stat(file)
         return (
-            self.modified == other.modified
-            and self.size == other.size
-            and self.inode == other.inode
-            and min(self.taken, other.taken) - self.modified > SETTLED_NS
+            status.st_mtime_ns == self.modified
+            and status.st_size == self.size
+            and status.st_ino == self.inode
+            and min(self.taken, time.time_ns()) - self.modified > SETTLED_NS
         )
 
 
 def is_fresh(file: Path) -> bool:
     """Whether a file was written very recently, so that it may be a temporary one."""
     try:
-        stamp = FileStamp.of(file)
+        modified = os.stat(file).st_mtime_ns
     except OSError:
         return False
-    return stamp.taken - stamp.modified < FRESH_NS
+    return time.time_ns() - modified < FRESH_NS
 
 
 def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
@@ -109,7 +110,7 @@ class FileCache(Generic[Key, Value]):
                 return None
             stamp, value = entry
             try:
-                unchanged = stamp.same_file(FileStamp.of(file))
+                unchanged = stamp.is_of(file)
             except FileNotFoundError:
                 unchanged = self._outlive
             except OSError:

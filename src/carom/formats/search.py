@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import lru_cache
 from pathlib import Path
 
 from carom.record import record
@@ -10,9 +11,10 @@ from carom.record import record
 # Scripts written against a source tree name files relative to a `data` folder near the working directory.
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")
 _SCHEMES = ("package://", "model://")
+_CACHED = 1024
 
 
-@record
+@record(hot=True)
 class AssetSearch:
     """The directories that are searched for files, and their order.
 
@@ -38,16 +40,12 @@ class AssetSearch:
         Returns:
             The path of an existing file as it was found, or None.
         """
-        names = [os.fspath(name)]
-        for folder in self.places:
-            if folder is not None:
-                names.append(os.path.join(folder, os.fspath(name).lstrip("/\\")))
-        for candidate in names:
-            prefixes = _DATA_PREFIXES if not os.path.isabs(candidate) else _DATA_PREFIXES[:1]
-            for prefix in prefixes:
-                if _is_file(prefix + candidate):
-                    return Path(prefix + candidate)
-        return None
+        text = os.fspath(name)
+        found = _nearby(text)
+        for folder in self.places if found is None else ():
+            if folder is not None and (found := _nearby(os.path.join(folder, text.lstrip("/\\")))):
+                break
+        return found
 
     def find_referenced(self, name: str, source: Path) -> Path | None:
         """The file that a robot file refers to.
@@ -65,21 +63,40 @@ class AssetSearch:
         """
         name = _without_scheme(name)
         if _is_file(name):
-            return Path(name)
+            return path_of(name)
         # A name with a leading slash, left by `file:///`, still counts as relative to these directories.
         relative = name.lstrip("/\\")
-        for directory in source.parents:
+        for directory in _folders_above(source):
             candidate = os.path.join(directory, relative)
             if _is_file(candidate):
-                return Path(candidate)
+                return path_of(candidate)
         for prefix in ("../", "../../"):
             if _is_file(prefix + relative):
-                return Path(prefix + relative)
+                return path_of(prefix + relative)
         return None
 
     def find_included(self, name: str, source: Path) -> Path | None:
         """The file that a robot file includes: as `find_referenced`, and then as `find`."""
         return self.find_referenced(name, source) or self.find(_without_scheme(name))
+
+
+@lru_cache(_CACHED)
+def path_of(text: str) -> Path:
+    """The path of a text, the same object each time: making one takes as long as looking for its file."""
+    return Path(text)
+
+
+@lru_cache(_CACHED)
+def _folders_above(file: Path) -> tuple[str, ...]:
+    return tuple(map(str, file.parents))
+
+
+def _nearby(candidate: str) -> Path | None:
+    """The file with a path, or, if that is relative, with this path in a nearby `data` folder."""
+    for prefix in _DATA_PREFIXES[:1] if os.path.isabs(candidate) else _DATA_PREFIXES:
+        if _is_file(prefix + candidate):
+            return path_of(prefix + candidate)
+    return None
 
 
 def _without_scheme(name: str) -> str:
@@ -92,6 +109,7 @@ def _without_scheme(name: str) -> str:
 
 def _is_file(path: str) -> bool:
     try:
-        return os.path.isfile(path)
+        # Most places that are searched have no such file, and this says so in less than half the time.
+        return os.access(path, os.F_OK) and os.path.isfile(path)
     except ValueError:  # embedded NUL characters
         return False

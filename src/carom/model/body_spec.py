@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import field
 from pathlib import Path
+from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.pose import IDENTITY, Vector3
@@ -78,9 +79,24 @@ class LinkSpec:
     user_data: dict[str, str] = field(default_factory=dict)
 
 
+class Reusable:
+    """Base of specifications that several bodies may share; its attributes are no part of their value.
+
+    Attributes:
+        is_reused: Whether another body was made from it before, and it has not changed since.
+        pattern: What is the same for all these bodies; see `carom.scene.pattern`. None until the second one.
+    """
+
+    __slots__ = ("is_reused", "pattern")
+
+    def __post_init__(self) -> None:
+        self.is_reused: bool = False
+        self.pattern: Any = None
+
+
 @record(frozen=False, hot=True)
-class BodySpec:
-    """A tree of links.
+class BodySpec(Reusable):
+    """A tree of links; it does not change any more after a body has been made from it.
 
     Attributes:
         name: Name of the robot.

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import deepcopy
 from dataclasses import field
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,8 +30,12 @@ from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
+from carom.native.row_changes import RowChanges
 from carom.native.tables import ArrayTable
 from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.model.body_rows import BodyRows
 
 # Bullet's default, a float32 in its source.
 DEFAULT_LINK_DAMPING = float(np.float32(0.04))
@@ -57,7 +62,7 @@ _INDEX_FIELDS = {
 }
 
 
-@record(frozen=False)
+@record(frozen=False, hot=True)
 class TreeRows:
     """The rows of a body in the flat arrays."""
 
@@ -71,25 +76,45 @@ class WorldArrays:
 
     def __init__(self, world_count: int = 1) -> None:
         self.world_count = world_count
-        self.model: ArrayTable = ArrayTable(Model)
+        self.model: ArrayTable = ArrayTable(Model, references=_INDEX_FIELDS)
         self.state: ArrayTable = ArrayTable(State, world_count)
         self.used: dict[str, int] = dict.fromkeys(
             ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node"), 0
         )
+        # The numbers of replacements for which it was made, and it.
+        self._row_changes: tuple[tuple[int, int], RowChanges] | None = None
 
     def repeated(self, world_count: int) -> WorldArrays:
         """Arrays for `world_count` worlds, all copies of the first; they share its parameters."""
         other = WorldArrays.__new__(WorldArrays)
         other.world_count = world_count
         other.used = self.used.copy()
+        other._row_changes = None
         other.model = self.model.copy()
         other.state = self.state.copy(world_count, self.used)
+        return other
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> WorldArrays:
+        memo[id(self)] = other = WorldArrays.__new__(WorldArrays)
+        # The addresses in it are those of the original arrays.
+        other.__dict__.update(deepcopy({**self.__dict__, "_row_changes": None}, memo))
         return other
 
     @property
     def tables(self) -> tuple[ArrayTable, ArrayTable]:
         """Model and state."""
         return self.model, self.state
+
+    @property
+    def row_changes(self) -> RowChanges:
+        """Changes of rows of all arrays at once."""
+        made_for = self.model.replacements, self.state.replacements
+        if self._row_changes is None or self._row_changes[0] != made_for:
+            changes = RowChanges(
+                self.model.row_fields + self.state.row_fields, self.model.row_numbers + self.state.row_numbers
+            )
+            self._row_changes = made_for, changes
+        return self._row_changes[1]
 
     def reserve(self, **more: int) -> None:
         """Make room for more rows on the named axes."""
@@ -135,6 +160,26 @@ class WorldArrays:
             )
         for axis, number in count.items():
             self.used[axis] += number
+        return rows
+
+    def put(self, known: BodyRows, base_pose: Pose) -> TreeRows:
+        """Add a body at rest whose rows are known; see `append`.
+
+        Args:
+            known: Its rows.
+            base_pose: World pose of the base's inertial frame.
+
+        Returns:
+            Its rows here.
+        """
+        used, count = self.used, known.count
+        needed = {axis: used[axis] + number for axis, number in count.items()}
+        self.model.reserve(needed)
+        self.state.reserve(needed)
+        rows = TreeRows(used["tree"], {axis: used[axis] for axis in count}, count)
+        self.row_changes.put(known.rows, rows.first, known.packed_count)
+        self._write_start(rows, base_pose)
+        used.update(needed)
         return rows
 
     def _write_tree(self, rows: TreeRows, flags: int) -> None:
@@ -292,9 +337,7 @@ class WorldArrays:
         Returns:
             A function that removes them; it can be called again if it was interrupted.
         """
-        cuts = {axis: (rows.first[axis], count) for axis, count in rows.count.items() if count}
-        remove_model = self.model.removal(cuts, self.used, _INDEX_FIELDS)
-        remove_state = self.state.removal(cuts, self.used, {})
+        remove_rows = self.row_changes.removal(rows.first, rows.count, self.used)
         used = {axis: self.used[axis] - count for axis, count in rows.count.items()}
         moved = [
             (other, {axis: first - rows.count[axis] for axis, first in other.first.items()})
@@ -303,8 +346,7 @@ class WorldArrays:
         ]
 
         def remove() -> None:
-            remove_model()
-            remove_state()
+            remove_rows()
             self.used.update(used)
             for other, first in moved:
                 other.first, other.tree = first, first["tree"]

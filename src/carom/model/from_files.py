@@ -65,6 +65,8 @@ def make_shapes(bodies: Sequence[PlacedBody]) -> None:
         DescriptionError: The file of a mesh cannot be used.
     """
     for spec, _ in bodies:
+        if spec.pattern is not None:
+            continue
         implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         for link in (spec.base, *spec.links):
             for collision in link.collisions:

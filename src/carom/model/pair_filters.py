@@ -61,8 +61,13 @@ class PairFilters:
 
     def way_back(self) -> Callable[[], None]:
         """A function that restores the present rules."""
+        if not self._pairs:
+            return self._forget_all
         enabled = self._table.numpy["filter_enabled"][: len(self._pairs)].copy()
         return partial(self._write_all, self._pairs.copy(), enabled)
+
+    def _forget_all(self) -> None:
+        self._write_all([], np.zeros(0))
 
     def removal(self, first: int, count: int) -> Callable[[], None]:
         """Prepare to drop the rules of removed links; later links move up.

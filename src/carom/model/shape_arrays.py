@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from carom.model.placed_pieces import AXES, PlacedPiece, has_own_margin, placed_
 from carom.model.shape_pieces import ShapePiece
 from carom.native.tables import ArrayTable
 from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.model.body_rows import BodyRows
 
 # Collision groups of bodies that move and of fixed bases, and the groups each collides with.
 MOVING_GROUP, MOVING_MASK = 1, -1
@@ -103,7 +106,7 @@ class ShapeArrays:
     """
 
     def __init__(self) -> None:
-        self.table: ArrayTable = ArrayTable(Shapes)
+        self.table: ArrayTable = ArrayTable(Shapes, references=_INDEX_FIELDS)
         self.filters: PairFilters = PairFilters(self.table)
         self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
         self.breaking_fraction: float = BREAKING_FRACTION
@@ -174,6 +177,32 @@ class ShapeArrays:
         for link_row, surface in enumerate(surfaces, start=self.used["link"] - len(links)):
             self.write_surface(link_row, surface)
         return grown
+
+    def put(self, known: BodyRows, rows: TreeRows) -> None:
+        """Add the shapes of a body whose rows are known; see `append`.
+
+        Args:
+            known: Its rows.
+            rows: Rows of its tree, which were put into the model just before.
+        """
+        used, count = self.used, known.shape_count
+        needed = {axis: used[axis] + number for axis, number in count.items()}
+        self.table.reserve(needed)
+        first = {axis: used[axis] for axis in AXES}
+        body = BodyShapes(
+            rows, first, {axis: count[axis] for axis in AXES}, [*known.bounds], [*known.own_margin]
+        )
+        self._bodies[rows.first["link"]] = body
+        first_row = {**first, "link": used["link"], "tree": rows.tree}
+        self.table.row_changes.put(known.shape_rows, first_row, known.packed_shape_count)
+        used.update(needed)
+        self.changes += 1
+        if self.breaking_fraction != known.breaking_fraction:
+            self._write_breaking(body)
+
+    def body_of(self, rows: TreeRows) -> BodyShapes:
+        """The rows of a body's shapes."""
+        return self._bodies[rows.first["link"]]
 
     def _write_links(self, body: BodyShapes, spec: BodySpec, links: Sequence[LinkSpec]) -> None:
         numpy = self.table.numpy
@@ -261,9 +290,9 @@ class ShapeArrays:
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]
         count = {**body.count, "link": link_count}
-        cuts = {axis: (body.first[axis], number) for axis, number in body.count.items() if number}
-        cuts |= {"link": (first_link, link_count), "tree": (rows.tree, 1)}
-        remove_rows = self.table.removal(cuts, self.used, _INDEX_FIELDS)
+        remove_rows = self.table.removal(
+            {**body.first, "link": first_link, "tree": rows.tree}, {**count, "tree": 1}, self.used
+        )
         forget_rules = self.filters.removal(first_link, link_count)
         used = {axis: self.used[axis] - number for axis, number in count.items()}
         moved = [
@@ -322,10 +351,14 @@ class ShapeArrays:
         if fraction == self.breaking_fraction:
             return
         self.breaking_fraction = fraction
-        breaking = self.table.numpy["shape_breaking"]
         for body in self._bodies.values():
-            for link, bounds in enumerate(body.bounds):
-                breaking[self._shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
+            self._write_breaking(body)
+
+    def _write_breaking(self, body: BodyShapes) -> None:
+        breaking = self.table.numpy["shape_breaking"]
+        for link, bounds in enumerate(body.bounds):
+            shapes = self._shapes_of(body.rows.first["link"] + link)
+            breaking[shapes] = self.breaking_fraction * reach(bounds)
 
     def bounds(self, link_row: int) -> Bounds:
         """Bounds of a link's shapes along the axes of its inertial frame, margins included."""

@@ -80,7 +80,7 @@ class SoftArrays:
     """
 
     def __init__(self) -> None:
-        self.table: ArrayTable = ArrayTable(SoftModel)
+        self.table: ArrayTable = ArrayTable(SoftModel, references=_INDEX_FIELDS)
         self.table.reserve({"count": 2})
         self.used: dict[str, int] = dict.fromkeys(_AXES, 0)
         self.bodies: list[SoftRows] = []
@@ -187,10 +187,8 @@ class SoftArrays:
             return _nothing
         gone = next((soft for soft in self.bodies if soft.rows is rows), None)
         count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count
-        cuts = {"tree": (rows.tree, 1)}
-        if gone is not None:
-            cuts |= {axis: (gone.first[axis], number) for axis, number in count.items() if number}
-        remove_rows = self.table.removal(cuts, self.used, _INDEX_FIELDS)
+        first = {} if gone is None else gone.first
+        remove_rows = self.table.removal({**first, "tree": rows.tree}, {**count, "tree": 1}, self.used)
         used = {axis: self.used[axis] - number for axis, number in count.items()}
         bodies = [soft for soft in self.bodies if soft is not gone]
         later = [] if gone is None else self.bodies[self.bodies.index(gone) + 1 :]

@@ -101,7 +101,7 @@ class IslandTags:
     def add(self, body: Hashable, moving: Sequence[bool]) -> None:
         """Append the links of a body, base first; `moving` says which are not static."""
         self._tags = None
-        self._objects.extend(((body, link), moves) for link, moves in enumerate(moving))
+        self._objects.extend([((body, link), moves) for link, moves in enumerate(moving)])
 
     def way_back(self) -> Callable[[], None]:
         """A function that removes all objects added from now on, and restores the order."""

@@ -18,6 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from carom.layouts.types import ArrayType, ArrayView, Struct, Type
+from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis
 from carom.native.undo import Undo
 from carom.native.zeros import zeros
 
@@ -126,6 +127,7 @@ class ArrayTable:
         world_count: int = 1,
         entry_views: Mapping[str, str] | None = None,
         first_capacity: int = _FIRST_CAPACITY,
+        references: Mapping[str, str] | None = None,
     ) -> None:
         """Make the arrays with the least capacity.
 
@@ -134,9 +136,12 @@ class ArrayTable:
             world_count: Length of the world axis.
             entry_views: Fields that show the vectors of another field scalar by scalar.
             first_capacity: Number of rows to allocate on each axis.
+            references: Fields whose values are row numbers, with the axis of these rows; values are updated
+                when rows move.
         """
         self._struct = struct
         self._entry_views = dict(entry_views or {})
+        self._references = dict(references or {})
         self._fields = {
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
@@ -148,7 +153,7 @@ class ArrayTable:
         self._made: Any = None
         self._bytes: dict[str, memoryview[int]] = {}
         self._by_axis: dict[str, list[np.ndarray]] = {}
-        self._memory_by_axis: dict[str, list[tuple[memoryview[int], int]]] = {}
+        self._row_changes: RowChanges | None = None
         self._replace({name: self._allocate(name, first_capacity) for name in self._fields})
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
@@ -177,7 +182,7 @@ class ArrayTable:
         self._made = None
         self._bytes.clear()
         self._by_axis.clear()
-        self._memory_by_axis.clear()
+        self._row_changes = None
         for name, array in self._memory.items():
             field = self._fields[name]
             self.capacity[field.axis] = array.shape[int(field.per_world)]
@@ -258,7 +263,7 @@ class ArrayTable:
         other = ArrayTable.__new__(ArrayTable)
         other.__dict__.update(self.__dict__)
         other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
-        other._by_axis, other._memory_by_axis = {}, {}
+        other._by_axis, other._row_changes = {}, None
         other._world_counts = self._world_counts.copy()
         other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
         arrays = {}
@@ -288,62 +293,42 @@ class ArrayTable:
         return other
 
     def removal(
-        self, cuts: Mapping[str, tuple[int, int]], used: Mapping[str, int], targets: Mapping[str, str]
+        self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
     ) -> Callable[[], None]:
         """Prepare to remove consecutive rows of some axes; later rows move up and the freed rows are zero.
 
         Args:
-            cuts: First row and number of rows, by axis.
+            first: First row to remove, by axis.
+            count: Number of rows to remove, by axis; other axes keep theirs.
             used: Rows in use, by axis.
-            targets: Fields whose values are row numbers, with the axis of these rows; values are updated.
 
         Returns:
             A function that removes the rows; it can be called again if it was interrupted.
         """
-        moves, freed, values = [], [], []
-        for axis, (start, count) in cuts.items():
-            arrays = self._rows_along(axis)
-            if not arrays:
-                continue
-            end = used[axis]
-            if start + count < end:
-                moves += [(rows[start : end - count], rows[start + count : end].copy()) for rows in arrays]
-            freed.append((self._memory_along(axis), end - count, end))
-        # Axes whose last rows are removed. The rows before them do not refer to removed or later rows.
-        last = {axis for axis, cut in cuts.items() if sum(cut) == used.get(axis)}
-        for name, target in targets.items():
-            axis = name.partition("_")[0]
-            first, gone = cuts.get(axis, (0, 0))
-            if target in cuts and not (axis in last and target in last):
-                rows = self.numpy[name][: used[axis]]
-                kept = np.concatenate((rows[:first], rows[first + gone :]))
-                start, count = cuts[target]
-                kept[kept >= start + count] -= count
-                values.append((rows[: len(kept)], kept))
+        return self.row_changes.removal(first, count, used)
 
-        def remove() -> None:
-            for rows, moved in (*moves, *values):
-                rows[...] = moved
-            for memories, first, end in freed:
-                for memory, size in memories:
-                    memory[first * size : end * size] = bytes((end - first) * size)
+    @property
+    def row_changes(self) -> RowChanges:
+        """Changes of rows of all arrays at once."""
+        if self._row_changes is None:
+            self._row_changes = RowChanges(self.row_fields, self.row_numbers)
+        return self._row_changes
 
-        return remove
+    @property
+    def row_fields(self) -> list[RowsOfAxis]:
+        """All arrays."""
+        return [
+            RowsOfAxis(field.axis, self._memory[name], field.per_world)
+            for name, field in self._fields.items()
+        ]
 
-    def _memory_along(self, axis: str) -> list[tuple[memoryview[int], int]]:
-        """The memory of all arrays of an axis, world by world, and the bytes of a row.
-
-        Through it a few rows are cleared in a fraction of the time that NumPy takes.
-        """
-        found = self._memory_by_axis.get(axis)
-        if found is None:
-            found = []
-            for name, field in self._fields.items():
-                array = self._memory[name]
-                for rows in (array if field.per_world else [array]) if field.axis == axis else ():
-                    found.append((rows.reshape(-1).view(np.uint8).data, rows.nbytes // len(rows)))
-            self._memory_by_axis[axis] = found
-        return found
+    @property
+    def row_numbers(self) -> list[RowNumbers]:
+        """The fields that contain row numbers."""
+        return [
+            RowNumbers(name.partition("_")[0], target, self.numpy[name])
+            for name, target in self._references.items()
+        ]
 
     def _rows_along(self, axis: str) -> list[np.ndarray]:
         """All arrays of an axis, with their row axis first."""

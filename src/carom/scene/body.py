@@ -30,6 +30,26 @@ _NUMBER = np.dtype(NUMPY_REAL)
 _POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 
 
+class Outline:
+    """What bodies take over from their specification.
+
+    Attributes:
+        joint_types: See `Body`.
+        position_count: See `Body`.
+        velocity_count: See `Body`.
+        dynamics: Parameters of each link after loading, the base first.
+    """
+
+    def __init__(self, spec: BodySpec) -> None:
+        codes = [JOINT_CODE[link.joint_type] for link in spec.links]
+        self.joint_types: tuple[int, ...] = tuple([int(code) for code in codes])
+        self.position_count: tuple[int, ...] = tuple([POSITION_COUNT[code] for code in codes])
+        self.velocity_count: tuple[int, ...] = tuple([DOF_COUNT[code] for code in codes])
+        self.dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
+        if spec.fixed_base:
+            self.dynamics[0].mass = 0.0
+
+
 class Body:
     """Handle of a body; stays valid until the body is removed.
 
@@ -50,16 +70,18 @@ class Body:
         velocity_index: Row of the first velocity of each joint, -1 for fixed joints.
     """
 
-    def __init__(self, world: World, body_id: int, spec: BodySpec, rows: TreeRows) -> None:
+    def __init__(
+        self, world: World, body_id: int, spec: BodySpec, rows: TreeRows, outline: Outline | None = None
+    ) -> None:
         self.id = body_id
         self.world = world
         self.spec = spec
         self.rows = rows
-        codes = [JOINT_CODE[link.joint_type] for link in spec.links]
-        self.joint_count: int = len(codes)
-        self.joint_types: tuple[int, ...] = tuple(int(code) for code in codes)
-        self.position_count: tuple[int, ...] = tuple(POSITION_COUNT[code] for code in codes)
-        self.velocity_count: tuple[int, ...] = tuple(DOF_COUNT[code] for code in codes)
+        mine = outline or Outline(spec)
+        self.joint_count: int = len(spec.links)
+        self.joint_types: tuple[int, ...] = mine.joint_types
+        self.position_count: tuple[int, ...] = mine.position_count
+        self.velocity_count: tuple[int, ...] = mine.velocity_count
         self.first_link = 0
         self.first_position = 0
         self.first_velocity = 0
@@ -68,9 +90,7 @@ class Body:
         self.fixed_base: bool = spec.fixed_base
         self._encoded_names: tuple[bytes, bytes] | None = None
         self.derived: dict[Any, Any] = {}
-        self._dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
-        if spec.fixed_base:
-            self._dynamics[0].mass = 0.0
+        self._dynamics = mine.dynamics if outline is None else [it.copy() for it in mine.dynamics]
         self.relocate()
 
     def relocate(self) -> None:

@@ -16,6 +16,7 @@ from carom.model.body_spec import BodySpec
 from carom.native.undo import Undo
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import change_base_freedom, set_base_freedom
+from carom.scene.pattern import pattern_of
 from carom.scene.soft_body import SoftBody
 from carom.scene.undoing import begin, begin_with_constraints
 from carom.scene.user_constraints import UserConstraint
@@ -66,13 +67,19 @@ def add_bodies(
 
 def append(world: World, spec: BodySpec, pose: Pose) -> Body:
     """Add a body within a change; its link poses are computed later."""
-    rows = world.arrays.append(spec, compose(pose, spec.base.inertial_frame))
+    base_pose = compose(pose, spec.base.inertial_frame)
     *free_ids, body_id = world.free_ids or [world.next_id]
-    body = (Body if spec.soft is None else SoftBody)(world, body_id, spec, rows)
-    surfaces = [body.dynamics(link) for link in range(-1, body.joint_count)]
-    world.contact_arrays.shapes.append(spec, rows, surfaces)
-    if spec.soft is not None:
-        world.contact_arrays.soft.append(spec.soft, rows)
+    pattern = pattern_of(spec)
+    if pattern is not None and pattern.rows is not None:
+        rows = world.arrays.put(pattern.rows, base_pose)
+        body = Body(world, body_id, spec, rows, pattern.outline)
+        world.contact_arrays.shapes.put(pattern.rows, rows)
+    else:
+        rows = world.arrays.append(spec, base_pose)
+        body = (Body if spec.soft is None else SoftBody)(world, body_id, spec, rows)
+        world.contact_arrays.shapes.append(spec, rows, body.all_dynamics)
+        if spec.soft is not None:
+            world.contact_arrays.soft.append(spec.soft, rows)
     world.free_ids, world.next_id = free_ids, max(world.next_id, body_id + 1)
     world.bodies[body_id] = body
     world.constraints.add_body(body)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from operator import attrgetter
+
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
 from carom.model.body_spec import LinkSpec
@@ -81,3 +84,10 @@ class LinkDynamics:
             if value is not None:
                 setattr(dynamics, name, value)
         return dynamics
+
+    def copy(self) -> LinkDynamics:
+        """An independent copy."""
+        return LinkDynamics(*_values(self))
+
+
+_values = attrgetter(*[known.name for known in fields(LinkDynamics)])

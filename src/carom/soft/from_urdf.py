@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
+from operator import is_
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from carom.description import Robot
+from carom.description import Mesh, Robot, SignedDistanceField
 from carom.errors import DescriptionError
+from carom.formats.mesh import MeshPart, read_mesh
 from carom.formats.search import AssetSearch
 from carom.layouts.flags import LoadFlags
+from carom.logger import Logger
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
 
 if TYPE_CHECKING:
     from carom.description.deformable import Deformable
     from carom.soft.materials import NeoHookean, Springs
+
+Meshes = dict[Path, list[MeshPart]]
+_CACHED = 64
 
 
 def urdf_body(
@@ -36,7 +43,66 @@ def urdf_body(
     from carom.formats.urdf import read_urdf
 
     robot = read_urdf(path, scale=scale, search=search)
-    return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base, older=older)
+    if robot.deformable is not None:
+        return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base, older=older)
+    return _bodies.of(robot, flags, fixed_base)
+
+
+class _Bodies:
+    """A cache of rigid bodies by the robots they were made from, valid while their meshes are unchanged.
+
+    For an unchanged file, `read_urdf` returns the same robot.
+    """
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[tuple[int, int, bool], tuple[Robot, Meshes, BodySpec]] = OrderedDict()
+
+    def of(self, robot: Robot, flags: int, fixed_base: bool) -> BodySpec:
+        """The body of a robot."""
+        key = id(robot), flags, fixed_base
+        # Taken out meanwhile: another thread may do the same.
+        kept = self._kept.pop(key, None)
+        if kept is not None and kept[0] is robot and _are_unchanged(kept[1]):
+            self._kept[key] = kept
+            kept[2].is_reused = True
+            return kept[2]
+        # Read first: a mesh that changes while the body is made is then found to have changed.
+        meshes = _meshes(robot, flags)
+        said = Logger.count
+        spec = robot_body(robot, flags=flags, fixed_base=fixed_base)
+        # What the log was told must be told again for the next body.
+        if meshes is not None and Logger.count == said and not flags & LoadFlags.PRINT_URDF_INFO:
+            self._kept[key] = robot, meshes, spec
+            while len(self._kept) > _CACHED:
+                self._kept.popitem(last=False)
+        return spec
+
+
+_bodies = _Bodies()
+
+
+def _meshes(robot: Robot, flags: int) -> Meshes | None:
+    """The files that collision shapes are made from, and their parts; None if others count as well."""
+    meshes: dict[Path, list[MeshPart]] = {}
+    for link in () if flags & LoadFlags.IGNORE_COLLISION_SHAPES else robot.links:
+        for collision in link.collisions:
+            match collision.geometry:
+                case Mesh(path):
+                    try:
+                        meshes[path] = read_mesh(path)
+                    except DescriptionError:
+                        return None
+                case SignedDistanceField():
+                    return None
+    return meshes
+
+
+def _are_unchanged(meshes: Meshes) -> bool:
+    """Whether files have the parts they had: `read_mesh` returns the same ones for an unchanged file."""
+    try:
+        return all(all(map(is_, read_mesh(path), parts)) for path, parts in meshes.items())
+    except DescriptionError:
+        return False
 
 
 def robot_body(

@@ -20,7 +20,7 @@ from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
-from carom.native.kernels import follow_nodes_kernel, forward_kinematics_kernel, link_twist_kernel
+from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
@@ -592,8 +592,8 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
             A function that updates the link poses of a body.
         """
         if self._derived.pose_launch is None:
-            self._derived.pose_launch = TreeLaunch(forward_kinematics_kernel, self.engine.structs())
-            self.quick.know_poses(self._derived.pose_launch, self.arrays, self.contact_arrays)
+            self.contact_arrays.shapes.reserve({"link": self.arrays.model.capacity["link"]})
+            self._derived.pose_launch = self.quick.know_poses(self.arrays, self.contact_arrays)
         return self._derived.pose_launch
 
     def update_soft_poses(self) -> None:

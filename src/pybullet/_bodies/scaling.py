@@ -50,22 +50,24 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
     if body is None:
         return
 
+    from dataclasses import replace
+
     from carom.layouts.flags import LoadFlags
     from carom.model.scaled_shapes import scaled_collisions
     from carom.scene.link_dynamics import LinkDynamics
 
-    spec = body.spec.base
-    before = spec.collisions
     shapes = client.world.contact_arrays.shapes
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     with client.lock:
-        unscaled = _unscaled.setdefault(body, before)
+        base = body.spec.base
+        unscaled = _unscaled.setdefault(body, base.collisions)
         try:
-            spec.collisions = scaled_collisions(unscaled, spec.inertial_frame, factors)
-            shapes.replace_pieces(body.first_link, spec, implicit_cylinder=implicit)
+            # A copy, because bodies from the same file share their specification.
+            base = replace(base, collisions=scaled_collisions(unscaled, base.inertial_frame, factors))
+            shapes.replace_pieces(body.first_link, base, implicit_cylinder=implicit)
         except ValueError as reason:
-            spec.collisions = before
             fail("unsupportedChangeScaling failed.", f"Body {body.id} ({body.name}): {reason}.")
-        body.dynamics(BASE).collision_margin = LinkDynamics.of(spec).collision_margin
+        body.spec = replace(body.spec, base=base)
+        body.dynamics(BASE).collision_margin = LinkDynamics.of(base).collision_margin
         body.derived.clear()
         client.bodies.forget(body.id)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from carom.record import record
 
 
-@record(eq=False)
+@record(eq=False, hot=True)
 class FileLoad:
     """A call that loaded a file.
 
@@ -24,7 +24,7 @@ class FileLoad:
     count: int = 1
 
 
-@record
+@record(hot=True)
 class Origin:
     """Origin of a body: it is number `index`, from 0, of the bodies loaded by a call."""
 

@@ -35,6 +35,7 @@ class Plugins:
     def __init__(self) -> None:
         self.loaded: set[int] = set()
         self.places: dict[int, Path | Archive] = {}
+        self._search: AssetSearch | None = None
 
     def slot_of(self, path: Path) -> int | None:
         """The slot of a folder or an archive; None if it is not searched."""
@@ -67,10 +68,16 @@ class Plugins:
             additional: The directory of `setAdditionalSearchPath`.
             last: Directory that is searched last.
         """
-        from carom.formats.search import AssetSearch
+        folders: tuple[Path, ...] = ()
+        if self.places:
+            places = [self.places[slot] for slot in sorted(self.places)]
+            folders = tuple([place if isinstance(place, Path) else place.folder for place in places])
+        if last is not None and last is not additional and last != additional:
+            folders = (*folders, last)
+        search = self._search
+        if search is None or (search.additional, search.folders) != (additional, folders):
+            from carom.formats.search import AssetSearch
 
-        places = [self.places[slot] for slot in sorted(self.places)]
-        folders = [place if isinstance(place, Path) else place.folder for place in places]
-        if last is not None and last != additional:
-            folders.append(last)
-        return AssetSearch(additional, tuple(folders))
+            # The same object as long as possible, because files are cached by it.
+            search = self._search = AssetSearch(additional, folders)
+        return search

@@ -20,6 +20,7 @@ __all__ = [
 
 _CANNOT_LOAD = "Cannot load URDF file."
 _LEGACY_POSE = ("startPosX", "startPosY", "startPosZ", "startOrnX", "startOrnY", "startOrnZ", "startOrnW")
+_LEGACY_COUNTS = (3, len(_LEGACY_POSE))
 
 
 @exported
@@ -123,12 +124,13 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     warn_of_coordinates("loadURDF", maximal)
 
     from carom.errors import CaromError
+    from carom.formats.search import path_of
     from carom.soft.from_urdf import urdf_body
 
     scale = moderate(scaling, _CANNOT_LOAD, "globalScaling") if scaling > 0.0 else 1.0
     try:
         spec = urdf_body(
-            Path(name),
+            path_of(name),
             client.search(),
             scale=scale,
             flags=flags,
@@ -158,6 +160,8 @@ _DEFAULTS = {
 
 def _named(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any]:
     """The options of a call in the usual form; a position or orientation of None gets its default."""
+    if not arguments and not keywords:
+        return _DEFAULTS
     given = by_name("loadURDF", tuple(_DEFAULTS), arguments, keywords)
     for name in ("basePosition", "baseOrientation"):
         if given.get(name, ()) is None:
@@ -167,6 +171,8 @@ def _named(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, An
 
 def _legacy_pose(arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any] | None:
     """The options of a call with three or seven numbers for the pose; None for any other call."""
+    if len(arguments) + len(keywords) not in _LEGACY_COUNTS:
+        return None
     numbers: dict[str, Any] = dict(zip(_LEGACY_POSE, arguments, strict=False))
     if len(arguments) > len(_LEGACY_POSE) or set(numbers) & set(keywords):
         return None

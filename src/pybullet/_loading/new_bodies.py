@@ -69,9 +69,14 @@ def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
     from carom.description import Mesh
     from carom.formats.files import is_fresh
 
-    visuals = (visual for spec in specs for link in (spec.base, *spec.links) for visual in link.visuals)
-    shapes = (visual.geometry for visual in visuals)
-    if any(isinstance(shape, Mesh) and is_fresh(shape.path) for shape in shapes):
+    paths = {
+        visual.geometry.path
+        for spec in specs
+        for link in (spec.base, *spec.links)
+        for visual in link.visuals
+        if isinstance(visual.geometry, Mesh)
+    }
+    if any(map(is_fresh, paths)):
         from carom.render.appearance import appearance_of
 
         appearance_of(client.world).number_textures(client.world)

@@ -88,3 +88,12 @@ def test_what_cannot_be_scaled_says_so_and_stays() -> None:
     p.unsupportedChangeScaling(cylinder, [2, 2, 4])
     assert bounds(cylinder)[2] == pytest.approx(-2.0, abs=1e-3)
     p.unsupportedChangeScaling(77, [1, 1, 1])
+
+
+def test_bodies_from_the_same_file_keep_their_size() -> None:
+    first, second = (p.loadURDF("cube.urdf") for _ in range(2))
+    p.unsupportedChangeScaling(second, [2, 2, 2])
+    assert (
+        bounds(first) == bounds(p.loadURDF("cube.urdf")) == pytest.approx((-0.5,) * 3 + (0.5,) * 3, abs=2e-3)
+    )
+    assert bounds(second) == pytest.approx((-1.0,) * 3 + (1.0,) * 3, abs=2e-3)

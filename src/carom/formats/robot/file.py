@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from carom.errors import DescriptionError
 from carom.formats.robot.context import MAX_MAGNITUDE, FileContext
-from carom.formats.search import AssetSearch
+from carom.formats.search import AssetSearch, path_of
 from carom.formats.shipped import advice
 from carom.logger import Logger
 
@@ -25,7 +26,7 @@ def locate(path: Path, search: AssetSearch) -> Path:
     found = search.find(path)
     if found is None:
         raise DescriptionError(f"no such file: {path}{advice(path, search.places)}", file=path)
-    return found.absolute()
+    return found if found.is_absolute() else path_of(os.path.join(os.getcwd(), found))
 
 
 def check_scale(scale: float) -> None:

@@ -41,16 +41,19 @@ def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = No
     """
     check_scale(scale)
     search = search or AssetSearch()
-    file = locate(path, search)
-    key = (file, scale, search)
-    cached = _cache.get(key, file)
-    if cached is not None and all(
-        search.find_referenced(name, file) == target for name, target in cached[1].items()
-    ):
-        return cached[0]
+    file = path
+    # The search begins at an absolute path itself, so an unchanged file there is the one it would find.
+    cached = _cache.get((file, scale, search), file) if path.is_absolute() else None
+    if cached is None:
+        file = locate(path, search)
+        cached = _cache.get((file, scale, search), file)
+    if cached is not None:
+        robot, references = cached
+        if [search.find_referenced(name, file) for name in references] == list(references.values()):
+            return robot
     data, stamp = read_bounded(file, MAX_FILE_BYTES)
     robot, references = parse_urdf(data, file, scale=scale, search=search)
-    _cache.put(key, stamp, (robot, references))
+    _cache.put((file, scale, search), stamp, (robot, references))
     return robot
 
 

@@ -1,0 +1,70 @@
+"""The rows of a body in all arrays, of which further bodies with the same specification are copies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from carom.description.pose import IDENTITY
+from carom.model.body_spec import BodySpec
+from carom.model.bounds import Bounds
+from carom.model.builder import WorldArrays
+from carom.model.shape_arrays import ShapeArrays, Surface
+from carom.record import record
+
+MOST_BYTES = 1 << 20
+"""Bodies with larger rows, those of large triangle meshes, are written anew each time [bytes]."""
+
+
+@record(eq=False)
+class BodyRows:
+    """The rows of a body, with row numbers as if it were alone; its base is at the origin.
+
+    Attributes:
+        count: Rows on each axis of model and state.
+        shape_count: Rows on each axis of shapes, that of links included.
+        packed_count: `count` for `RowChanges.put`.
+        packed_shape_count: `shape_count` for `RowChanges.put`.
+        rows: Its rows in all arrays of model and state, as `RowChanges.first_rows` returns them.
+        shape_rows: Its rows in all arrays of shapes.
+        bounds: Bounds of each link; see `BodyShapes`.
+        own_margin: See `BodyShapes`.
+        breaking_fraction: See `ShapeArrays`; breaking distances are for this one.
+    """
+
+    count: dict[str, int]
+    shape_count: dict[str, int]
+    packed_count: bytes
+    packed_shape_count: bytes
+    rows: bytes
+    shape_rows: bytes
+    bounds: tuple[Bounds, ...]
+    own_margin: tuple[bool, ...]
+    breaking_fraction: float
+
+
+def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
+    """The rows of a body, made by writing it to empty arrays; None if they are larger than `MOST_BYTES`.
+
+    Args:
+        spec: The body, which is not soft.
+        surfaces: Contact parameters of its links, the base first.
+
+    Raises:
+        DescriptionError: The file of a mesh cannot be used.
+    """
+    arrays, shapes = WorldArrays(), ShapeArrays()
+    rows = arrays.append(spec, IDENTITY)
+    shapes.append(spec, rows, surfaces)
+    body = shapes.body_of(rows)
+    written = BodyRows(
+        rows.count,
+        shapes.used,
+        arrays.row_changes.packed(rows.count),
+        shapes.table.row_changes.packed(shapes.used),
+        arrays.row_changes.first_rows(rows.count),
+        shapes.table.row_changes.first_rows(shapes.used),
+        tuple(body.bounds),
+        tuple(body.own_margin),
+        shapes.breaking_fraction,
+    )
+    return written if len(written.rows) + len(written.shape_rows) <= MOST_BYTES else None

@@ -1,0 +1,154 @@
+"""Rows of all arrays of one table or several, put in and taken out by one native call each.
+
+The functions are in `native/source/table_rows.cpp`, which has the same structs. They are called with the GIL
+held, so no signal handler runs between the first array and the last.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable, Mapping
+from functools import cache
+from math import prod
+from struct import Struct
+from typing import Any, NamedTuple
+
+import numpy as np
+
+
+class RowsOfAxis(NamedTuple):
+    """An array of a table.
+
+    Attributes:
+        axis: Name of the axis its rows belong to.
+        array: Its memory: one axis of rows, or an axis of worlds and one of rows, and those of an entry.
+        per_world: Whether it has an axis of worlds.
+    """
+
+    axis: str
+    array: np.ndarray
+    per_world: bool
+
+
+class RowNumbers(NamedTuple):
+    """A field whose values are row numbers, negative where there is no row.
+
+    Attributes:
+        axis: Name of the axis its rows belong to.
+        target: Name of the axis whose rows the numbers mean.
+        array: Its numbers, the axis of rows first; int32.
+    """
+
+    axis: str
+    target: str
+    array: np.ndarray
+
+
+class _Field(ctypes.Structure):
+    _fields_ = (
+        ("memory", ctypes.c_void_p),
+        ("worlds", ctypes.c_int64),
+        ("world_bytes", ctypes.c_int64),
+        ("row_bytes", ctypes.c_int64),
+        ("axis", ctypes.c_int64),
+    )
+
+
+class _Reference(ctypes.Structure):
+    _fields_ = (
+        ("memory", ctypes.c_void_p),
+        ("row_bytes", ctypes.c_int64),
+        ("numbers", ctypes.c_int64),
+        ("axis", ctypes.c_int64),
+        ("target", ctypes.c_int64),
+    )
+
+
+class _Table(ctypes.Structure):
+    _fields_ = (
+        ("fields", ctypes.c_void_p),
+        ("references", ctypes.c_void_p),
+        ("field_count", ctypes.c_int64),
+        ("reference_count", ctypes.c_int64),
+    )
+
+
+class RowChanges:
+    """Changes of the rows of tables, valid until one of their arrays is replaced.
+
+    Args:
+        fields: All arrays of the tables.
+        references: Those of its fields that contain row numbers.
+    """
+
+    def __init__(self, fields: list[RowsOfAxis], references: list[RowNumbers]) -> None:
+        names = [field.axis for field in fields] + [reference.target for reference in references]
+        self._axes = tuple(dict.fromkeys(names))
+        place = {axis: number for number, axis in enumerate(self._axes)}
+        self._zeros = (0,) * len(self._axes)
+        self._fields = fields
+        field_records = (_Field * len(fields))()
+        for record, (axis, array, per_world) in zip(field_records, fields, strict=True):
+            row_bytes = array.itemsize * prod(array.shape[1 + per_world :])
+            record.memory, record.axis, record.row_bytes = array.ctypes.data, place[axis], row_bytes
+            record.worlds = array.shape[0] if per_world else 1
+            record.world_bytes = row_bytes * array.shape[1] if per_world else 0
+        reference_records = (_Reference * len(references))()
+        for record, (axis, target, array) in zip(reference_records, references, strict=True):
+            record.memory, record.row_bytes = array.ctypes.data, array.strides[0]
+            record.numbers = prod(array.shape[1:])
+            record.axis, record.target = place[axis], place[target]
+        table = _Table(
+            ctypes.addressof(field_records),
+            ctypes.addressof(reference_records),
+            len(field_records),
+            len(reference_records),
+        )
+        self._kept = field_records, reference_records, table
+        self._table = ctypes.addressof(table)
+        self._pack = Struct(f"{len(self._axes)}q").pack
+        self._put, self._take = _functions()
+
+    def first_rows(self, count: Mapping[str, int]) -> bytes:
+        """The first rows of each array in turn, so many on each axis, of the first world."""
+        return b"".join(
+            (array[0] if per_world else array)[: count.get(axis, 0)].tobytes()
+            for axis, array, per_world in self._fields
+        )
+
+    def packed(self, numbers: Mapping[str, int]) -> bytes:
+        """A number for each axis, as the native functions take them."""
+        return self._pack(*map(numbers.get, self._axes, self._zeros))
+
+    def put(self, rows: bytes, first: Mapping[str, int], count: bytes) -> None:
+        """Put rows into unused places of every world, as `first_rows` returned them for equal tables.
+
+        Args:
+            rows: The rows, with row numbers as if no other rows were there.
+            first: Where they go, by axis.
+            count: How many there are, `packed`.
+        """
+        self._put(self._table, rows, self.packed(first), count)
+
+    def removal(
+        self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
+    ) -> Callable[[], None]:
+        """Prepare to remove rows; see `ArrayTable.removal`."""
+        cut = self.packed(first), self.packed(count), self.packed(used)
+        done = ctypes.c_int32()
+
+        def remove() -> None:
+            self._take(self._table, *cut, done)
+
+        return remove
+
+
+@cache
+def _functions() -> tuple[Any, Any]:
+    """The native functions that put rows in and take them out."""
+    from carom.native.library import library
+
+    symbols = library().symbols
+    put = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, *[ctypes.c_char_p] * 3)
+    take = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, *[ctypes.c_char_p] * 3, ctypes.POINTER(ctypes.c_int32))
+    return put(("carom_put_rows", symbols)), take(("carom_take_rows", symbols))
