@@ -118,10 +118,10 @@ def quicksort(items: list[tuple[int, int]], low: int, high: int) -> None:
 def test_manifolds_are_sorted_by_island_in_the_order_of_quicksort(islands: list[int]) -> None:
     rows = PairRows()
     rows.order_island = integers([*islands, 0])
-    rows.order_first = integers(range(100, 101 + len(islands)))
+    rows.order_overlap = integers(range(100, 101 + len(islands)))
     wp.launch(sort_manifolds_kernel, dim=1, inputs=[rows, len(islands)], device="cpu")
     expected = [(island, 100 + place) for place, island in enumerate(islands)]
     quicksort(expected, 0, len(expected) - 1)
     sorted_islands = rows.order_island.numpy()[0, :-1].tolist()
     assert sorted_islands == sorted(islands)
-    assert list(zip(sorted_islands, rows.order_first.numpy()[0, :-1].tolist(), strict=True)) == expected
+    assert list(zip(sorted_islands, rows.order_overlap.numpy()[0, :-1].tolist(), strict=True)) == expected

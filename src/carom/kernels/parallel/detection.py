@@ -10,16 +10,16 @@ from carom.kernels.contact.bounds import look_ahead, place_shape
 from carom.kernels.contact.broad_phase import find_pairs_of_placed
 from carom.kernels.contact.collide import (
     accept_contacts,
+    accept_pairs,
     add_manifold,
     can_stay,
     find_candidates,
-    report_overflow,
 )
 from carom.kernels.contact.manifold import comes_before, keep_previous
 from carom.kernels.parallel.pair_work import pairs_of_worker, pairs_with_candidates
 from carom.kernels.structs import Contacts, Model, Pairs, PairWork, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, func, kernel
-from carom.layouts.contacts import PAIRS, THERE
+from carom.layouts.contacts import MEETING, PAIRS, THERE
 from carom.layouts.parallel import MOST_CANDIDATES
 from carom.layouts.status import STATUS, WELL
 
@@ -48,11 +48,8 @@ def world_pairs_kernel(
     world = wp.tid()
     if state.status_entry[world, STATUS] != WELL:
         return
-    find_pairs_of_placed(shapes, model, settings, pairs, world)
-    count = pairs.count_pairs[world, PAIRS]
-    if count > pairs.pair_shapes.shape[1]:
-        report_overflow(state, world, count, 0)
-    else:
+    find_pairs_of_placed(shapes, model, settings, contacts, pairs, world)
+    if accept_pairs(settings, shapes, model, state, contacts, pairs, world):
         pair_work.world_kept[world] = keep_previous(contacts, pairs, world)
 
 
@@ -85,6 +82,8 @@ def pair_candidates_kernel(
         item += pair_work.worker_candidate.shape[0]
         if state.status_entry[world, STATUS] == WELL and i < pairs.count_pairs[world, PAIRS]:
             pair = pairs.pair_shapes[world, i]
+            if pair[2] != MEETING:
+                continue
             kept = pair_work.world_kept[world]
             end = kept + contacts.count_contacts[world, THERE]
             first = first_after(pairs, world, kept, end, pair, 0)
@@ -107,6 +106,8 @@ def world_contacts_kernel(
     wanted = Int32(0)
     for i in range(pairs.count_pairs[world, PAIRS]):
         pair = pairs.pair_shapes[world, i]
+        if pair[2] != MEETING:
+            continue
         found = pair_work.pair_found[world, i]
         first = found[0]
         last = found[1]
