@@ -53,8 +53,8 @@ THERE, OVERLAPS, KNOWN, SORTED = 0, 1, 2, 3
 CONTACT_COLUMNS = 4
 # Place among manifolds of overlaps without a manifold.
 NO_MANIFOLD = -1
-# How near two shapes are whose bounds Bullet takes for overlapping: so near that their contacts are looked for;
-# close, with and without a manifold.
+# How near two shapes are whose bounds Bullet takes for overlapping: close, without and with a manifold;
+# so near that their contacts are looked for.
 CLOSE, CLOSE_WITH_MANIFOLD, MEETING = 0, 1, 2
 # Gap between the bounds of two shapes up to which Bullet takes them for overlapping: it widens both [m].
 NEAR = 0.04

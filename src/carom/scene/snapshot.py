@@ -132,6 +132,7 @@ def take(world: World, layout: Layout) -> Snapshot:
         islands[:] = np.arange(len(islands))
     counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
     snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, counts)}
+    snapshot.contacts["count_contacts"][SORTED] = 0
     snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][
         0, : world.contact_arrays.user_count
     ].copy()

@@ -106,8 +106,7 @@ def add_overlaps(contacts: dict[str, np.ndarray]) -> None:
     """Add the arrays of overlaps that older files do not have; the next step finds all overlaps."""
     counts = contacts.get("count_contacts")
     if counts is not None and counts.ndim == 1 and "overlap_shapes" not in contacts:
-        contacts["count_contacts"] = np.zeros(CONTACT_COLUMNS, dtype=np.int32)
-        contacts["count_contacts"][THERE] = counts[THERE]
+        counts[THERE + 1 :] = 0
         contacts["overlap_shapes"] = np.zeros((0, 4), dtype=np.int32)
         contacts["overlap_sorted"] = np.zeros(0, dtype=np.int32)
 
@@ -178,7 +177,8 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         ValueError: They do not fit, or a value is out of range.
     """
     saved = snapshot.layout.bodies
-    if snapshot.contacts["count_contacts"].shape != (CONTACT_COLUMNS,):
+    counts = snapshot.contacts["count_contacts"]
+    if counts.ndim != 1 or len(counts) < CONTACT_COLUMNS:
         raise ValueError("array 'count_contacts' has the wrong shape")
     lengths = {
         "tree": len(saved),
@@ -187,7 +187,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         "dof": sum(body.dofs for body in saved),
         "node": sum(body.nodes for body in saved),
         "drive": len(snapshot.layout.joint_dofs),
-        **counted_rows(snapshot.contacts["count_contacts"]),
+        **counted_rows(counts),
     }
     example = take(world, layout(world))
     for given, wanted in ((snapshot.state, example.state), (snapshot.contacts, example.contacts)):
