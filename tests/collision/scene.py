@@ -14,7 +14,7 @@ from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.layouts.codes import Rolling, ShapeKind
-from carom.layouts.contacts import Contacts, Pairs, Shapes
+from carom.layouts.contacts import MEETING, Contacts, Pairs, Shapes
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, Settings, State
 from carom.layouts.queries import Places, Rays, Searches
 from carom.layouts.status import OVERFLOW, STATUS
@@ -129,7 +129,10 @@ class Scene:
 
     def grow_scratch(self, count: int, pair_room: int) -> None:
         room = scratch_capacity(count, self.tables["contacts"].capacity["contact"])
+        self.tables["contacts"].reserve({"overlap": pair_room})
+        overlaps = self.tables["contacts"].capacity["overlap"]
         self.tables["pairs"].reserve({**room, "pair": pair_room})
+        self.tables["pairs"].reserve({"queue": self.tables["pairs"].capacity["pair"] + overlaps})
 
     def numpy(self, table: str) -> dict[str, np.ndarray]:
         return self.tables[table].numpy
@@ -203,17 +206,10 @@ class Scene:
         """Run collision detection, as the first substep of a step; what does not fit changes no contacts."""
         structs = self.structs()
         self._launch(begin_step_kernel, structs, "model", "state", "scratch", "pairs", scalars=(0,))
-        arrays = "shapes", "model", "state", "scratch", "pairs"
+        arrays = "shapes", "model", "state", "scratch", "contacts", "pairs"
         self._launch(broad_phase_kernel, structs, *arrays)
         if self.status[STATUS] != OVERFLOW:
-            arrays = (
-                structs["shapes"],
-                structs["model"],
-                structs["state"],
-                structs["contacts"],
-                structs["pairs"],
-            )
-            Launch(narrow_phase_kernel, 1, [*arrays, 0])()
+            self._launch(narrow_phase_kernel, structs, "shapes", "model", "state", "contacts", "pairs")
         if self.status[STATUS] == OVERFLOW:
             self._launch(abandon_step_kernel, structs, "model", "state", "scratch", "contacts", "pairs")
 
@@ -280,8 +276,11 @@ class Scene:
 
     @property
     def pairs(self) -> list[tuple[int, int]]:
+        """The pairs that may touch, without those that are only near each other."""
         count = self.numpy("pairs")["count_pairs"][0, 0]
-        return [tuple(pair) for pair in self.numpy("pairs")["pair_shapes"][0, :count].tolist()]
+        pairs = self.numpy("pairs")
+        rows = zip(pairs["pair_shapes"][0, :count].tolist(), pairs["pair_nearness"][0], strict=False)
+        return [tuple(pair) for pair, nearness in rows if nearness == MEETING]
 
     def contacts(self, name: str) -> np.ndarray:
         """A field of the present contacts, without `contact_`."""

@@ -9,6 +9,7 @@ from tests.gpu.native_device import NativeDevice
 
 from carom import World
 from carom.gpu.engine import DeviceEngine
+from carom.layouts.contacts import SORTED
 from carom.native.tables import ArrayTable
 
 
@@ -33,7 +34,7 @@ class SideBySide:
             self.engine.contact_arrays,
             self.engine.workspace,
         )
-        contact_arrays.contacts.reserve({"contact": contacts})
+        contact_arrays.contacts.reserve({"contact": contacts, "overlap": 256})
         contact_arrays.reserve()
         self.tables: dict[str, ArrayTable] = {"state": arrays.state, "contacts": contact_arrays.contacts}
         self._parameters: dict[str, ArrayTable] = {
@@ -47,7 +48,7 @@ class SideBySide:
         for number, world in enumerate(worlds):
             for ours, theirs in (*self._beside(world), *self._parameters_beside(world)):
                 ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
-        workspace.pairs.reserve({"pair": 256})
+        workspace.pairs.reserve({"pair": 256, "queue": 512})
         workspace.pair_rows.reserve({"row": rows, "jacobian": 8 * rows, "matrix": 8 * rows})
         self.engine.due[0] = max(1, first.parameters.substeps)
         self.engine.prepare()
@@ -64,6 +65,9 @@ class SideBySide:
             if name == "status_entry":
                 continue
             count = contacts if name.startswith("contact_") else min(ours.shape[1], theirs.shape[1])
+            if name == "count_contacts":
+                # What follows says whether the order of the overlaps is known already.
+                count = SORTED
             if not np.array_equal(ours[number, :count], theirs[0, :count], equal_nan=True):
                 found.append(name)
         return found

@@ -83,6 +83,8 @@ def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, in
     counts[0, PAIRS] = len(rows)
     pairs.pair_found = wp.array(filled, dtype=Index2, device="cpu")
     pairs.pair_shapes = wp.zeros((1, room), dtype=Index2, device="cpu")
+    pairs.pair_found_nearness = integers([*range(len(rows)), *[0] * (room - len(rows))])
+    pairs.pair_nearness = integers([0] * room)
     pairs.shape_pair_end = integers([0] * 13)
     pairs.count_pairs = wp.array(counts, dtype=Int32, device="cpu")
     setting = Settings()
@@ -91,6 +93,7 @@ def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, in
     kept = pairs.pair_shapes.numpy()[0]
     assert [tuple(row) for row in kept[: len(rows)].tolist()] == sorted(rows)
     assert not kept[len(rows) :].any()
+    assert [rows[i] for i in pairs.pair_nearness.numpy()[0, : len(rows)]] == sorted(rows)
     # Where the pairs of each first shape end.
     ends = np.searchsorted([a for a, _ in sorted(rows)], range(13), side="right")
     np.testing.assert_array_equal(pairs.shape_pair_end.numpy()[0], ends)
@@ -118,10 +121,10 @@ def quicksort(items: list[tuple[int, int]], low: int, high: int) -> None:
 def test_manifolds_are_sorted_by_island_in_the_order_of_quicksort(islands: list[int]) -> None:
     rows = PairRows()
     rows.order_island = integers([*islands, 0])
-    rows.order_first = integers(range(100, 101 + len(islands)))
+    rows.order_overlap = integers(range(100, 101 + len(islands)))
     wp.launch(sort_manifolds_kernel, dim=1, inputs=[rows, len(islands)], device="cpu")
     expected = [(island, 100 + place) for place, island in enumerate(islands)]
     quicksort(expected, 0, len(expected) - 1)
     sorted_islands = rows.order_island.numpy()[0, :-1].tolist()
     assert sorted_islands == sorted(islands)
-    assert list(zip(sorted_islands, rows.order_first.numpy()[0, :-1].tolist(), strict=True)) == expected
+    assert list(zip(sorted_islands, rows.order_overlap.numpy()[0, :-1].tolist(), strict=True)) == expected

@@ -17,16 +17,17 @@ def test_manifolds_are_sorted_by_island_as_constraints_are(ties):
     world = earth()
     add_floor(world)
     balls = [add_ball(world, (3.0 * HALF * i, 0.0, HALF - 1e-4)) for i in range(BALLS)]
-    group = np.arange(BALLS)
+    roots = np.arange(BALLS)
     for a, b in np.random.default_rng(ties).integers(BALLS, size=(ties, 2)):
         if a != b:
             apart = Pose((3.0 * HALF * float(a - b), 0.0, 0.0))
             world.tie(UserConstraintKind.POINT_TO_POINT, balls[a], -1, balls[b], -1, child_frame=apart)
-            group[group == group[b]] = group[a]
+            # As in Bullet the second root remains.
+            roots[roots == roots[a]] = roots[b]
     world.step()
-    # Balls have the trees after that of the floor; an island goes by the last of its trees.
-    islands = [1 + int(np.flatnonzero(group == group[ball]).max()) for ball in range(BALLS)]
+    # Balls have the trees after that of the floor.
+    islands = [1 + int(root) for root in roots]
     rows = world.engine.workspace.pair_rows.numpy
     order = quicksort_order(islands)
-    assert rows["order_first"][0, :BALLS].tolist() == list(order)
+    assert rows["order_overlap"][0, :BALLS].tolist() == list(order)
     assert rows["order_island"][0, :BALLS].tolist() == [islands[manifold] for manifold in order]

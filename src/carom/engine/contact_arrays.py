@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import deepcopy
 from typing import Any
 
 import numpy as np
 
-from carom.layouts.contacts import THERE, Contacts, UserConstraints
-from carom.model.builder import WorldArrays
+from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, OVERLAPS, SORTED, THERE, Contacts, UserConstraints
+from carom.model.builder import TreeRows, WorldArrays
+from carom.model.overlap_order import without_shapes
 from carom.model.shape_arrays import ShapeArrays
 from carom.model.soft_arrays import SoftArrays
 from carom.native.tables import ArrayTable
@@ -33,7 +35,12 @@ class ContactArrays:
         other = ContactArrays(arrays)
         other.shapes = deepcopy(self.shapes)
         other.contacts = self.contacts.copy(
-            arrays.world_count, {"contact": max(_LEAST_CONTACTS, self.contact_count), "count": 1}
+            arrays.world_count,
+            {
+                "contact": max(_LEAST_CONTACTS, self.contact_count),
+                "overlap": max(_LEAST_CONTACTS, self.overlap_count),
+                "count": CONTACT_COLUMNS,
+            },
         )
         other.users = self.users.copy()
         other.user_count = self.user_count
@@ -45,9 +52,43 @@ class ContactArrays:
         """Current number of contacts in the first world."""
         return int(self.contacts.numpy["count_contacts"][0, THERE])
 
+    @property
+    def overlap_count(self) -> int:
+        """Current number of overlaps in the first world."""
+        return int(self.contacts.numpy["count_contacts"][0, OVERLAPS])
+
     def forget_contacts(self) -> None:
-        """Drop all contacts, because the rows of their shapes will change."""
+        """Drop all contacts and overlaps, because the rows of their shapes will change."""
         self.contacts.numpy["count_contacts"][:] = 0
+
+    def removal(self, rows: TreeRows) -> Callable[[], None]:
+        """Prepare to remove a body's shapes from a single world, and all contacts; overlaps keep their order.
+
+        Args:
+            rows: Rows of its tree, which are still present.
+
+        Returns:
+            A function that removes them; it can be called again if it was interrupted.
+        """
+        numpy = self.contacts.numpy
+        counts = numpy["count_contacts"][0]
+        first, count = self.shapes.shape_rows(rows)
+        overlaps = without_shapes(numpy["overlap_shapes"][0, : counts[OVERLAPS]], first, count)
+        known = int(counts[KNOWN])
+        known -= max(0, min(count, known - first))
+        remove_shapes = self.shapes.removal(rows)
+
+        def remove() -> None:
+            remove_shapes()
+            self.forget_contacts()
+            numpy["overlap_shapes"][0, : len(overlaps)] = overlaps
+            counts[OVERLAPS], counts[KNOWN] = len(overlaps), known
+
+        return remove
+
+    def forget_order(self) -> None:
+        """Sort the overlaps anew in the next step, because the trees that can move may be others."""
+        self.contacts.numpy["count_contacts"][:, SORTED] = 0
 
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
         """Do not warm start contacts in the next step, because a body was moved.

@@ -21,6 +21,7 @@ def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
     return {
         "shape": shape_count,
         "node": nodes,
+        "twig": 2 * shape_count,
         "bucket": RADIX,
         "candidate": CANDIDATES,
         "polygon": CORNERS,

@@ -112,6 +112,7 @@ class Engine:
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or other parts of a step are needed."""
         self._plan = self._plan_before = None
+        self.contact_arrays.forget_order()
         self._loaded_for = None
         self._detection_ready = False
         self.changes += 1
@@ -284,7 +285,8 @@ class Engine:
         """Make arrays longer as needed by some worlds."""
         pairs, contacts = self.status[short, PAIRS_WANTED], self.status[short, CONTACTS_WANTED]
         growth = 2.0 if self.arrays.world_count == 1 else _GROWTH_OF_MANY
-        self.contact_arrays.contacts.reserve({"contact": int(contacts.max())}, growth)
+        room = {"contact": int(contacts.max()), "overlap": int(pairs.max())}
+        self.contact_arrays.contacts.reserve(room, growth)
         for workspace in self._workspaces:
             workspace.grow(int(pairs.max()), rows=bool(((pairs == 0) & (contacts == 0)).any()))
         self.growths += 1

@@ -47,13 +47,15 @@ class Workspace:
         """Grow arrays to the capacity that the other arrays require."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
         self.scratch.reserve(arrays.used)
+        overlaps = contact_arrays.contacts.capacity["overlap"]
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
+        self.pairs.reserve({"queue": self.pairs.capacity["pair"] + overlaps})
         self.pair_rows.reserve(
             {
                 "tree": arrays.model.capacity["tree"],
                 "contact": contacts,
                 "unit": contacts,
-                "order": contacts,
+                "order": overlaps,
                 "matrix": contacts,
                 "manifold": contacts // 2,
                 "side": 2 * (contacts // 2),

@@ -36,17 +36,28 @@ MARGIN = 0.001
 """Collision margin of shapes made from files [m]."""
 
 # Columns of `Pairs.count_pairs`.
-PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH, START_CONTACTS = 0, 1, 2, 3, 4, 5, 6
-COLUMNS = 7
-# Value of START_CONTACTS, the number of contacts at the start of a step, until these have been saved.
+PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH = 0, 1, 2, 3, 4, 5
+START_CONTACTS, START_OVERLAPS, START_KNOWN = 6, 7, 8
+COLUMNS = 9
+# Value of START_CONTACTS and START_OVERLAPS, the numbers of contacts and of overlaps at the start of a step,
+# until these have been saved.
 NONE_KEPT = -1
 # READINESS says which data of shapes are up to date between steps: none; poses and bounds; these and the
 # hierarchy.
 STALE, PLACED, IN_HIERARCHY = 0, 1, 2
 # Number of buckets of the radix sort along the space-filling curve.
 RADIX = 256
-# Column of `Contacts.count_contacts`: number of contacts.
-THERE = 0
+# Columns of `Contacts.count_contacts`: numbers of contacts, of overlaps, and of shapes whose overlaps
+# have been looked for; length of `overlap_sorted` plus one, at most 0 if it has to be made anew.
+THERE, OVERLAPS, KNOWN, SORTED = 0, 1, 2, 3
+CONTACT_COLUMNS = 4
+# Place among manifolds of overlaps without a manifold.
+NO_MANIFOLD = -1
+# How near two shapes are whose bounds Bullet takes for overlapping: close, without and with a manifold;
+# so near that their contacts are looked for.
+CLOSE, CLOSE_WITH_MANIFOLD, MEETING = 0, 1, 2
+# Gap between the bounds of two shapes up to which Bullet takes them for overlapping: it widens both [m].
+NEAR = 0.04
 # Value of `Contacts.contact_warm_start` for contacts whose manifold held in the last step; others have at
 # most 1.
 HOLDING = 2.0
@@ -136,7 +147,7 @@ class Pairs:
     shape_order: IntRows  # shapes sorted by this position, then the planes
     shape_sorted: IntRows  # workspace of the sort
     shape_motion: RealRows  # distance by which continuous detection looks ahead [m]
-    shape_pair_end: IntRows  # end of the pairs with it as first shape
+    shape_pair_end: IntRows  # end of the pairs with it as first shape; of the new overlaps that it finds
 
     # Bounds of the hierarchy over `shape_order`; node 1 is the root, node n has the children 2n and 2n + 1.
     node_lower: Vector3Rows
@@ -144,7 +155,24 @@ class Pairs:
     bucket_end: IntRows  # of a radix sort
 
     pair_shapes: Index2Rows  # the lower and the higher shape row; sorted
-    pair_found: Index2Rows  # the same in the order in which they were found
+    pair_nearness: IntRows  # CLOSE, CLOSE_WITH_MANIFOLD or MEETING
+    pair_found: Index2Rows  # the same shapes in the order in which they were found
+    pair_found_nearness: IntRows
+
+    # Changes of the overlaps: entries are rows of old overlaps and, as -1 - row, of new ones.
+    queue_entry: IntRows  # in the order of the pair cache
+    queue_manifold: IntRows  # old ones in the order of manifolds
+    queue_wanted: IntRows  # by old overlap: what becomes of it
+    queue_new: Index4Rows  # new overlaps, as `Contacts.overlap_shapes`; sorted
+    queue_turn: IntRows  # new overlaps in the order in which they are found
+    queue_merged: Index4Rows  # old and new overlaps, sorted
+    queue_start: Index4Rows  # overlaps at the start of the step
+
+    # Bullet's tree of bounds, see `kernels.contact.bounds_tree`: the shapes are its leaves.
+    twig_lower: Vector3Rows
+    twig_upper: Vector3Rows
+    twig_links: Index4Rows  # parent, two children (-1: none), 0
+    twig_stack: IntRows  # nodes still to be visited
 
     candidate: Rows[Candidate]
     polygon_a: Vector3Rows  # corners of touching faces
@@ -194,7 +222,10 @@ class Contacts:
     contact_distance: RealRows  # negative: penetration
     contact_impulse: Vector3Rows  # of the last substep: normal, along directions 1 and 2
     contact_warm_start: RealRows  # counter of warm starting, see `warm_starting.next_warm_start`
-    count_contacts: IntRows  # column: THERE
+    # Pairs of shapes whose bounds overlap, with places in two orders; see `kernels.contact.overlaps`.
+    overlap_shapes: Index4Rows  # shape a, b, place in the pair cache, place among manifolds or -1; sorted
+    overlap_sorted: IntRows  # the overlaps of trees that can move, in the order of relaxation
+    count_contacts: IntRows  # columns: THERE to SORTED
 
 
 @struct
@@ -325,8 +356,9 @@ class PairRows:
     tree_awake: IntRows  # of an island's root: 1 if a tree of it is active, 0 if it may fall asleep
     constraint_next: IntRows
     contact_next: IntRows
-    order_first: IntRows  # first contact of each manifold, in the order of relaxation
-    order_island: IntRows  # sort key of the manifold: the last tree of its island
+    order_first: IntRows  # of each overlap: its first contact, -1 for none
+    order_overlap: IntRows  # overlaps in the order of relaxation
+    order_island: IntRows  # sort key of each of these: its island in Bullet
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )

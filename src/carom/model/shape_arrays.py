@@ -281,6 +281,11 @@ class ShapeArrays:
 
         return go_back
 
+    def shape_rows(self, rows: TreeRows) -> tuple[int, int]:
+        """First row and number of a body's shapes."""
+        body = self._bodies[rows.first["link"]]
+        return body.first["shape"], body.count["shape"]
+
     def removal(self, rows: TreeRows) -> Callable[[], None]:
         """Prepare to remove a body's shapes, while its tree's rows are still present.
 

@@ -96,8 +96,7 @@ def remove_body(world: World, body: Body) -> None:
             world.constraints.removal(body),
             world.user_constraints.removal(body),
             world.user_data.removal(body.id),
-            world.contact_arrays.forget_contacts,
-            world.contact_arrays.shapes.removal(body.rows),
+            world.contact_arrays.removal(body.rows),
             world.contact_arrays.soft.removal(body.rows),
             world.arrays.removal(body.rows, [other.rows for other in later]),
         )

@@ -15,7 +15,7 @@ import numpy as np
 
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
-from carom.layouts.contacts import THERE
+from carom.layouts.contacts import OVERLAPS, SORTED, THERE
 from carom.record import record
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 # Axes of arrays that are not state of bodies: status of the last step, impulses of user constraints.
 _NOT_OF_BODIES = ("status", "user")
-# Axis of contacts.
-_CONTACT = "contact"
+# Axes of contacts and overlaps, and the columns with the numbers of their rows.
+_COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 # Drives of joints; the rows of bases are unused.
 _DRIVES = ("dof_motor", "dof_pd")
 
@@ -130,9 +130,9 @@ def take(world: World, layout: Layout) -> Snapshot:
     if islands.size and islands.max() >= len(islands):
         # The numbers are those of the last step, and a body was removed since. The next step replaces them.
         islands[:] = np.arange(len(islands))
-    snapshot.contacts = {
-        name: rows.copy() for name, rows in _contact_rows(world, world.contact_arrays.contact_count)
-    }
+    counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
+    snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, counts)}
+    snapshot.contacts["count_contacts"][SORTED] = 0
     snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][
         0, : world.contact_arrays.user_count
     ].copy()
@@ -159,7 +159,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
     same = layout == snapshot.layout
     if not same:
         snapshot = _reordered(snapshot, layout)
-    elif world.contact_arrays.contacts.reserve({_CONTACT: int(snapshot.contacts["count_contacts"][THERE])}):
+    elif world.contact_arrays.contacts.reserve(counted_rows(snapshot.contacts["count_contacts"])):
         world.scene_changed()
 
     def put_back() -> None:
@@ -186,9 +186,16 @@ def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.nda
             yield name, array[0, : used[axis]]
 
 
-def _contact_rows(world: World, count: int) -> Iterator[tuple[str, np.ndarray]]:
+def counted_rows(counts: np.ndarray) -> dict[str, int]:
+    """Numbers of rows in use of `Contacts` by axis, from the row of `count_contacts`."""
+    return {axis: int(counts[column]) for axis, column in _COUNTED.items()}
+
+
+def _contact_rows(world: World, counts: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    used = counted_rows(counts)
     for name, array in world.contact_arrays.contacts.numpy.items():
-        yield name, array[0, :count] if name.startswith(_CONTACT) else array[0]
+        axis = name.partition("_")[0]
+        yield name, array[0, : used[axis]] if axis in used else array[0]
 
 
 def _write(world: World, snapshot: Snapshot) -> None:
@@ -197,9 +204,10 @@ def _write(world: World, snapshot: Snapshot) -> None:
 
 
 def _write_contacts(world: World, snapshot: Snapshot) -> None:
-    count = int(snapshot.contacts["count_contacts"][THERE])
-    for name, rows in _contact_rows(world, count):
+    for name, rows in _contact_rows(world, snapshot.contacts["count_contacts"]):
         rows[:] = snapshot.contacts[name]
+    # The trees that can move may be others now.
+    world.contact_arrays.contacts.numpy["count_contacts"][0, SORTED] = 0
 
 
 def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:

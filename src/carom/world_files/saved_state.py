@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.formats.robot.context import MAX_MAGNITUDE
-from carom.layouts.contacts import THERE
-from carom.scene.snapshot import BodyLayout, Layout, Snapshot, layout, return_to, take
+from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, THERE
+from carom.scene.snapshot import BodyLayout, Layout, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader
 
 if TYPE_CHECKING:
@@ -77,6 +77,7 @@ def read_state(reader: Reader, data: Any) -> SavedState:
         # Files from versions without soft bodies do not have these arrays.
         arrays["state"].setdefault(name, np.zeros((0, 3)))
     split_impulses(arrays["contacts"])
+    add_overlaps(arrays["contacts"])
     # Nor do files from the first versions with soft bodies have this array; the next step computes it.
     arrays["state"].setdefault("node_push", np.zeros_like(arrays["state"]["node_position"]))
     _check_counts(reader, bodies, arrays["state"])
@@ -99,6 +100,15 @@ def split_impulses(contacts: dict[str, np.ndarray]) -> None:
     if impulses is not None and impulses.ndim == 2 and "contact_warm_start" not in contacts:
         contacts["contact_warm_start"] = impulses[:, 3:].ravel()
         contacts["contact_impulse"] = impulses[:, :3].copy()
+
+
+def add_overlaps(contacts: dict[str, np.ndarray]) -> None:
+    """Add the arrays of overlaps that older files do not have; the next step finds all overlaps."""
+    counts = contacts.get("count_contacts")
+    if counts is not None and counts.ndim == 1 and "overlap_shapes" not in contacts:
+        counts[THERE + 1 :] = 0
+        contacts["overlap_shapes"] = np.zeros((0, 4), dtype=np.int32)
+        contacts["overlap_sorted"] = np.zeros(0, dtype=np.int32)
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
@@ -167,6 +177,9 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         ValueError: They do not fit, or a value is out of range.
     """
     saved = snapshot.layout.bodies
+    counts = snapshot.contacts["count_contacts"]
+    if counts.ndim != 1 or len(counts) < CONTACT_COLUMNS:
+        raise ValueError("array 'count_contacts' has the wrong shape")
     lengths = {
         "tree": len(saved),
         "link": sum(body.links for body in saved),
@@ -174,7 +187,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         "dof": sum(body.dofs for body in saved),
         "node": sum(body.nodes for body in saved),
         "drive": len(snapshot.layout.joint_dofs),
-        "contact": int(snapshot.contacts["count_contacts"][THERE]),
+        **counted_rows(counts),
     }
     example = take(world, layout(world))
     for given, wanted in ((snapshot.state, example.state), (snapshot.contacts, example.contacts)):
@@ -193,6 +206,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
             raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)
     _check_contacts(world, snapshot)
+    _check_overlaps(world, snapshot)
 
 
 def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
@@ -222,3 +236,21 @@ def _check_contacts(world: World, snapshot: Snapshot) -> None:
         raise ValueError("a contact refers to a shape that does not exist")
     if (world.contact_arrays.shapes.table.numpy["shape_link"][shapes] != links).any():
         raise ValueError("a contact refers to a link that does not have its shape")
+
+
+def _check_overlaps(world: World, snapshot: Snapshot) -> None:
+    """Check that overlaps refer to shapes that exist, are sorted, and have one place each in both orders."""
+    shape_count = world.contact_arrays.shapes.shape_count
+    if not 0 <= snapshot.contacts["count_contacts"][KNOWN] <= shape_count:
+        raise ValueError("the number of known shapes is out of range")
+    overlaps = snapshot.contacts["overlap_shapes"].astype(np.int64)
+    if not len(overlaps):
+        return
+    first, second = overlaps[:, 0], overlaps[:, 1]
+    if first.min() < 0 or second.max() >= shape_count or (first >= second).any():
+        raise ValueError("an overlap refers to a shape that does not exist")
+    if (np.diff(first * shape_count + second) <= 0).any():
+        raise ValueError("the overlaps are not sorted")
+    for places in (overlaps[:, 2], overlaps[overlaps[:, 3] != NO_MANIFOLD, 3]):
+        if (np.sort(places) != np.arange(len(places))).any():
+            raise ValueError("the places of overlaps are not all different")

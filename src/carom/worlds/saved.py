@@ -8,11 +8,12 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
-from carom.layouts.contacts import THERE
+from carom.layouts.contacts import OVERLAPS, THERE
 from carom.native.tables import ArrayTable
 
 _STATUS = "status_entry"
-_CONTACT = "contact_"
+# Columns with the numbers of rows, by the first word of the names of fields.
+_COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +37,10 @@ class SavedWorlds:
     @classmethod
     def take(cls, engine: Engine, worlds: np.ndarray, times: Array, unspent_times: Array) -> SavedWorlds:
         """The present states of some worlds."""
-        counts = np.asarray(engine.contact_arrays.contacts.numpy["count_contacts"])[worlds, THERE]
-        most = int(counts.max(initial=0))
+        most = _most_rows(np.asarray(engine.contact_arrays.contacts.numpy["count_contacts"])[worlds])
         state = {name: array[worlds] for name, array in _fields(engine.arrays.state)}
         contacts = {
-            name: array[worlds, :most] if name.startswith(_CONTACT) else array[worlds]
+            name: array[worlds, : most[axis]] if (axis := name.partition("_")[0]) in most else array[worlds]
             for name, array in _fields(engine.contact_arrays.contacts)
         }
         return cls(worlds.copy(), times.copy(), unspent_times.copy(), state, contacts)
@@ -76,18 +76,25 @@ class SavedWorlds:
             name: array.shape[1:] for name, array in self.state.items()
         }:
             raise ValueError("these are states of worlds with other bodies")
-        most = int(np.asarray(self.contacts["count_contacts"])[rows, THERE].max(initial=0))
-        if engine.contact_arrays.contacts.reserve({"contact": most}):
+        most = _most_rows(np.asarray(self.contacts["count_contacts"])[rows])
+        if engine.contact_arrays.contacts.reserve(most):
             engine.changed()
         for name, array in fields.items():
             array[worlds] = self.state[name][rows]
         engine.status[worlds] = 0
         for name, array in _fields(engine.contact_arrays.contacts):
-            if name.startswith(_CONTACT):
-                array[worlds, :most] = self.contacts[name][rows, :most]
+            axis = name.partition("_")[0]
+            if axis in most:
+                array[worlds, : most[axis]] = self.contacts[name][rows, : most[axis]]
             else:
                 array[worlds] = self.contacts[name][rows]
+        engine.contact_arrays.forget_order()
         engine.sleep_changed()
+
+
+def _most_rows(counts: np.ndarray) -> dict[str, int]:
+    """The greatest number of rows of a world by axis, from rows of `count_contacts`."""
+    return {axis: int(counts[:, column].max(initial=0)) for axis, column in _COUNTED.items()}
 
 
 def _fields(table: ArrayTable) -> list[tuple[str, np.ndarray]]:

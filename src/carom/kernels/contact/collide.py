@@ -16,11 +16,12 @@ from carom.kernels.contact.gathering import AT_ONCE, find_new_points
 from carom.kernels.contact.growing import gather
 from carom.kernels.contact.manifold import keep_previous, sides_of, skip_contacts, write_new_contact
 from carom.kernels.contact.narrow_phase import collide_shapes
+from carom.kernels.contact.overlaps import update_overlaps
 from carom.kernels.contact.sides import in_order_of_sides
-from carom.kernels.structs import Contacts, Model, Pairs, Shapes, State
+from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.codes import ASLEEP
-from carom.layouts.contacts import PAIRS, THERE
+from carom.layouts.contacts import MEETING, PAIRS, THERE
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
 
 # A contact point counts as not moved if it is nearer than this to its last position [m].
@@ -96,6 +97,8 @@ def make_contacts(
     first = kept + 0
     for i in range(pairs.count_pairs[world, PAIRS]):
         pair = pairs.pair_shapes[world, i]
+        if pairs.pair_nearness[world, i] != MEETING:
+            continue
         first = skip_contacts(pairs, world, first, end, pair, 0)
         last = skip_contacts(pairs, world, first, end, pair, 1)
         if can_stay(shapes, model, state, contacts, world, pair, wanted, first - kept, last - kept):
@@ -185,10 +188,37 @@ def report_overflow(state: State, world: Int32, pairs_wanted: Int32, contacts_wa
 
 
 @func
-def find_contacts(shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32):
+def accept_pairs(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+) -> bool:
+    """Update the overlaps to the pairs found; false, after a report, if one or the other do not fit."""
+    wanted = pairs.count_pairs[world, PAIRS]
+    if wanted <= pairs.pair_shapes.shape[1]:
+        wanted = update_overlaps(settings, shapes, model, state, contacts, pairs, world)
+        if wanted == 0:
+            return True
+    report_overflow(state, world, wanted, 0)
+    return False
+
+
+@func
+def find_contacts(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+):
     """Find the contacts of all pairs, if all of them fit; contacts that persist keep their impulses."""
-    if pairs.count_pairs[world, PAIRS] > pairs.pair_shapes.shape[1]:
-        report_overflow(state, world, pairs.count_pairs[world, PAIRS], 0)
+    if not accept_pairs(settings, shapes, model, state, contacts, pairs, world):
         return
     kept = keep_previous(contacts, pairs, world)
     accept_contacts(state, contacts, world, make_contacts(shapes, model, state, contacts, pairs, world, kept))

@@ -5,6 +5,7 @@ import math
 import warp as wp
 
 from carom.kernels.contact.candidates import candidate_on_a
+from carom.kernels.contact.overlaps import restore_overlaps
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index2, Index4, Int32, Transform, Vector3, func, real
@@ -69,7 +70,8 @@ def keep_previous(contacts: Contacts, pairs: Pairs, world: Int32) -> Int32:
 
 @func
 def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
-    """Restore the contacts of the start of a step, if they were saved."""
+    """Restore the contacts and overlaps of the start of a step, if they were saved."""
+    restore_overlaps(contacts, pairs, world)
     count = pairs.count_pairs[world, START_CONTACTS]
     if count == NONE_KEPT:
         return

@@ -15,16 +15,23 @@ def broad_phase_kernel(
     model: Model,
     state: State,
     scratch: Scratch,
+    contacts: Contacts,
     pairs: Pairs,
     first_world: Int32,
 ):
     """Find the pairs of shapes whose bounding boxes meet."""
-    find_pairs(shapes, model, state, scratch, settings, pairs, first_world + wp.tid())
+    find_pairs(shapes, model, state, scratch, settings, contacts, pairs, first_world + wp.tid())
 
 
 @kernel
 def narrow_phase_kernel(
-    shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, first_world: Int32
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    first_world: Int32,
 ):
     """Find the contacts of these pairs; contacts that persist keep their impulses."""
-    find_contacts(shapes, model, state, contacts, pairs, first_world + wp.tid())
+    find_contacts(settings, shapes, model, state, contacts, pairs, first_world + wp.tid())

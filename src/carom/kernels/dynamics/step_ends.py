@@ -8,7 +8,7 @@ from carom.kernels.dynamics.quarantine import keep_start, return_to_start
 from carom.kernels.maths.runs import clear_run
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector6, func, kernel
-from carom.layouts.contacts import NONE_KEPT, START_CONTACTS
+from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, START_OVERLAPS
 from carom.layouts.status import CONTACTS_WANTED, PAIRS_WANTED, STATUS, WELL
 
 
@@ -28,6 +28,7 @@ def begin_world(state: State, pairs: Pairs, world: Int32):
     state.status_entry[world, PAIRS_WANTED] = 0
     state.status_entry[world, CONTACTS_WANTED] = 0
     pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
+    pairs.count_pairs[world, START_OVERLAPS] = NONE_KEPT
 
 
 @func

@@ -10,10 +10,10 @@ from carom.kernels.contact.bounds import look_ahead, place_shape
 from carom.kernels.contact.broad_phase import find_pairs_of_placed
 from carom.kernels.contact.collide import (
     accept_contacts,
+    accept_pairs,
     add_manifold,
     can_stay,
     find_candidates,
-    report_overflow,
 )
 from carom.kernels.contact.manifold import comes_before, keep_previous
 from carom.kernels.parallel.pair_work import pairs_of_worker, pairs_with_candidates
@@ -29,7 +29,7 @@ from carom.kernels.structs import (
     State,
 )
 from carom.kernels.types import Index2, Int32, func, kernel
-from carom.layouts.contacts import PAIRS, THERE
+from carom.layouts.contacts import MEETING, PAIRS, THERE
 from carom.layouts.parallel import MOST_CANDIDATES
 from carom.layouts.status import STATUS, WELL
 
@@ -58,11 +58,8 @@ def world_pairs_kernel(
     world = wp.tid()
     if state.status_entry[world, STATUS] != WELL:
         return
-    find_pairs_of_placed(shapes, model, settings, pairs, world)
-    count = pairs.count_pairs[world, PAIRS]
-    if count > pairs.pair_shapes.shape[1]:
-        report_overflow(state, world, count, 0)
-    else:
+    find_pairs_of_placed(shapes, model, settings, contacts, pairs, world)
+    if accept_pairs(settings, shapes, model, state, contacts, pairs, world):
         pair_work.world_kept[world] = keep_previous(contacts, pairs, world)
 
 
@@ -95,6 +92,8 @@ def pair_candidates_kernel(
         item += pair_work.worker_candidate.shape[0]
         if state.status_entry[world, STATUS] == WELL and i < pairs.count_pairs[world, PAIRS]:
             pair = pairs.pair_shapes[world, i]
+            if pairs.pair_nearness[world, i] != MEETING:
+                continue
             kept = pair_work.world_kept[world]
             end = kept + contacts.count_contacts[world, THERE]
             first = first_after(pairs, world, kept, end, pair, 0)
@@ -122,6 +121,8 @@ def world_contacts_kernel(
     wanted = Int32(0)
     for i in range(pairs.count_pairs[world, PAIRS]):
         pair = pairs.pair_shapes[world, i]
+        if pairs.pair_nearness[world, i] != MEETING:
+            continue
         result = pair_work.pair_result[world, i]
         if can_stay(
             shapes, model, state, contacts, world, pair, wanted, result.first - kept, result.end - kept

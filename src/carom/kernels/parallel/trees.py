@@ -24,7 +24,7 @@ from carom.kernels.structs import (
     UserConstraints,
 )
 from carom.kernels.types import Int32, IntRows, func, kernel
-from carom.layouts.contacts import NONE_KEPT, START_CONTACTS
+from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, START_OVERLAPS
 from carom.layouts.status import STATUS, WELL
 
 
@@ -35,6 +35,7 @@ def begin_tree(
     """Save the state at the start of the step; see `step_ends.begin_step_kernel`."""
     if tree == 0:
         pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
+        pairs.count_pairs[world, START_OVERLAPS] = NONE_KEPT
     keep_start(model, state, scratch, world, tree)
     if moves != 0:
         joint_damping(model, state, world, tree)

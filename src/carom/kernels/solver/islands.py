@@ -94,7 +94,7 @@ def build_islands(
             pair_rows.constraint_next[world, constraint] = pair_rows.tree_first_constraint[world, root]
             pair_rows.tree_first_constraint[world, root] = constraint
         constraint -= 1
-    list_contacts(settings, model, state, shapes, contacts, pair_rows, world)
+    list_contacts(settings, model, state, shapes, contacts, users, pair_rows, world)
     find_resting_islands(settings, model, state, pair_rows, world)
 
 

@@ -15,13 +15,11 @@ from carom.kernels.solver.islands import island_root, unite, unite_tied
 from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
 from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
-from carom.layouts.contacts import LEAVES, THERE
+from carom.layouts.contacts import LEAVES, NEAR, THERE
 from carom.layouts.status import STATUS, WELL
 
 # Time below the threshold after which a tree may fall asleep [s].
 SLEEP_DELAY = real(2.0)
-# Maximum gap between bounding boxes of two trees that fall asleep and wake up together [m].
-NEAR = real(0.04)
 
 
 @func
@@ -36,7 +34,7 @@ def are_near(
         pairs.shape_upper[world, a],
         pairs.shape_lower[world, b],
         pairs.shape_upper[world, b],
-        NEAR,
+        real(NEAR),
     ) and may_collide(shapes, model, settings, a, b)
 
 
@@ -60,7 +58,7 @@ def unite_near(
     leaf_count = pairs.count_pairs[world, LEAVES]
     node = leaf_count + own_leaf
     while node > 0:
-        if boxes_meet(lower, upper, pairs.node_lower[world, node], pairs.node_upper[world, node], NEAR):
+        if boxes_meet(lower, upper, pairs.node_lower[world, node], pairs.node_upper[world, node], real(NEAR)):
             if node < leaf_count:
                 node = 2 * node
                 continue

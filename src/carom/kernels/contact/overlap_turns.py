@@ -1,0 +1,135 @@
+"""The order in which Bullet finds new overlaps, see `overlaps`."""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import boxes_meet
+from carom.kernels.contact.bounds_tree import sort_as_in_new_scene
+from carom.kernels.structs import Model, Pairs, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.layouts.contacts import NEAR
+
+# How far Bullet widens the bounds of a body on each side, except when it is created [m].
+WIDENING = real(0.5 * NEAR)
+
+
+@func
+def meet_after(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    widening: real,
+    b_moved: bool,
+) -> bool:
+    """Whether the bounds of two shapes meet, with those of b before its last motion unless `b_moved`.
+
+    Of that motion only the velocity of its base is known.
+    """
+    back = Vector3(0.0, 0.0, 0.0)
+    if not b_moved:
+        first = model.tree[shapes.shape_tree[b]].first_velocity
+        back = settings.time_step * Vector3(
+            state.dof_velocity[world, first + 3],
+            state.dof_velocity[world, first + 4],
+            state.dof_velocity[world, first + 5],
+        )
+    return boxes_meet(
+        pairs.shape_lower[world, a],
+        pairs.shape_upper[world, a],
+        pairs.shape_lower[world, b] - back,
+        pairs.shape_upper[world, b] - back,
+        widening,
+    )
+
+
+@func
+def turn_of(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    pairs: Pairs,
+    world: Int32,
+    pair: Index4,
+    known: Int32,
+) -> Int32:
+    """When Bullet finds a new overlap, as a number that increases with time.
+
+    New bodies are compared with those before them, by bounds that are not widened. Then the bounds of one
+    body after the other are brought up to date and compared with those of all others, of which the later
+    ones are still where they were.
+
+    Args:
+        settings: Time step, number of shapes.
+        shapes: All shapes.
+        model: The trees.
+        state: Their velocities.
+        pairs: Bounds of the shapes.
+        world: The world.
+        pair: The two shapes.
+        known: Number of shapes that are not new.
+    """
+    a = pair[0]
+    b = pair[1]
+    b_is_new = b >= known
+    if b_is_new:
+        widening = wp.where(a < known, WIDENING, real(0.0))
+        if meet_after(settings, shapes, model, state, pairs, world, b, a, widening, a >= known):
+            return b
+    widening = wp.where(b_is_new, WIDENING, real(NEAR))
+    if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new):
+        return settings.shape_count + a
+    return settings.shape_count + b
+
+
+@func
+def sort_new(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    pairs: Pairs,
+    world: Int32,
+    known: Int32,
+    count: Int32,
+):
+    """List new overlaps in the order in which Bullet finds them.
+
+    One body's overlaps are found in the order of a tree of bounds, which depends on all motion so far. It is
+    known only in a new scene; else those with later bodies come first.
+    """
+    for i in range(count):
+        pair = pairs.queue_new[world, i]
+        pairs.queue_new[world, i] = Index4(
+            pair[0],
+            pair[1],
+            turn_of(settings, shapes, model, state, pairs, world, pair, known),
+            pair[3],
+        )
+    first = Int32(0)
+    for stage in range(2):
+        lowest = stage * settings.shape_count
+        for shape in range(settings.shape_count):
+            pairs.shape_pair_end[world, shape] = 0
+        for i in range(count):
+            turn = pairs.queue_new[world, i][2] - lowest
+            if turn >= 0 and turn < settings.shape_count:
+                pairs.shape_pair_end[world, turn] = pairs.shape_pair_end[world, turn] + 1
+        for shape in range(settings.shape_count):
+            size = pairs.shape_pair_end[world, shape]
+            pairs.shape_pair_end[world, shape] = first
+            first += size
+        i = count + 0
+        while i > 0:
+            i -= 1
+            turn = pairs.queue_new[world, i][2] - lowest
+            if turn >= 0 and turn < settings.shape_count:
+                place = pairs.shape_pair_end[world, turn]
+                pairs.queue_turn[world, place] = i
+                pairs.shape_pair_end[world, turn] = place + 1
+    if known == 0:
+        sort_as_in_new_scene(settings, pairs, world, count, WIDENING)

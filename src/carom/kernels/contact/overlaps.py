@@ -1,0 +1,299 @@
+"""Overlaps: pairs of shapes whose bounds meet, in the two orders in which Bullet has them.
+
+Bullet keeps a *pair cache*: the pairs of bodies whose widened bounds overlap. Pairs are appended as they are
+found, body by body; a pair whose bounds have parted is replaced by the last one. Each pair has a manifold,
+also if the two do not touch; with parts of compounds only where bounds that are not widened overlap.
+Manifolds are in an array with the same two rules, but a pair found in this substep gets its manifold only
+after others have lost theirs. So the two orders differ. The solver relaxes manifolds in the second
+(`solver.contact_order`).
+
+Overlaps are stored sorted by shapes, like pairs and contacts, with both places. Most substeps change nothing;
+then this takes one comparison of each overlap.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.overlap_turns import sort_new
+from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
+from carom.kernels.types import Index4, Int32, func
+from carom.layouts.codes import PLANE
+from carom.layouts.contacts import (
+    CLOSE,
+    KNOWN,
+    NONE_KEPT,
+    OVERLAPS,
+    PAIRS,
+    SORTED,
+    START_KNOWN,
+    START_OVERLAPS,
+)
+
+# Value of `Pairs.queue_wanted` for overlaps that have ended; else 1 if there is to be a manifold, 0 if not.
+GONE = wp.constant(-1)
+
+
+@func
+def is_before(a: Int32, b: Int32, other_a: Int32, other_b: Int32) -> bool:
+    """Whether a pair of shapes comes before another."""
+    return a < other_a or (a == other_a and b < other_b)
+
+
+@func
+def is_unbounded(shapes: Shapes, overlap: Index4) -> bool:
+    """Whether one of two shapes is an infinite plane, whose bounds meet those of all others."""
+    return shapes.shape_kind[overlap[0]] == PLANE or shapes.shape_kind[overlap[1]] == PLANE
+
+
+@func
+def has_manifold(nearness: Int32) -> Int32:
+    """1 if Bullet has a manifold for two shapes that are so near, else 0."""
+    return wp.where(nearness == CLOSE, Int32(0), Int32(1))
+
+
+@func
+def are_same(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32) -> bool:
+    """Whether the present pairs are the overlaps of the last substep, with the same manifolds."""
+    count = pairs.count_pairs[world, PAIRS]
+    i = Int32(0)
+    for row in range(contacts.count_contacts[world, OVERLAPS]):
+        old = contacts.overlap_shapes[world, row]
+        matches = False
+        if i < count:
+            pair = pairs.pair_shapes[world, i]
+            matches = pair[0] == old[0] and pair[1] == old[1]
+            if matches and (pairs.pair_nearness[world, i] == CLOSE) != (old[3] < 0):
+                return False
+        if matches:
+            i += 1
+        elif not is_unbounded(shapes, old):
+            return False
+    return i == count
+
+
+@func
+def find_changes(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32):
+    """Note what becomes of each overlap, and list new ones; returns the numbers of ended and new ones."""
+    count = pairs.count_pairs[world, PAIRS]
+    old_count = contacts.count_contacts[world, OVERLAPS]
+    gone = Int32(0)
+    fresh = Int32(0)
+    row = Int32(0)
+    for i in range(count):
+        pair = pairs.pair_shapes[world, i]
+        searching = row < old_count
+        while searching:
+            old = contacts.overlap_shapes[world, row]
+            searching = is_before(old[0], old[1], pair[0], pair[1])
+            if searching:
+                gone += note_absent(shapes, pairs, world, row, old)
+                row += 1
+                searching = row < old_count
+        known = False
+        if row < old_count:
+            old = contacts.overlap_shapes[world, row]
+            known = old[0] == pair[0] and old[1] == pair[1]
+        if known:
+            pairs.queue_wanted[world, row] = has_manifold(pairs.pair_nearness[world, i])
+            row += 1
+        else:
+            wanted = has_manifold(pairs.pair_nearness[world, i])
+            pairs.queue_new[world, fresh] = Index4(pair[0], pair[1], 0, wanted)
+            fresh += 1
+    while row < old_count:
+        gone += note_absent(shapes, pairs, world, row, contacts.overlap_shapes[world, row])
+        row += 1
+    return gone, fresh
+
+
+@func
+def note_absent(shapes: Shapes, pairs: Pairs, world: Int32, row: Int32, old: Index4) -> Int32:
+    """Note that an overlap is not among the present pairs; returns 1 if it has ended, else 0."""
+    if is_unbounded(shapes, old):
+        pairs.queue_wanted[world, row] = 1
+        return 0
+    pairs.queue_wanted[world, row] = GONE
+    return 1
+
+
+@func
+def set_manifold(contacts: Contacts, pairs: Pairs, world: Int32, entry: Int32, place: Int32):
+    """Set the place among manifolds of an entry of `queue_entry`; -1 if it has none."""
+    if entry >= 0:
+        old = contacts.overlap_shapes[world, entry]
+        contacts.overlap_shapes[world, entry] = Index4(old[0], old[1], old[2], place)
+    else:
+        new = pairs.queue_new[world, -1 - entry]
+        pairs.queue_new[world, -1 - entry] = Index4(new[0], new[1], new[2], place)
+
+
+@func
+def drop_manifold(contacts: Contacts, pairs: Pairs, world: Int32, place: Int32, manifolds: Int32) -> Int32:
+    """Remove the manifold at a place, which the last one takes; returns the number that remains."""
+    last = pairs.queue_manifold[world, manifolds - 1]
+    set_manifold(contacts, pairs, world, pairs.queue_manifold[world, place], -1)
+    if place < manifolds - 1:
+        pairs.queue_manifold[world, place] = last
+        set_manifold(contacts, pairs, world, last, place)
+    return manifolds - 1
+
+
+@func
+def list_entries(contacts: Contacts, pairs: Pairs, world: Int32, new_count: Int32) -> Int32:
+    """List the overlaps in both orders, new ones last in the pair cache; returns the number of manifolds."""
+    manifolds = Int32(0)
+    old_count = contacts.count_contacts[world, OVERLAPS]
+    for row in range(old_count):
+        old = contacts.overlap_shapes[world, row]
+        pairs.queue_entry[world, old[2]] = row
+        if old[3] >= 0:
+            pairs.queue_manifold[world, old[3]] = row
+            manifolds += 1
+    for i in range(new_count):
+        pairs.queue_entry[world, old_count + i] = -1 - pairs.queue_turn[world, i]
+    return manifolds
+
+
+@func
+def remove_ended(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, manifolds: Int32) -> Int32:
+    """Remove the overlaps that have ended from both orders; returns the number of manifolds that remain.
+
+    Args:
+        contacts: The overlaps.
+        pairs: `queue_entry` and `queue_manifold` have the two orders.
+        world: The world.
+        count: Number of entries of the pair cache.
+        manifolds: Number of manifolds.
+    """
+    end = count + 0
+    left = manifolds + 0
+    i = Int32(0)
+    while i < end:
+        row = pairs.queue_entry[world, i]
+        ended = False
+        if row >= 0:
+            ended = pairs.queue_wanted[world, row] == GONE
+        if ended:
+            place = contacts.overlap_shapes[world, row][3]
+            if place >= 0:
+                left = drop_manifold(contacts, pairs, world, place, left)
+            end -= 1
+            pairs.queue_entry[world, i] = pairs.queue_entry[world, end]
+        else:
+            i += 1
+    return left
+
+
+@func
+def visit_pairs(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, manifolds: Int32):
+    """Go through the pair cache: store places in it, make manifolds that are missing, remove others.
+
+    Only parts of compounds have overlaps without manifolds.
+    """
+    left = manifolds + 0
+    for place in range(count):
+        entry = pairs.queue_entry[world, place]
+        has = Int32(-1)
+        wanted = Int32(0)
+        if entry >= 0:
+            old = contacts.overlap_shapes[world, entry]
+            contacts.overlap_shapes[world, entry] = Index4(old[0], old[1], place, old[3])
+            has = old[3]
+            wanted = pairs.queue_wanted[world, entry]
+        else:
+            new = pairs.queue_new[world, -1 - entry]
+            pairs.queue_new[world, -1 - entry] = Index4(new[0], new[1], place, -1)
+            wanted = new[3]
+        if wanted == 0:
+            if has >= 0:
+                left = drop_manifold(contacts, pairs, world, has, left)
+        elif has < 0:
+            pairs.queue_manifold[world, left] = entry
+            set_manifold(contacts, pairs, world, entry, left)
+            left += 1
+
+
+@func
+def merge(contacts: Contacts, pairs: Pairs, world: Int32, old_count: Int32, new_count: Int32):
+    """Put old overlaps that remain and new ones into one sorted list."""
+    count = Int32(0)
+    new = Int32(0)
+    for row in range(old_count):
+        if pairs.queue_wanted[world, row] != GONE:
+            old = contacts.overlap_shapes[world, row]
+            inserting = new < new_count
+            while inserting:
+                added = pairs.queue_new[world, new]
+                inserting = is_before(added[0], added[1], old[0], old[1])
+                if inserting:
+                    pairs.queue_merged[world, count] = added
+                    count += 1
+                    new += 1
+                    inserting = new < new_count
+            pairs.queue_merged[world, count] = old
+            count += 1
+    while new < new_count:
+        pairs.queue_merged[world, count] = pairs.queue_new[world, new]
+        count += 1
+        new += 1
+    for row in range(count):
+        contacts.overlap_shapes[world, row] = pairs.queue_merged[world, row]
+    contacts.count_contacts[world, OVERLAPS] = count
+
+
+@func
+def update_overlaps(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    contacts: Contacts,
+    pairs: Pairs,
+    world: Int32,
+) -> Int32:
+    """Update the overlaps of the last substep to the present pairs.
+
+    Returns:
+        0, or the number of overlaps if they do not fit; then they are left as they were.
+    """
+    known = contacts.count_contacts[world, KNOWN]
+    if known == settings.shape_count and are_same(shapes, contacts, pairs, world):
+        return 0
+    gone, fresh = find_changes(shapes, contacts, pairs, world)
+    old_count = contacts.count_contacts[world, OVERLAPS]
+    count = old_count - gone + fresh
+    if count > contacts.overlap_shapes.shape[1]:
+        return count
+    keep_overlaps(contacts, pairs, world)
+    sort_new(settings, shapes, model, state, pairs, world, known, fresh)
+    manifolds = list_entries(contacts, pairs, world, fresh)
+    manifolds = remove_ended(contacts, pairs, world, old_count + fresh, manifolds)
+    visit_pairs(contacts, pairs, world, count, manifolds)
+    merge(contacts, pairs, world, old_count, fresh)
+    contacts.count_contacts[world, KNOWN] = settings.shape_count
+    contacts.count_contacts[world, SORTED] = 0
+    return 0
+
+
+@func
+def keep_overlaps(contacts: Contacts, pairs: Pairs, world: Int32):
+    """Save the overlaps of the start of a step before they are changed, for `restore_overlaps`."""
+    if pairs.count_pairs[world, START_OVERLAPS] != NONE_KEPT:
+        return
+    count = contacts.count_contacts[world, OVERLAPS]
+    for row in range(count):
+        pairs.queue_start[world, row] = contacts.overlap_shapes[world, row]
+    pairs.count_pairs[world, START_OVERLAPS] = count
+    pairs.count_pairs[world, START_KNOWN] = contacts.count_contacts[world, KNOWN]
+
+
+@func
+def restore_overlaps(contacts: Contacts, pairs: Pairs, world: Int32):
+    """Restore the overlaps of the start of a step that is abandoned, if they have changed since."""
+    count = pairs.count_pairs[world, START_OVERLAPS]
+    if count == NONE_KEPT:
+        return
+    for row in range(count):
+        contacts.overlap_shapes[world, row] = pairs.queue_start[world, row]
+    contacts.count_contacts[world, OVERLAPS] = count
+    contacts.count_contacts[world, KNOWN] = pairs.count_pairs[world, START_KNOWN]
+    contacts.count_contacts[world, SORTED] = 0
