@@ -120,8 +120,14 @@ def place_shapes(shapes: Shapes, state: State, settings: Settings, pairs: Pairs,
 
 
 @func
+def gap_between(lower_a: Vector3, upper_a: Vector3, lower_b: Vector3, upper_b: Vector3) -> real:
+    """Largest distance of two boxes along any axis [m]; negative if they overlap."""
+    return greatest_entry(upper_corner(lower_a - upper_b, lower_b - upper_a))
+
+
+@func
 def boxes_meet(
     lower_a: Vector3, upper_a: Vector3, lower_b: Vector3, upper_b: Vector3, max_distance: real
 ) -> bool:
     """Whether two boxes are at most `max_distance` apart along every axis."""
-    return greatest_entry(upper_corner(lower_a - upper_b, lower_b - upper_a)) <= max_distance
+    return gap_between(lower_a, upper_a, lower_b, upper_b) <= max_distance

@@ -9,7 +9,7 @@ takes about logarithmic time.
 
 import warp as wp
 
-from carom.kernels.contact.bounds import boxes_meet, look_ahead, place_shapes
+from carom.kernels.contact.bounds import boxes_meet, gap_between, look_ahead, place_shapes
 from carom.kernels.contact.contact_margins import bounds_margin, is_part_of_compound
 from carom.kernels.contact.filters import SELF_COLLISION, may_collide
 from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
@@ -55,18 +55,6 @@ def add_pair(
 
 
 @func
-def bounds_meet(pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real) -> bool:
-    """Whether the bounds of two shapes are at most `max_distance` apart along every axis."""
-    return boxes_meet(
-        pairs.shape_lower[world, a],
-        pairs.shape_upper[world, a],
-        pairs.shape_lower[world, b],
-        pairs.shape_upper[world, b],
-        max_distance,
-    )
-
-
-@func
 def close(shapes: Shapes, a: Int32, b: Int32) -> Int32:
     """The nearness of two shapes of which only the widened bounds overlap.
 
@@ -100,12 +88,12 @@ def compare_in_leaf(
         b = pairs.shape_order[world, place]
         if shapes.shape_tree[b] == avoided:
             continue
-        max_distance = maximum(breaking + pairs.shape_motion[world, b], real(NEAR))
-        if boxes_meet(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b], max_distance):
-            if bounds_meet(pairs, world, a, b, bounds_margin(shapes, pairs, world, a, b)):
-                add_pair(shapes, model, settings, pairs, world, a, b, MEETING)
-            elif bounds_meet(pairs, world, a, b, real(NEAR)):
-                add_pair(shapes, model, settings, pairs, world, a, b, close(shapes, a, b))
+        gap = gap_between(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b])
+        if gap <= maximum(breaking + pairs.shape_motion[world, b], real(NEAR)):
+            meets = gap <= bounds_margin(shapes, pairs, world, a, b)
+            if meets or gap <= NEAR:
+                nearness = wp.where(meets, Int32(MEETING), close(shapes, a, b))
+                add_pair(shapes, model, settings, pairs, world, a, b, nearness)
 
 
 @func
