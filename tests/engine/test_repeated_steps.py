@@ -36,7 +36,7 @@ def assert_same_state(ours: World, theirs: World) -> None:
         (
             ours.contact_arrays.contacts,
             theirs.contact_arrays.contacts,
-            {"contact": ours.contact_arrays.contact_count},
+            {"contact": ours.contact_arrays.contact_count, "overlap": ours.contact_arrays.overlap_count},
         ),
     ):
         for name, array in table.numpy.items():
@@ -53,7 +53,7 @@ def test_a_world_without_room_is_the_same_as_a_roomy_one(substeps: int, settling
     small.step(settling)
     drop_balls(small)
     roomy = small.copy()
-    roomy.contact_arrays.contacts.reserve({"contact": 1000})
+    roomy.contact_arrays.contacts.reserve({"contact": 1000, "overlap": 1000})
     roomy.engine.workspace.pairs.reserve({"pair": 1000})
     roomy.engine.workspace.pair_rows.reserve({"row": 5000, "jacobian": 10000, "matrix": 5000})
     roomy.scene_changed()
