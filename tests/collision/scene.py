@@ -132,7 +132,8 @@ class Scene:
         self.tables["contacts"].reserve({"overlap": pair_room})
         overlaps = self.tables["contacts"].capacity["overlap"]
         self.tables["pairs"].reserve({**room, "pair": pair_room})
-        self.tables["pairs"].reserve({"queue": self.tables["pairs"].capacity["pair"] + overlaps})
+        room = self.tables["pairs"].capacity["pair"]
+        self.tables["pairs"].reserve({"queue": room + overlaps, "listed": 2 * room})
 
     def numpy(self, table: str) -> dict[str, np.ndarray]:
         return self.tables[table].numpy

@@ -16,12 +16,12 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 
 import warp as wp
 
-from carom.kernels.contact.broad_phase import sort_pairs
 from carom.kernels.contact.hierarchy import sort_by_code
+from carom.kernels.contact.neighbour_list import sort_list
 from carom.kernels.solver.contact_order import sort_manifolds
 from carom.kernels.structs import PairRows, Pairs, Settings
 from carom.kernels.types import Index2, Int32, kernel
-from carom.layouts.contacts import PAIRS, RADIX
+from carom.layouts.contacts import COLUMNS, LISTED, RADIX
 
 codes = st.lists(st.one_of(st.integers(0, 3), st.integers(0, 2**31 - 1)), max_size=300)
 
@@ -33,9 +33,9 @@ def sort_by_code_kernel(pairs: Pairs, count: Int32):
 
 
 @kernel
-def sort_pairs_kernel(settings: Settings, pairs: Pairs):
+def sort_list_kernel(settings: Settings, pairs: Pairs):
     """Sort pairs of shapes."""
-    sort_pairs(settings, pairs, 0)
+    sort_list(settings, pairs, 0)
 
 
 @kernel
@@ -79,21 +79,18 @@ def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, in
     pairs = Pairs()
     filled = np.zeros((1, room, 2), dtype=np.int32)
     filled[0, : len(rows)] = np.array(rows).reshape(-1, 2)
-    counts = np.zeros((1, 8), dtype=np.int32)
-    counts[0, PAIRS] = len(rows)
-    pairs.pair_found = wp.array(filled, dtype=Index2, device="cpu")
-    pairs.pair_shapes = wp.zeros((1, room), dtype=Index2, device="cpu")
-    pairs.pair_found_nearness = integers([*range(len(rows)), *[0] * (room - len(rows))])
-    pairs.pair_nearness = integers([0] * room)
+    counts = np.zeros((1, COLUMNS), dtype=np.int32)
+    counts[0, LISTED] = len(rows)
+    pairs.listed_found = wp.array(filled, dtype=Index2, device="cpu")
+    pairs.listed_shapes = wp.zeros((1, room), dtype=Index2, device="cpu")
     pairs.shape_pair_end = integers([0] * 13)
     pairs.count_pairs = wp.array(counts, dtype=Int32, device="cpu")
     setting = Settings()
     setting.shape_count = 13
-    wp.launch(sort_pairs_kernel, dim=1, inputs=[setting, pairs], device="cpu")
-    kept = pairs.pair_shapes.numpy()[0]
+    wp.launch(sort_list_kernel, dim=1, inputs=[setting, pairs], device="cpu")
+    kept = pairs.listed_shapes.numpy()[0]
     assert [tuple(row) for row in kept[: len(rows)].tolist()] == sorted(rows)
     assert not kept[len(rows) :].any()
-    assert [rows[i] for i in pairs.pair_nearness.numpy()[0, : len(rows)]] == sorted(rows)
     # Where the pairs of each first shape end.
     ends = np.searchsorted([a for a, _ in sorted(rows)], range(13), side="right")
     np.testing.assert_array_equal(pairs.shape_pair_end.numpy()[0], ends)

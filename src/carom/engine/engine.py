@@ -112,7 +112,6 @@ class Engine:
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or other parts of a step are needed."""
         self._plan = self._plan_before = None
-        self.contact_arrays.forget_order()
         self._loaded_for = None
         self._detection_ready = False
         self.changes += 1
@@ -380,6 +379,9 @@ class Engine:
         bound: list[KernelStructs],
         program: Callable[[KernelStructs], Program],
     ) -> None:
+        self.contact_arrays.forget_order()
+        for workspace in self._workspaces:
+            workspace.forget_neighbours()
         for interpreter, structs in zip(interpreters, bound, strict=True):
             interpreter.load(program(structs))
 

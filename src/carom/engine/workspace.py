@@ -7,7 +7,7 @@ from typing import Any
 
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
-from carom.layouts.contacts import ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows, Pairs
+from carom.layouts.contacts import LIST_FILTER, NO_LIST, ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
 from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
@@ -49,7 +49,9 @@ class Workspace:
         self.scratch.reserve(arrays.used)
         overlaps = contact_arrays.contacts.capacity["overlap"]
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
-        self.pairs.reserve({"queue": self.pairs.capacity["pair"] + overlaps})
+        room = self.pairs.capacity["pair"]
+        # The neighbour list also has pairs that are not near yet.
+        self.pairs.reserve({"queue": room + overlaps, "listed": 2 * room})
         self.pair_rows.reserve(
             {
                 "tree": arrays.model.capacity["tree"],
@@ -88,6 +90,10 @@ class Workspace:
         if rows:
             capacity = self.pair_rows.capacity
             self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in ("row", "jacobian", "matrix")})
+
+    def forget_neighbours(self) -> None:
+        """Make the neighbour lists anew in the next step, because other shapes may collide."""
+        self.pairs.numpy["count_pairs"][:, LIST_FILTER] = NO_LIST
 
     def bind(self, shared: Mapping[str, Any]) -> KernelStructs:
         """Structs over the current arrays of this workspace, and over those that all workspaces share."""

@@ -38,7 +38,11 @@ MARGIN = 0.001
 # Columns of `Pairs.count_pairs`.
 PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH = 0, 1, 2, 3, 4, 5
 START_CONTACTS, START_OVERLAPS, START_KNOWN = 6, 7, 8
-COLUMNS = 9
+LISTED, LIST_AGE, LIST_IS_WIDE, LIST_FILTER = 9, 10, 11, 12
+COLUMNS = 13
+# The neighbour list: number of its pairs; substeps since it was made; 1 if it has slack; `NO_LIST`, or one
+# more than `Settings.filter_both` was.
+NO_LIST = 0
 # Value of START_CONTACTS and START_OVERLAPS, the numbers of contacts and of overlaps at the start of a step,
 # until these have been saved.
 NONE_KEPT = -1
@@ -53,9 +57,9 @@ THERE, OVERLAPS, KNOWN, SORTED = 0, 1, 2, 3
 CONTACT_COLUMNS = 4
 # Place among manifolds of overlaps without a manifold.
 NO_MANIFOLD = -1
-# How near two shapes are whose bounds Bullet takes for overlapping: close, without and with a manifold;
-# so near that their contacts are looked for.
-CLOSE, CLOSE_WITH_MANIFOLD, MEETING = 0, 1, 2
+# How near two shapes are: far; close, so that Bullet takes their bounds for overlapping, without and with a
+# manifold; so near that their contacts are looked for.
+FAR, CLOSE, CLOSE_WITH_MANIFOLD, MEETING = -1, 0, 1, 2
 # Gap between the bounds of two shapes up to which Bullet takes them for overlapping: it widens both [m].
 NEAR = 0.04
 # Value of `Contacts.contact_warm_start` for contacts whose manifold held in the last step; others have at
@@ -148,6 +152,10 @@ class Pairs:
     shape_sorted: IntRows  # workspace of the sort
     shape_motion: RealRows  # distance by which continuous detection looks ahead [m]
     shape_pair_end: IntRows  # end of the pairs with it as first shape; of the new overlaps that it finds
+    # Bounds and look-ahead distances for which the neighbour list was made.
+    shape_listed_lower: Vector3Rows
+    shape_listed_upper: Vector3Rows
+    shape_listed_motion: RealRows
 
     # Bounds of the hierarchy over `shape_order`; node 1 is the root, node n has the children 2n and 2n + 1.
     node_lower: Vector3Rows
@@ -156,8 +164,9 @@ class Pairs:
 
     pair_shapes: Index2Rows  # the lower and the higher shape row; sorted
     pair_nearness: IntRows  # CLOSE, CLOSE_WITH_MANIFOLD or MEETING
-    pair_found: Index2Rows  # the same shapes in the order in which they were found
-    pair_found_nearness: IntRows
+    # Neighbour list, see `kernels.contact.neighbour_list`: shapes as in `pair_shapes`.
+    listed_shapes: Index2Rows
+    listed_found: Index2Rows  # in the order in which they were found
 
     # Changes of the overlaps: entries are rows of old overlaps and, as -1 - row, of new ones.
     queue_entry: IntRows  # in the order of the pair cache
@@ -201,7 +210,7 @@ class Pairs:
     previous_warm_start: RealRows
     previous_taken: IntRows  # 1: a new contact has been matched with it
 
-    # Columns: PAIRS to START_CONTACTS, above.
+    # Columns: PAIRS to LIST_FILTER, above.
     count_pairs: IntRows
 
 

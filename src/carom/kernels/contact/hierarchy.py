@@ -51,12 +51,18 @@ def spread_bits(value: Int32) -> Int32:
 
 
 @func
+def is_placed(pairs: Pairs, world: Int32, shape: Int32) -> bool:
+    """Whether the pose of a shape is finite: then its bounds are not empty."""
+    return pairs.shape_lower[world, shape][0] <= pairs.shape_upper[world, shape][0]
+
+
+@func
 def gather_shapes(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32):
     """List the shapes whose pose is finite: first the bounded shapes, then the planes."""
     count = Int32(0)
     planes = Int32(0)
     for shape in range(settings.shape_count):
-        if pairs.shape_lower[world, shape][0] <= pairs.shape_upper[world, shape][0]:
+        if is_placed(pairs, world, shape):
             if shapes.shape_kind[shape] == PLANE:
                 pairs.shape_sorted[world, planes] = shape
                 planes += 1

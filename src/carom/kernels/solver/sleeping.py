@@ -8,14 +8,12 @@ active, and wakes up when one is. As in Bullet, neither forces nor motors wake a
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
-from carom.kernels.contact.filters import may_collide
-from carom.kernels.contact.hierarchy import leaf_start, next_node
 from carom.kernels.solver.activity import link_moves, squared_motion
 from carom.kernels.solver.islands import island_root, unite, unite_tied
 from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
 from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
-from carom.layouts.contacts import LEAVES, NEAR, THERE
+from carom.layouts.contacts import NEAR, PAIRS, THERE
 from carom.layouts.status import STATUS, WELL
 
 # Time below the threshold after which a tree may fall asleep [s].
@@ -23,65 +21,20 @@ SLEEP_DELAY = real(2.0)
 
 
 @func
-def are_near(
-    settings: Settings, model: Model, shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
-) -> bool:
-    """Whether two shapes are near each other and may collide, and a dof moves the link of shape b."""
-    if not link_moves(model, shapes.shape_link[b]):
-        return False
-    return boxes_meet(
-        pairs.shape_lower[world, a],
-        pairs.shape_upper[world, a],
-        pairs.shape_lower[world, b],
-        pairs.shape_upper[world, b],
-        real(NEAR),
-    ) and may_collide(shapes, model, settings, a, b)
-
-
-@func
-def unite_near(
-    settings: Settings,
-    model: Model,
-    state: State,
-    shapes: Shapes,
-    pairs: Pairs,
-    world: Int32,
-    place: Int32,
-    own_leaf: Int32,
-):
-    """Unite the tree of the shape at `place` in `shape_order` with those of near shapes after it."""
-    a = pairs.shape_order[world, place]
-    if not link_moves(model, shapes.shape_link[a]):
-        return
-    lower = pairs.shape_lower[world, a]
-    upper = pairs.shape_upper[world, a]
-    leaf_count = pairs.count_pairs[world, LEAVES]
-    node = leaf_count + own_leaf
-    while node > 0:
-        if boxes_meet(lower, upper, pairs.node_lower[world, node], pairs.node_upper[world, node], real(NEAR)):
-            if node < leaf_count:
-                node = 2 * node
-                continue
-            leaf = node - leaf_count
-            for other in range(
-                wp.max(place + 1, leaf_start(pairs, world, leaf)),
-                leaf_start(pairs, world, leaf + 1),
+def unite_neighbours(model: Model, state: State, shapes: Shapes, pairs: Pairs, world: Int32):
+    """Put trees that are near each other, and may collide, into one island."""
+    for i in range(pairs.count_pairs[world, PAIRS]):
+        a = pairs.pair_shapes[world, i][0]
+        b = pairs.pair_shapes[world, i][1]
+        if link_moves(model, shapes.shape_link[a]) and link_moves(model, shapes.shape_link[b]):
+            if boxes_meet(
+                pairs.shape_lower[world, a],
+                pairs.shape_upper[world, a],
+                pairs.shape_lower[world, b],
+                pairs.shape_upper[world, b],
+                real(NEAR),
             ):
-                b = pairs.shape_order[world, other]
-                if are_near(settings, model, shapes, pairs, world, a, b):
-                    unite(model, state, world, shapes.shape_tree[a], shapes.shape_tree[b])
-        node = next_node(node)
-
-
-@func
-def unite_neighbours(
-    settings: Settings, model: Model, state: State, shapes: Shapes, pairs: Pairs, world: Int32
-):
-    """Put trees that are near each other into one island."""
-    leaf_count = pairs.count_pairs[world, LEAVES]
-    for leaf in range(leaf_count):
-        for place in range(leaf_start(pairs, world, leaf), leaf_start(pairs, world, leaf + 1)):
-            unite_near(settings, model, state, shapes, pairs, world, place, leaf)
+                unite(model, state, world, shapes.shape_tree[a], shapes.shape_tree[b])
 
 
 @func
@@ -118,7 +71,7 @@ def settle_kernel(
         state.tree_island[world, tree] = tree
         pair_rows.tree_awake[world, tree] = 0
     if touching != 0:
-        unite_neighbours(settings, model, state, shapes, pairs, world)
+        unite_neighbours(model, state, shapes, pairs, world)
         for contact in range(contacts.count_contacts[world, THERE]):
             pair = contacts.contact_shapes[world, contact]
             if link_moves(model, pair[2]) and link_moves(model, pair[3]):

@@ -1,0 +1,223 @@
+"""Neighbour list (Verlet list): the pairs of shapes that may meet soon, which serves several substeps.
+
+It has the pairs that may collide and whose bounds are at most a *slack* farther apart than pairs that count
+as near. While no bound has moved by more than half the slack, all near pairs are in the list. So most steps
+need no hierarchy, no filters and no sort. Which pairs are selected does not depend on when the list was made.
+
+In motion so fast that a list would not last, it is made anew in each substep, without slack.
+"""
+
+import warp as wp
+
+from carom.kernels.contact.bounds import boxes_meet, gap_between
+from carom.kernels.contact.filters import SELF_COLLISION, may_collide
+from carom.kernels.contact.hierarchy import build_hierarchy, is_placed, leaf_start, next_node
+from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
+from carom.kernels.structs import Model, Pairs, Settings, Shapes
+from carom.kernels.types import Index2, Int32, func, real
+from carom.layouts.codes import PLANE
+from carom.layouts.contacts import (
+    BOUNDED,
+    LEAVES,
+    LIST_AGE,
+    LIST_FILTER,
+    LIST_IS_WIDE,
+    LISTED,
+    NEAR,
+    NO_LIST,
+    PLANES,
+)
+
+# Slack of a list that is to last [m].
+SLACK = real(0.02)
+# Substeps that a list with slack has to last, at the present speed.
+LEAST_LIFE = real(4.0)
+
+
+@func
+def displacement(settings: Settings, pairs: Pairs, world: Int32) -> real:
+    """Largest change of a bound since the list was made [m]."""
+    farthest = real(0.0)
+    for shape in range(settings.shape_count):
+        lower = wp.abs(pairs.shape_lower[world, shape] - pairs.shape_listed_lower[world, shape])
+        upper = wp.abs(pairs.shape_upper[world, shape] - pairs.shape_listed_upper[world, shape])
+        farthest = maximum(farthest, greatest_entry(upper_corner(lower, upper)))
+    return farthest
+
+
+@func
+def looks_farther(settings: Settings, pairs: Pairs, world: Int32) -> bool:
+    """Whether continuous detection looks farther ahead of a shape than when the list was made."""
+    if settings.looks_ahead == 0:
+        return False
+    for shape in range(settings.shape_count):
+        if pairs.shape_motion[world, shape] > pairs.shape_listed_motion[world, shape]:
+            return True
+    return False
+
+
+@func
+def renew_list(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
+    """Make the list anew unless it holds; the number of its pairs may exceed the capacity."""
+    age = pairs.count_pairs[world, LIST_AGE] + 1
+    wide = Int32(0)
+    if pairs.count_pairs[world, LIST_FILTER] == 1 + settings.filter_both:
+        moved = displacement(settings, pairs, world)
+        slack = real(pairs.count_pairs[world, LIST_IS_WIDE]) * SLACK
+        if 2.0 * moved <= slack and not looks_farther(settings, pairs, world):
+            pairs.count_pairs[world, LIST_AGE] = age
+            return
+        if 2.0 * LEAST_LIFE * moved <= real(age) * SLACK:
+            wide = Int32(1)
+    build_hierarchy(shapes, settings, pairs, world)
+    count = list_pairs(shapes, model, settings, pairs, world, real(wide) * SLACK)
+    if wide == 1 and count > pairs.listed_shapes.shape[1]:
+        wide = Int32(0)
+        count = list_pairs(shapes, model, settings, pairs, world, real(0.0))
+    for shape in range(settings.shape_count):
+        pairs.shape_listed_lower[world, shape] = pairs.shape_lower[world, shape]
+        pairs.shape_listed_upper[world, shape] = pairs.shape_upper[world, shape]
+        pairs.shape_listed_motion[world, shape] = pairs.shape_motion[world, shape]
+    pairs.count_pairs[world, LIST_AGE] = 0
+    pairs.count_pairs[world, LIST_IS_WIDE] = wide
+    pairs.count_pairs[world, LIST_FILTER] = 1 + settings.filter_both
+    if count > pairs.listed_shapes.shape[1]:
+        pairs.count_pairs[world, LIST_FILTER] = NO_LIST
+        return
+    sort_list(settings, pairs, world)
+
+
+@func
+def list_pairs(
+    shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, slack: real
+) -> Int32:
+    """List the pairs up to a slack, each once, in the order of the hierarchy; returns their number.
+
+    Planes are few and meet almost all shapes: each is listed with every shape. The shapes of each leaf are
+    compared, by a traversal of the hierarchy, with those after them in the order of the leaves. A traversal
+    takes about logarithmic time.
+    """
+    pairs.count_pairs[world, LISTED] = 0
+    count = pairs.count_pairs[world, BOUNDED]
+    for place in range(count, count + pairs.count_pairs[world, PLANES]):
+        a = pairs.shape_order[world, place]
+        for b in range(settings.shape_count):
+            if shapes.shape_kind[b] != PLANE and is_placed(pairs, world, b):
+                add_to_list(shapes, model, settings, pairs, world, a, b)
+    for leaf in range(pairs.count_pairs[world, LEAVES]):
+        walk_from(shapes, model, settings, pairs, world, leaf, slack)
+    return pairs.count_pairs[world, LISTED]
+
+
+@func
+def walk_from(
+    shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, own_leaf: Int32, slack: real
+):
+    """List the shapes of a leaf with the near ones among those at later indices of `shape_order`."""
+    leaf_count = pairs.count_pairs[world, LEAVES]
+    start = leaf_start(pairs, world, own_leaf)
+    end = leaf_start(pairs, world, own_leaf + 1)
+    reach = real(NEAR)
+    for place in range(start, end):
+        reach = maximum(reach, shapes.shape_breaking[pairs.shape_order[world, place]])
+        compare_in_leaf(shapes, model, settings, pairs, world, place, place + 1, end, slack)
+    node = leaf_count + own_leaf
+    # Bounds of nodes are widened by look-ahead distances.
+    lower = pairs.node_lower[world, node]
+    upper = pairs.node_upper[world, node]
+    node = next_node(node)
+    while node > 0:
+        node_lower = pairs.node_lower[world, node]
+        node_upper = pairs.node_upper[world, node]
+        if boxes_meet(lower, upper, node_lower, node_upper, reach + slack):
+            if node < leaf_count:
+                node = 2 * node
+                continue
+            leaf = node - leaf_count
+            first = leaf_start(pairs, world, leaf)
+            last = leaf_start(pairs, world, leaf + 1)
+            for place in range(start, end):
+                a = pairs.shape_order[world, place]
+                own = reach + slack + pairs.shape_motion[world, a]
+                if boxes_meet(
+                    pairs.shape_lower[world, a], pairs.shape_upper[world, a], node_lower, node_upper, own
+                ):
+                    compare_in_leaf(shapes, model, settings, pairs, world, place, first, last, slack)
+        node = next_node(node)
+
+
+@func
+def compare_in_leaf(
+    shapes: Shapes,
+    model: Model,
+    settings: Settings,
+    pairs: Pairs,
+    world: Int32,
+    place: Int32,
+    first: Int32,
+    last: Int32,
+    slack: real,
+):
+    """List the shape at index `place` of `shape_order` with the near ones at indices [first, last)."""
+    a = pairs.shape_order[world, place]
+    lower = pairs.shape_lower[world, a]
+    upper = pairs.shape_upper[world, a]
+    breaking = shapes.shape_breaking[a] + pairs.shape_motion[world, a]
+    avoided = Int32(-1)
+    if shapes.link_self_collision[shapes.shape_link[a]] & SELF_COLLISION == 0:
+        avoided = shapes.shape_tree[a]
+    for other in range(first, last):
+        b = pairs.shape_order[world, other]
+        if shapes.shape_tree[b] == avoided:
+            continue
+        gap = gap_between(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b])
+        if gap <= slack + maximum(breaking + pairs.shape_motion[world, b], real(NEAR)):
+            add_to_list(shapes, model, settings, pairs, world, a, b)
+
+
+@func
+def add_to_list(
+    shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32, a: Int32, b: Int32
+):
+    """List two shapes if they may collide; pairs beyond the capacity are only counted."""
+    if may_collide(shapes, model, settings, a, b):
+        count = pairs.count_pairs[world, LISTED]
+        if count < pairs.listed_found.shape[1]:
+            pairs.listed_found[world, count] = Index2(wp.min(a, b), wp.max(a, b))
+        pairs.count_pairs[world, LISTED] = count + 1
+
+
+@func
+def sort_list(settings: Settings, pairs: Pairs, world: Int32):
+    """Sort the list by first, then by second shape: the order must not depend on the traversal."""
+    count = pairs.count_pairs[world, LISTED]
+    for shape in range(settings.shape_count):
+        pairs.shape_pair_end[world, shape] = 0
+    for i in range(count):
+        a = pairs.listed_found[world, i][0]
+        pairs.shape_pair_end[world, a] = pairs.shape_pair_end[world, a] + 1
+    total = Int32(0)
+    for shape in range(settings.shape_count):
+        size = pairs.shape_pair_end[world, shape]
+        pairs.shape_pair_end[world, shape] = total
+        total += size
+    for i in range(count):
+        pair = pairs.listed_found[world, i]
+        place = pairs.shape_pair_end[world, pair[0]]
+        pairs.shape_pair_end[world, pair[0]] = place + 1
+        pairs.listed_shapes[world, place] = pair
+    # Insertion sort by second shape, as few pairs share a first shape, those of planes excepted, which are
+    # listed in order. It cannot be part of the loop above: until this loop ends, some rows of `listed_shapes`
+    # are left over from an earlier list.
+    for i in range(1, count):
+        pair = pairs.listed_shapes[world, i]
+        place = i + 0
+        searching = place > 0
+        while searching:
+            before = pairs.listed_shapes[world, place - 1]
+            searching = before[0] == pair[0] and before[1] > pair[1]
+            if searching:
+                pairs.listed_shapes[world, place] = before
+                place -= 1
+                searching = place > 0
+        pairs.listed_shapes[world, place] = pair
