@@ -72,6 +72,7 @@ class Engine:
         self.contact_arrays = contact_arrays
         self.status: np.ndarray = self._make_status()
         self._first_status = memoryview(self.status[0])
+        self._status_address = self.status.ctypes.data
         self._settings = EngineSettings()
         self._workspaces = self._make_workspaces(threads)
         self._all_worlds = np.arange(arrays.world_count, dtype=np.int32)
@@ -189,7 +190,7 @@ class Engine:
         """
         settings = self._settings.struct
         time_step = addressof(settings) + type(settings).time_step.offset
-        return self._steppers[0].address, self.status.ctypes.data, time_step
+        return self._steppers[0].address, self._status_address, time_step
 
     def step_by(self, make_program: ProgramMaker, steppers: list[Stepper] | None = None) -> None:
         """Use other programs and steppers from now on."""

@@ -18,7 +18,7 @@ from carom.scene.body import Body
 from carom.scene.dynamics_changes import change_base_freedom, set_base_freedom
 from carom.scene.pattern import pattern_of
 from carom.scene.soft_body import SoftBody
-from carom.scene.undoing import begin, begin_with_constraints
+from carom.scene.undoing import begin
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -113,12 +113,19 @@ def remove_body(world: World, body: Body) -> None:
         undo.at_once(remove)
 
 
-def tie(world: World, make: Callable[[], UserConstraint]) -> UserConstraint:
-    """Add the user constraint that `make` creates."""
-    with begin_with_constraints(world) as undo:
-        undo.note(world.user_constraints.way_back())
-        undo.note(world.constraints.way_back())
-        constraint = make()
+def tie(world: World, constraint: UserConstraint) -> UserConstraint:
+    """Add a new user constraint, and return it."""
+    world.undo.settle()
+    forget_user, forget = world.user_constraints.way_back(), world.constraints.way_back()
+
+    def go_back() -> None:
+        forget()
+        forget_user()
+        world.constraints_changed()
+
+    with world.undo as undo:
+        undo.note(go_back)
+        world.user_constraints.put(constraint)
         world.constraints.add_user(constraint)
         world.constraints_changed()
         undo.done()
@@ -127,15 +134,15 @@ def tie(world: World, make: Callable[[], UserConstraint]) -> UserConstraint:
 
 def untie(world: World, constraint: UserConstraint) -> None:
     """Remove a user constraint."""
-    with begin_with_constraints(world) as undo:
-        remove_constraint = world.constraints.user_removal(constraint)
+    world.undo.settle()
+    remove_constraint = world.constraints.user_removal(constraint)
 
-        def remove() -> None:
-            world.user_constraints.discard(constraint.id)
-            remove_constraint()
-            world.constraints_changed()
+    def remove() -> None:
+        world.user_constraints.discard(constraint.id)
+        remove_constraint()
+        world.constraints_changed()
 
-        undo.at_once(remove)
+    world.undo.at_once(remove)
 
 
 def free_base(world: World, body: Body, *, free: bool) -> None:

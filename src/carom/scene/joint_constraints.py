@@ -6,11 +6,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from carom.layouts.codes import LIMIT_KIND, MAX_ROWS_PER_CONSTRAINT, MOTOR_KIND, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
+from carom.native.tables import ArrayTable
 from carom.record import record
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
@@ -61,6 +60,8 @@ class JointConstraints:
     def __init__(self) -> None:
         self.all: list[JointConstraint] = []
         self.tags: IslandTags = IslandTags()
+        # What the rows of the model's fields are known to contain.
+        self._written: dict[str, list[Any]] = {}
 
     def add_body(self, body: Body) -> None:
         """Append the limits, then the motors, of a new body."""
@@ -132,7 +133,8 @@ class JointConstraints:
 
     def user_removal(self, user: UserConstraint) -> Callable[[], None]:
         """Prepare to remove a user constraint; the function returned can be called again."""
-        return partial(setattr, self, "all", self._all_but(next(c for c in self.all if c.user is user)))
+        rows = [constraint.user for constraint in self.all]
+        return partial(setattr, self, "all", self._all_but(self.all[rows.index(user)]))
 
     def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
         kept = self.all.copy()
@@ -198,46 +200,49 @@ class JointConstraints:
         arrays.model.reserve(used)
         arrays.state.reserve(used)
         arrays.used.update(used)
-        model = arrays.model.numpy
         trees = [constraint.moving_body.rows.tree for constraint in ordered]
-        if ordered:
-            _fill(model["constraint_kind"], [constraint.kind for constraint in ordered])
-            _fill(model["constraint_tree"], trees)
-            links = [
+        tree_count = arrays.used["tree"]
+        counts, batches = [0] * tree_count, list(range(tree_count))
+        first_constraints, lengths = [0] * tree_count, [0] * tree_count
+        for tree in (*trees, *[user.child.rows.tree for user in users if user.child is not None]):
+            counts[tree] += 1
+        for first, length in islands:
+            root = min(trees[first : first + length])
+            for tree in trees[first : first + length]:
+                batches[tree] = root
+            first_constraints[root], lengths[root] = first, length
+        fields = {
+            "constraint_kind": [constraint.kind for constraint in ordered],
+            "constraint_tree": trees,
+            "constraint_link": [
                 constraint.body.first_link + 1 + constraint.joint
                 if constraint.user is None
                 else user_rows[constraint.user.id]
                 for constraint in ordered
-            ]
-            _fill(model["constraint_link"], links)
-            _fill(model["constraint_lower"], [constraint.lower for constraint in ordered])
-            _fill(model["constraint_upper"], [constraint.upper for constraint in ordered])
-            _fill(model["constraint_twist"], [constraint.twist for constraint in ordered])
-            _fill(model["constraint_max_impulse"], [constraint.max_impulse for constraint in ordered])
+            ],
+            "constraint_lower": [constraint.lower for constraint in ordered],
+            "constraint_upper": [constraint.upper for constraint in ordered],
+            "constraint_twist": [constraint.twist for constraint in ordered],
+            "constraint_max_impulse": [constraint.max_impulse for constraint in ordered],
+            "tree_constraint_count": counts,
+            "tree_batch": batches,
+            "tree_first_constraint": first_constraints,
+            "tree_batch_constraints": lengths,
+        }
+        self._write_fields(arrays.model, fields)
 
-        tree_count = arrays.used["tree"]
-        counts = [0] * tree_count
-        for tree in (*trees, *[user.child.rows.tree for user in users if user.child is not None]):
-            counts[tree] += 1
-        model["tree_constraint_count"][:tree_count] = counts
-        model["tree_batch"][:tree_count] = np.arange(tree_count)
-        model["tree_batch_constraints"][:tree_count] = 0
-        for first, length in islands:
-            batch = trees[first : first + length]
-            root = min(batch)
-            if root != max(batch):
-                model["tree_batch"][batch] = root
-            model["tree_first_constraint"][root] = first
-            model["tree_batch_constraints"][root] = length
+    def forget_written(self) -> None:
+        """Write all fields the next time: the arrays may have other contents now."""
+        self._written = {}
 
-
-def _fill(field: np.ndarray, values: list[Any]) -> None:
-    """Set the first rows of a field, in all worlds."""
-    if len(values) == 1:
-        # NumPy takes a number in a third of the time of a list.
-        field[..., 0] = values[0]
-    else:
-        field[..., : len(values)] = values
+    def _write_fields(self, model: ArrayTable, fields: dict[str, list[Any]]) -> None:
+        """Set the first rows of those fields that have changed, in all worlds."""
+        # Until all have been written, none is known.
+        written, self._written = self._written, {}
+        for name, values in fields.items():
+            if written.get(name) != values:
+                model.numpy[name][..., : len(values)] = values
+        self._written = fields
 
 
 def moving_links(body: Body) -> list[bool]:

@@ -16,11 +16,3 @@ def begin(world: World) -> Undo:
     world.undo.note(world.scene_changed)
     world.scene_changed()
     return world.undo
-
-
-def begin_with_constraints(world: World) -> Undo:
-    """Begin a change that concerns constraints only."""
-    world.undo.settle()
-    world.undo.note(world.scene_changed)
-    world.constraints_changed()
-    return world.undo

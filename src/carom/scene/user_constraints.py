@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,24 @@ ROWS = {
     UserConstraintKind.PRISMATIC: 5,
     UserConstraintKind.GEAR: 1,
 }
+# Fields of `carom.layouts.contacts.UserConstraints`, without the one that each world has for itself.
+_FIELDS = (
+    "user_kind",
+    "user_tree_a",
+    "user_link_a",
+    "user_tree_b",
+    "user_link_b",
+    "user_max_impulse",
+    "user_gear_ratio",
+    "user_gear_auxiliary",
+    "user_relative_target",
+    "user_erp",
+    "user_pivot_a",
+    "user_pivot_b",
+    "user_frame_a",
+    "user_frame_b",
+    "user_axis",
+)
 
 
 @record(frozen=False, eq=False, hot=True)
@@ -66,6 +84,28 @@ class UserConstraint:
     erp: float = 0.0
     enabled: bool = True
 
+    def terms(self) -> tuple[Any, ...]:
+        """The values of its row in the engine's arrays: of `_FIELDS`, and whether it is enabled."""
+        parent, child, auxiliary = self.parent, self.child, self.gear_auxiliary_link
+        return (
+            self.kind,
+            parent.rows.tree,
+            parent.first_link + 1 + self.parent_link,
+            -1 if child is None else child.rows.tree,
+            -1 if child is None else child.first_link + 1 + self.child_link,
+            self.max_impulse,
+            self.gear_ratio or 1.0,
+            parent.first_link + 1 + auxiliary if auxiliary >= 0 else -1,
+            self.relative_position_target,
+            self.erp,
+            self.parent_frame.position,
+            self.child_frame.position,
+            self.parent_frame.orientation,
+            self.child_frame.orientation,
+            self.axis,
+            self.enabled,
+        )
+
 
 class UserConstraints:
     """The user constraints of a world, by number.
@@ -78,6 +118,8 @@ class UserConstraints:
         self._by_id: dict[int, UserConstraint] = {}
         self.next_id: int = 1
         self._next_hidden_id = -1
+        # What the rows of the engine's arrays are known to contain.
+        self._written: list[tuple[Any, ...]] = []
 
     def __len__(self) -> int:
         return len(self.all)
@@ -91,7 +133,7 @@ class UserConstraints:
         """The constraint with a number, or None."""
         return self._by_id.get(constraint_id)
 
-    def add(
+    def new(
         self,
         kind: UserConstraintKind,
         parent: Body,
@@ -104,21 +146,15 @@ class UserConstraints:
         *,
         hidden: bool = False,
     ) -> UserConstraint:
-        """Create a constraint; see `UserConstraint` for the arguments.
+        """A constraint with the next number, for `put`; see `UserConstraint` for the arguments.
 
         A hidden constraint, such as that of the mouse in the viewer, has a negative number, so that the
         numbers of other constraints do not change.
         """
         number = self._next_hidden_id if hidden else self.next_id
-        if hidden:
-            self._next_hidden_id -= 1
-        else:
-            self.next_id += 1
-        constraint = UserConstraint(
+        return UserConstraint(
             number, kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
         )
-        self._by_id[number] = constraint
-        return constraint
 
     def take_id(self) -> int:
         """Reserve the next number for the anchor of a soft body, which is not a constraint between links."""
@@ -129,6 +165,7 @@ class UserConstraints:
         """Add a constraint with its own number; later ones get higher numbers."""
         self._by_id[constraint.id] = constraint
         self.next_id = max(self.next_id, constraint.id + 1)
+        self._next_hidden_id = min(self._next_hidden_id, constraint.id - 1)
 
     def discard(self, constraint_id: int) -> None:
         """Remove the constraint with a number, if it exists."""
@@ -168,32 +205,24 @@ class UserConstraints:
         # The numbers are copied at once, because the viewer's thread may add a constraint in the meantime.
         return {number: row for row, number in enumerate(tuple(self._by_id))}
 
+    def forget_written(self) -> None:
+        """Write all rows the next time: the arrays may have other contents now."""
+        self._written = []
+
     def write(self, contact_arrays: ContactArrays) -> None:
-        """Write all constraints to the arrays of the engine."""
+        """Write all constraints that have changed to the arrays of the engine."""
         contact_arrays.user_count = len(self._by_id)
         contact_arrays.users.reserve({"user": contact_arrays.user_count})
         users = contact_arrays.users.numpy
-        for row, constraint in enumerate(self._by_id.values()):
-            child = constraint.child
-            users["user_kind"][row] = constraint.kind
-            users["user_tree_a"][row] = constraint.parent.rows.tree
-            users["user_link_a"][row] = constraint.parent.first_link + 1 + constraint.parent_link
-            users["user_tree_b"][row] = -1 if child is None else child.rows.tree
-            users["user_link_b"][row] = -1 if child is None else child.first_link + 1 + constraint.child_link
-            users["user_pivot_a"][row] = constraint.parent_frame.position
-            users["user_pivot_b"][row] = constraint.child_frame.position
-            users["user_frame_a"][row] = constraint.parent_frame.orientation
-            users["user_frame_b"][row] = constraint.child_frame.orientation
-            users["user_axis"][row] = constraint.axis
-            users["user_max_impulse"][row] = constraint.max_impulse
-            users["user_gear_ratio"][row] = constraint.gear_ratio or 1.0
-            auxiliary = constraint.gear_auxiliary_link
-            users["user_gear_auxiliary"][row] = (
-                constraint.parent.first_link + 1 + auxiliary if auxiliary >= 0 else -1
-            )
-            users["user_relative_target"][row] = constraint.relative_position_target
-            users["user_erp"][row] = constraint.erp
-            users["user_enabled"][:, row] = constraint.enabled
+        # Until all rows have been written, none is known.
+        written, self._written = self._written, []
+        now = [constraint.terms() for constraint in self._by_id.values()]
+        for row, terms in enumerate(now):
+            if row >= len(written) or terms != written[row]:
+                *shared, users["user_enabled"][:, row] = terms
+                for field, value in zip(_FIELDS, shared, strict=True):
+                    users[field][row] = value
+        self._written = now
 
     def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
         """Impulses of a constraint's rows in the last substep, shape (rows,)."""

@@ -92,10 +92,10 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
 
     def _start_empty(self) -> None:
         arrays = WorldArrays()
-        self._take_arrays(arrays, ContactArrays(arrays))
-        self.bodies.clear()
         self.constraints: JointConstraints = JointConstraints()
         self.user_constraints: UserConstraints = UserConstraints()
+        self._take_arrays(arrays, ContactArrays(arrays))
+        self.bodies.clear()
         self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
         self.next_id: int = 0
@@ -231,7 +231,7 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         """
         places = (parent, parent_link, child, child_link)
         frames = (axis, parent_frame, child_frame)
-        return tie(self, lambda: self.user_constraints.add(kind, *places, *frames, hidden=hidden))
+        return tie(self, self.user_constraints.new(kind, *places, *frames, hidden=hidden))
 
     def untie(self, constraint: UserConstraint) -> None:
         """Remove a constraint made by `tie`."""
@@ -344,6 +344,8 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         self.quick.forget()
         self._derived = Derived()
         self._made_for: tuple[int, int] | None = None
+        self.constraints.forget_written()
+        self.user_constraints.forget_written()
         self.engine.changed()
         if self.arrays.state is not self._viewed or self.arrays.state.replacements != self._replacements:
             self.view(self.arrays.state)
