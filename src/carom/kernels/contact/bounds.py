@@ -12,6 +12,12 @@ UNBOUNDED = real(1.0e18)
 
 
 @func
+def is_bounded(shapes: Shapes, shape: Int32) -> bool:
+    """Whether a shape has bounds: all but planes."""
+    return shapes.shape_kind[shape] != PLANE
+
+
+@func
 def local_center(shapes: Shapes, shape: Int32) -> Vector3:
     """Centre of a shape's bounds in the shape frame."""
     if shapes.shape_kind[shape] > PLANE:

@@ -7,12 +7,11 @@ lasts for several substeps (`neighbour_list.py`).
 
 import warp as wp
 
-from carom.kernels.contact.bounds import gap_between, look_ahead, place_shapes
+from carom.kernels.contact.bounds import gap_between, is_bounded, look_ahead, place_shapes
 from carom.kernels.contact.contact_margins import bounds_margin, is_part_of_compound
 from carom.kernels.contact.neighbour_list import renew_list
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, func
-from carom.layouts.codes import PLANE
 from carom.layouts.contacts import (
     CLOSE,
     CLOSE_WITH_MANIFOLD,
@@ -75,9 +74,9 @@ def select_pairs(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32)
     for i in range(pairs.count_pairs[world, LISTED]):
         pair = pairs.listed_shapes[world, i]
         nearness = Int32(FAR)
-        if shapes.shape_kind[pair[0]] == PLANE:
+        if not is_bounded(shapes, pair[0]):
             nearness = nearness_to_plane(shapes, pairs, world, pair[0], pair[1], known)
-        elif shapes.shape_kind[pair[1]] == PLANE:
+        elif not is_bounded(shapes, pair[1]):
             nearness = nearness_to_plane(shapes, pairs, world, pair[1], pair[0], known)
         else:
             nearness = nearness_of(shapes, pairs, world, pair[0], pair[1])

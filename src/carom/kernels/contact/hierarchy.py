@@ -9,11 +9,10 @@ above it.
 
 import warp as wp
 
-from carom.kernels.contact.bounds import UNBOUNDED
+from carom.kernels.contact.bounds import UNBOUNDED, is_bounded
 from carom.kernels.maths.min_max import greatest_entry, lower_corner, maximum, upper_corner
 from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.codes import PLANE
 from carom.layouts.contacts import BOUNDED, LEAF_LENGTH, LEAVES, PLANES, RADIX
 
 # Maximum number of shapes in a leaf, if there are several leaves.
@@ -63,12 +62,12 @@ def gather_shapes(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32
     planes = Int32(0)
     for shape in range(settings.shape_count):
         if is_placed(pairs, world, shape):
-            if shapes.shape_kind[shape] == PLANE:
-                pairs.shape_sorted[world, planes] = shape
-                planes += 1
-            else:
+            if is_bounded(shapes, shape):
                 pairs.shape_order[world, count] = shape
                 count += 1
+            else:
+                pairs.shape_sorted[world, planes] = shape
+                planes += 1
     for i in range(planes):
         pairs.shape_order[world, count + i] = pairs.shape_sorted[world, i]
     pairs.count_pairs[world, BOUNDED] = count

@@ -9,13 +9,12 @@ In motion so fast that a list would not last, it is made anew in each substep, w
 
 import warp as wp
 
-from carom.kernels.contact.bounds import boxes_meet, gap_between
+from carom.kernels.contact.bounds import boxes_meet, gap_between, is_bounded
 from carom.kernels.contact.filters import SELF_COLLISION, may_collide
 from carom.kernels.contact.hierarchy import build_hierarchy, is_placed, leaf_start, next_node
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.structs import Model, Pairs, Settings, Shapes
 from carom.kernels.types import Index2, Int32, func, real
-from carom.layouts.codes import PLANE
 from carom.layouts.contacts import (
     BOUNDED,
     LEAVES,
@@ -102,7 +101,7 @@ def list_pairs(
     for place in range(count, count + pairs.count_pairs[world, PLANES]):
         a = pairs.shape_order[world, place]
         for b in range(settings.shape_count):
-            if shapes.shape_kind[b] != PLANE and is_placed(pairs, world, b):
+            if is_bounded(shapes, b) and is_placed(pairs, world, b):
                 add_to_list(shapes, model, settings, pairs, world, a, b)
     for leaf in range(pairs.count_pairs[world, LEAVES]):
         walk_from(shapes, model, settings, pairs, world, leaf, slack)

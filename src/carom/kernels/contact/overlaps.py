@@ -13,10 +13,10 @@ then this takes one comparison of each overlap.
 
 import warp as wp
 
+from carom.kernels.contact.bounds import is_bounded
 from carom.kernels.contact.overlap_turns import sort_new
 from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, func
-from carom.layouts.codes import PLANE
 from carom.layouts.contacts import (
     CLOSE,
     KNOWN,
@@ -41,7 +41,7 @@ def is_before(a: Int32, b: Int32, other_a: Int32, other_b: Int32) -> bool:
 @func
 def is_unbounded(shapes: Shapes, overlap: Index4) -> bool:
     """Whether one of two shapes is an infinite plane, whose bounds meet those of all others."""
-    return shapes.shape_kind[overlap[0]] == PLANE or shapes.shape_kind[overlap[1]] == PLANE
+    return not (is_bounded(shapes, overlap[0]) and is_bounded(shapes, overlap[1]))
 
 
 @func
