@@ -38,7 +38,7 @@ class EngineParameters:
         contact_warm_starting: Share of their last impulses that the contacts of rigid bodies at rest start
             from. 0 is PyBullet's behaviour; rest poses are the same, but need more sweeps.
         noncontact_inner_iterations: Iterations over joint rows per sweep.
-        minimum_island_size: Islands are solved together until they have more constraints.
+        minimum_island_size: Islands are solved together until they have more constraints and pairs of bodies.
         report_solver_analytics: `stepSimulation` returns solver statistics.
         constraint_solver: 1 sequential impulses, 2 projected Gauss-Seidel, 3 Dantzig.
         sat: Separating axis test for polyhedra.

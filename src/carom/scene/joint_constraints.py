@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -165,6 +165,10 @@ class JointConstraints:
         active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
         return active, [root(tags[constraint.moving_body.id]) for constraint in active]
 
+    def _moving_links(self) -> list[tuple[int, int]]:
+        """Body and link (the base is 0) of all links that can move, as Bullet numbers them."""
+        return cast("list[tuple[int, int]]", self.tags.moving_links)
+
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
         for constraint in self.all:
@@ -180,11 +184,18 @@ class JointConstraints:
         """Renumber the islands after the base of a body was freed or fixed."""
         self.tags.move_base_to_end(body.id, moving_links(body))
 
-    def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> None:
-        """Write the sorted constraints, and which trees are solved together, to the model.
+    def write(
+        self,
+        arrays: WorldArrays,
+        bodies: Mapping[int, Body],
+        user_rows: dict[int, int],
+        minimum_island_size: int,
+    ) -> None:
+        """Write the sorted constraints, the numbers of links, and which trees are solved together.
 
         Args:
             arrays: The arrays of the world.
+            bodies: All bodies, by number.
             user_rows: Row of each user constraint, by number.
             minimum_island_size: Islands are merged until they have more constraints than this.
         """
@@ -199,6 +210,9 @@ class JointConstraints:
         arrays.state.reserve(used)
         arrays.used.update(used)
         model = arrays.model.numpy
+        model["link_number"][: arrays.used["link"]] = -1
+        moving = [bodies[body].first_link + link for body, link in self._moving_links()]
+        model["link_number"][moving] = np.arange(len(moving))
         trees = [constraint.moving_body.rows.tree for constraint in ordered]
         if ordered:
             _fill(model["constraint_kind"], [constraint.kind for constraint in ordered])
@@ -210,6 +224,7 @@ class JointConstraints:
                 for constraint in ordered
             ]
             _fill(model["constraint_link"], links)
+            _fill(model["constraint_place"], order)
             _fill(model["constraint_lower"], [constraint.lower for constraint in ordered])
             _fill(model["constraint_upper"], [constraint.upper for constraint in ordered])
             _fill(model["constraint_twist"], [constraint.twist for constraint in ordered])

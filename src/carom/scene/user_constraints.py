@@ -194,6 +194,7 @@ class UserConstraints:
             users["user_relative_target"][row] = constraint.relative_position_target
             users["user_erp"][row] = constraint.erp
             users["user_enabled"][:, row] = constraint.enabled
+        contact_arrays.forget_order()
 
     def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
         """Impulses of a constraint's rows in the last substep, shape (rows,)."""

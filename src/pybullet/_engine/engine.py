@@ -355,7 +355,7 @@ def setPhysicsEngineParameter(
         enableSAT: Use the separating axis test between hulls; no effect: touching faces are always found.
         constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`; no effect: the first is always used.
         globalCFM: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
-        minimumSolverIslandSize: Solve groups of fewer bodies together.
+        minimumSolverIslandSize: Solve islands of fewer constraints and pairs of bodies together.
         reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
         warmStartingFactor: Fraction of the last step's impulses to start from, for rigid bodies other than
             multibodies; no effect.
