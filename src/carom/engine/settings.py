@@ -55,6 +55,7 @@ def _values(
         "split_threshold": parameters.split_impulse_penetration_threshold,
         "feedback_in_world": parameters.joint_feedback_mode & 1,
         "feedback_in_joint": parameters.joint_feedback_mode >> 1 & 1,
+        "order_by_links": int(parameters.deterministic_overlapping_pairs),
         "minimum_island_size": parameters.minimum_island_size,
         "tree_count": arrays.used["tree"],
         "link_count": arrays.used["link"],

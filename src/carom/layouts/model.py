@@ -50,6 +50,9 @@ class Settings:
     feedback_in_world: Int32
     feedback_in_joint: Int32
     minimum_island_size: Int32
+    order_by_links: (
+        Int32  # 1: contacts are relaxed in the order of their links, see `kernels.solver.contact_order`
+    )
     tree_count: Int32
     link_count: Int32
     user_count: Int32

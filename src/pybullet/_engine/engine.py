@@ -344,7 +344,7 @@ def setPhysicsEngineParameter(
         frictionERP: The same for friction with an anchor.
         enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each separately
             (pyramid).
-        deterministicOverlappingPairs: Sort pairs; Carom's order is always the same.
+        deterministicOverlappingPairs: 1: relax contacts in the order of bodies, not in which bounds met.
         allowedCcdPenetration: Penetration that continuous collision detection allows [m]; no effect: bodies
             stop where they touch.
         jointFeedbackMode: `JOINT_FEEDBACK_IN_WORLD_SPACE`, `JOINT_FEEDBACK_IN_JOINT_FRAME`, or both;

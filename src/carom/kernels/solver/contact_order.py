@@ -89,6 +89,35 @@ def sort_manifolds(
 
 
 @func
+def sort_by_links(
+    settings: Settings, contacts: Contacts, pair_rows: PairRows, world: Int32, count: Int32
+) -> Int32:
+    """Sort the manifolds that have contacts by their links, instead of in the order in which bounds have met.
+
+    Args:
+        settings: Has the number of links.
+        contacts: `overlap_sorted` has all manifolds.
+        pair_rows: `order_row` gets those with contacts, sorted by link a, then by link b.
+        world: The world.
+        count: Number of all manifolds.
+
+    Returns:
+        Number of manifolds with contacts.
+    """
+    touching = Int32(0)
+    for place in range(count):
+        row = contacts.overlap_sorted[world, place]
+        first = pair_rows.order_first[world, row]
+        if first >= 0:
+            pair = contacts.contact_shapes[world, first]
+            pair_rows.order_row[world, touching] = row
+            pair_rows.order_island[world, touching] = pair[2] * settings.link_count + pair[3]
+            touching += 1
+    sort_by_island(pair_rows, world, touching)
+    return touching
+
+
+@func
 def list_contacts(
     settings: Settings,
     model: Model,
@@ -103,9 +132,14 @@ def list_contacts(
     for tree in range(settings.tree_count):
         pair_rows.tree_first_contact[world, tree] = NONE
     place = wp.abs(contacts.count_contacts[world, SORTED]) - 1
+    if settings.order_by_links != 0:
+        place = sort_by_links(settings, contacts, pair_rows, world, place)
     while place > 0:
         place -= 1
-        first = pair_rows.order_first[world, contacts.overlap_sorted[world, place]]
+        row = contacts.overlap_sorted[world, place]
+        if settings.order_by_links != 0:
+            row = pair_rows.order_row[world, place]
+        first = pair_rows.order_first[world, row]
         if first >= 0:
             pair = contacts.contact_shapes[world, first]
             root = state.tree_island[world, pushed_tree(shapes, model, pair)]
