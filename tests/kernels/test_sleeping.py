@@ -18,8 +18,9 @@ import warp as wp
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from carom.kernels.solver.islands import island_root, unite_tied
+from carom.kernels.solver.islands import unite_tied
 from carom.kernels.solver.sleeping import watch
+from carom.kernels.solver.union_find import find_root
 from carom.kernels.structs import Model, Settings, State, UserConstraints
 from carom.kernels.types import Int32, kernel, real
 from carom.kernels.warp_types import warp_type
@@ -36,7 +37,7 @@ def unite_tied_kernel(settings: Settings, model: Model, state: State, users: Use
         state.tree_island[0, tree] = tree
     unite_tied(settings, model, state, users, 0)
     for tree in range(settings.tree_count):
-        state.tree_island[0, tree] = island_root(state, 0, Int32(tree))
+        state.tree_island[0, tree] = find_root(state.tree_island, 0, Int32(tree))
 
 
 @kernel

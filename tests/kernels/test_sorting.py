@@ -18,7 +18,7 @@ import warp as wp
 
 from carom.kernels.contact.hierarchy import sort_by_code
 from carom.kernels.contact.neighbour_list import sort_list
-from carom.kernels.solver.contact_order import sort_manifolds
+from carom.kernels.solver.island_sort import sort_by_island
 from carom.kernels.structs import PairRows, Pairs, Settings
 from carom.kernels.types import Index2, Int32, kernel
 from carom.layouts.contacts import COLUMNS, LISTED, RADIX
@@ -39,9 +39,9 @@ def sort_list_kernel(settings: Settings, pairs: Pairs):
 
 
 @kernel
-def sort_manifolds_kernel(pair_rows: PairRows, count: Int32):
+def sort_by_island_kernel(pair_rows: PairRows, count: Int32):
     """Sort manifolds."""
-    sort_manifolds(pair_rows, 0, count)
+    sort_by_island(pair_rows, 0, count)
 
 
 def integers(values: Any) -> Any:
@@ -118,10 +118,10 @@ def quicksort(items: list[tuple[int, int]], low: int, high: int) -> None:
 def test_manifolds_are_sorted_by_island_in_the_order_of_quicksort(islands: list[int]) -> None:
     rows = PairRows()
     rows.order_island = integers([*islands, 0])
-    rows.order_overlap = integers(range(100, 101 + len(islands)))
-    wp.launch(sort_manifolds_kernel, dim=1, inputs=[rows, len(islands)], device="cpu")
+    rows.order_row = integers(range(100, 101 + len(islands)))
+    wp.launch(sort_by_island_kernel, dim=1, inputs=[rows, len(islands)], device="cpu")
     expected = [(island, 100 + place) for place, island in enumerate(islands)]
     quicksort(expected, 0, len(expected) - 1)
     sorted_islands = rows.order_island.numpy()[0, :-1].tolist()
     assert sorted_islands == sorted(islands)
-    assert list(zip(sorted_islands, rows.order_overlap.numpy()[0, :-1].tolist(), strict=True)) == expected
+    assert list(zip(sorted_islands, rows.order_row.numpy()[0, :-1].tolist(), strict=True)) == expected

@@ -87,7 +87,7 @@ class ContactArrays:
         return remove
 
     def forget_order(self) -> None:
-        """Sort the overlaps anew in the next step, because the trees that can move may be others."""
+        """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""
         self.contacts.numpy["count_contacts"][:, SORTED] = 0
 
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
@@ -109,7 +109,8 @@ class ContactArrays:
         """Grow arrays to the capacity of the arrays with the same axes."""
         self.shapes.reserve({"link": self._arrays.model.capacity["link"]})
         self.users.reserve({"user": self.user_count})
-        self._arrays.state.reserve({"user": self.user_count})
+        used = self._arrays.used
+        self._arrays.state.reserve({"user": self.user_count, "batch": max(used["tree"], used["constraint"])})
 
     def structs(self) -> dict[str, Any]:
         """Structs over the current arrays, by the names of kernel arguments."""

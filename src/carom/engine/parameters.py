@@ -31,14 +31,15 @@ class EngineParameters:
         split_impulse: Deep errors are not turned into velocity.
         split_impulse_penetration_threshold: Threshold of a deep error (negative) [rad or m].
         cone_friction: Friction is bounded by a cone, not by a pyramid.
-        deterministic_overlapping_pairs: Pairs are kept in a fixed order.
+        deterministic_overlapping_pairs: Contacts are relaxed in the order of their links, instead of in the
+            order in which bounds have met.
         joint_feedback_mode: Bit 1: force-torque sensors in world axes; bit 2: about the joint.
         allowed_ccd_penetration: Depth that continuous collision detection allows [m].
         warm_starting_factor: PyBullet's parameter of this name, which has no effect on multibodies.
         contact_warm_starting: Share of their last impulses that the contacts of rigid bodies at rest start
             from. 0 is PyBullet's behaviour; rest poses are the same, but need more sweeps.
         noncontact_inner_iterations: Iterations over joint rows per sweep.
-        minimum_island_size: Islands are solved together until they have more constraints.
+        minimum_island_size: Islands are solved together until they have more constraints and pairs of bodies.
         report_solver_analytics: `stepSimulation` returns solver statistics.
         constraint_solver: 1 sequential impulses, 2 projected Gauss-Seidel, 3 Dantzig.
         sat: Separating axis test for polyhedra.

@@ -361,13 +361,21 @@ class PairRows:
     tree_first_constraint: IntRows  # islands as linked lists that start at their root
     tree_first_contact: IntRows
     tree_contacts: IntRows  # bits: which contacts it has, see `kernels.solver.warm_starting`
+    tree_number: IntRows  # number of its island in Bullet, see `kernels.solver.bullet_islands`; -1 for none
+    tree_first_moving: (
+        IntRows  # of the first tree of a batch: its first tree that is not at rest, -1 for none
+    )
     tree_rest: IntRows  # of an island's root: the island's state of rest, see `kernels.solver.warm_starting`
     tree_awake: IntRows  # of an island's root: 1 if a tree of it is active, 0 if it may fall asleep
     constraint_next: IntRows
     contact_next: IntRows
     order_first: IntRows  # of each overlap: its first contact, -1 for none
-    order_overlap: IntRows  # overlaps in the order of relaxation
-    order_island: IntRows  # sort key of each of these: its island in Bullet
+    order_row: IntRows  # overlaps or constraints in the order of relaxation
+    order_island: IntRows  # sort key of each of these: the number of its island in Bullet
+    link_root: IntRows  # Bullet's islands: another link of its island, or itself if it is the root
+    number_size: IntRows  # by number of an island: manifolds and constraints in it, -1 if there is none awake
+    number_batch: IntRows  # number of the batch of islands in which it is
+    number_first: IntRows  # by number of a batch: its first tree, -1 for none
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )

@@ -49,7 +49,12 @@ class Settings:
     split_threshold: real
     feedback_in_world: Int32
     feedback_in_joint: Int32
+    minimum_island_size: Int32
+    order_by_links: (
+        Int32  # 1: contacts are relaxed in the order of their links, see `kernels.solver.contact_order`
+    )
     tree_count: Int32
+    link_count: Int32
     user_count: Int32
     constraint_count: Int32
     shape_count: Int32
@@ -93,6 +98,7 @@ class LinkModel:
     dof_count: Int32
     nearest_dof: Int32  # last dof on the path from the root to this link, -1 for none
     sensor: Int32
+    number: Int32  # among the links that can move, in Bullet's order; -1 if it cannot
     joint_rotation: Quaternion  # of the inertial frame in the parent's inertial frame, at position 0
     pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
     com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
@@ -116,6 +122,7 @@ class ConstraintModel:
     kind: Int32
     tree: Int32
     link: Int32  # of a user constraint: its row in `UserConstraints`
+    place: Int32  # in Bullet's order, before it is sorted by island
 
 
 @struct
@@ -165,6 +172,8 @@ class State:
     tree_activity: IntRows  # see `codes.Activity`
     tree_wants_sleep: IntRows  # 1: falls asleep as soon as no tree of its island is active
     tree_idle_time: RealRows  # time with velocities below its sleep threshold [s]
+    batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
+    batch_constraint: IntRows  # constraints in the order of relaxation
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint
     node_position: Vector3Rows  # nodes of soft bodies, see `layouts.soft`
     node_velocity: Vector3Rows

@@ -88,6 +88,11 @@ class IslandTags:
         """Body and link (the base is 0) of every object, in the order of the list."""
         return [key for key, _ in self._objects]  # type: ignore[misc]
 
+    @property
+    def moving_links(self) -> list[tuple[Hashable, int]]:
+        """As `links`, of those that can move; Bullet numbers them in this order."""
+        return [key for key, moves in self._objects if moves]  # type: ignore[misc]
+
     def reorder(self, links: Sequence[tuple[Hashable, int]]) -> None:
         """Put the objects in another order, given in the form of the property `links`.
 

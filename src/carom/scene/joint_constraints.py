@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from carom.layouts.codes import LIMIT_KIND, MAX_ROWS_PER_CONSTRAINT, MOTOR_KIND, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
@@ -167,6 +167,10 @@ class JointConstraints:
         active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
         return active, [root(tags[constraint.moving_body.id]) for constraint in active]
 
+    def _moving_links(self) -> list[tuple[int, int]]:
+        """Body and link (the base is 0) of all links that can move, as Bullet numbers them."""
+        return cast("list[tuple[int, int]]", self.tags.moving_links)
+
     def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
         for constraint in self.all:
@@ -182,11 +186,18 @@ class JointConstraints:
         """Renumber the islands after the base of a body was freed or fixed."""
         self.tags.move_base_to_end(body.id, moving_links(body))
 
-    def write(self, arrays: WorldArrays, user_rows: dict[int, int], minimum_island_size: int) -> None:
-        """Write the sorted constraints, and which trees are solved together, to the model.
+    def write(
+        self,
+        arrays: WorldArrays,
+        bodies: Mapping[int, Body],
+        user_rows: dict[int, int],
+        minimum_island_size: int,
+    ) -> None:
+        """Write the sorted constraints, the numbers of links, and which trees are solved together.
 
         Args:
             arrays: The arrays of the world.
+            bodies: All bodies, by number.
             user_rows: Row of each user constraint, by number.
             minimum_island_size: Islands are merged until they have more constraints than this.
         """
@@ -200,6 +211,9 @@ class JointConstraints:
         arrays.model.reserve(used)
         arrays.state.reserve(used)
         arrays.used.update(used)
+        numbers = [-1] * arrays.used["link"]
+        for number, (body, link) in enumerate(self._moving_links()):
+            numbers[bodies[body].first_link + link] = number
         trees = [constraint.moving_body.rows.tree for constraint in ordered]
         tree_count = arrays.used["tree"]
         counts, batches = [0] * tree_count, list(range(tree_count))
@@ -220,10 +234,12 @@ class JointConstraints:
                 else user_rows[constraint.user.id]
                 for constraint in ordered
             ],
+            "constraint_place": order,
             "constraint_lower": [constraint.lower for constraint in ordered],
             "constraint_upper": [constraint.upper for constraint in ordered],
             "constraint_twist": [constraint.twist for constraint in ordered],
             "constraint_max_impulse": [constraint.max_impulse for constraint in ordered],
+            "link_number": numbers,
             "tree_constraint_count": counts,
             "tree_batch": batches,
             "tree_first_constraint": first_constraints,

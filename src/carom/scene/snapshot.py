@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
     from carom.world.world import World
 
-# Axes of arrays that are not state of bodies: status of the last step, impulses of user constraints.
-_NOT_OF_BODIES = ("status", "user")
+# Axes of arrays that are not state of bodies: status of the last step, impulses of user constraints, and what
+# is solved together, which steps find out.
+_NOT_OF_BODIES = ("status", "user", "batch")
 # Axes of contacts and overlaps, and the columns with the numbers of their rows.
 _COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 # Drives of joints; the rows of bases are unused.

@@ -223,6 +223,7 @@ class UserConstraints:
                 for field, value in zip(_FIELDS, shared, strict=True):
                     users[field][row] = value
         self._written = now
+        contact_arrays.forget_order()
 
     def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
         """Impulses of a constraint's rows in the last substep, shape (rows,)."""

@@ -477,7 +477,9 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
     def _prepare_step(self) -> Callable[[], None]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
         self.undo.settle()
-        self.constraints.write(self.arrays, self.user_constraints.rows, self.parameters.minimum_island_size)
+        self.constraints.write(
+            self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
+        )
         self.user_constraints.write(self.contact_arrays)
         self.contact_arrays.soft.write_anchors()
         self.quick.forget_queries()

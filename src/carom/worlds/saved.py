@@ -11,7 +11,8 @@ from carom.engine.engine import Engine
 from carom.layouts.contacts import OVERLAPS, THERE
 from carom.native.tables import ArrayTable
 
-_STATUS = "status_entry"
+# Axes of fields of `State` that are not restored: the status of the last step, and what steps find out.
+_NOT_STATE = ("status", "batch")
 # Columns with the numbers of rows, by the first word of the names of fields.
 _COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 
@@ -98,4 +99,4 @@ def _most_rows(counts: np.ndarray) -> dict[str, int]:
 
 
 def _fields(table: ArrayTable) -> list[tuple[str, np.ndarray]]:
-    return [(name, array) for name, array in table.numpy.items() if name != _STATUS]
+    return [(name, array) for name, array in table.numpy.items() if name.partition("_")[0] not in _NOT_STATE]

@@ -260,6 +260,7 @@ class Worlds:
         holds = broadcast(np.asarray(self._engine.take(enabled), dtype=bool), (self.count,), "enabled") != 0.0
         row = self._scene.user_constraints.rows[number]
         self._engine.set_parameter("users", "user_enabled", row, holds)
+        self._engine.contact_arrays.forget_order()
 
     # Queries
 

@@ -344,7 +344,7 @@ def setPhysicsEngineParameter(
         frictionERP: The same for friction with an anchor.
         enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each separately
             (pyramid).
-        deterministicOverlappingPairs: Sort pairs; Carom's order is always the same.
+        deterministicOverlappingPairs: 1: relax contacts in the order of bodies, not in which bounds met.
         allowedCcdPenetration: Penetration that continuous collision detection allows [m]; no effect: bodies
             stop where they touch.
         jointFeedbackMode: `JOINT_FEEDBACK_IN_WORLD_SPACE`, `JOINT_FEEDBACK_IN_JOINT_FRAME`, or both;
@@ -355,7 +355,7 @@ def setPhysicsEngineParameter(
         enableSAT: Use the separating axis test between hulls; no effect: touching faces are always found.
         constraintSolverType: `CONSTRAINT_SOLVER_LCP_*`; no effect: the first is always used.
         globalCFM: Softness of contacts: velocity per impulse, times the length of a substep [s/kg].
-        minimumSolverIslandSize: Solve groups of fewer bodies together.
+        minimumSolverIslandSize: Solve islands of fewer constraints and pairs of bodies together.
         reportSolverAnalytics: `stepSimulation` returns the solver's statistics.
         warmStartingFactor: Fraction of the last step's impulses to start from, for rigid bodies other than
             multibodies; no effect.

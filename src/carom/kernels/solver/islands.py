@@ -1,37 +1,30 @@
-"""Islands: groups of trees joined by contacts or user constraints, each of which is solved separately.
+"""Islands: groups of trees, each of which is solved separately.
 
 They are found by union-find over the trees. The root of each island then gets linked lists of the island's
-constraints, in ascending order, and contacts.
+constraints and contacts, in the order in which they are relaxed.
 """
 
 import warp as wp
 
 from carom.kernels.solver.activity import can_move, is_asleep, link_moves
-from carom.kernels.solver.contact_order import list_contacts
-from carom.kernels.solver.warm_starting import ANCHORED, contact_traits, find_resting_islands
+from carom.kernels.solver.bullet_islands import batch_islands, join_links, number_islands
+from carom.kernels.solver.contact_order import list_contacts, sort_manifolds
+from carom.kernels.solver.island_sort import sort_constraints
+from carom.kernels.solver.union_find import find_root
+from carom.kernels.solver.warm_starting import ANCHORED, MOVING, contact_traits, find_resting_islands
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func
+from carom.layouts.contacts import SORTED, THERE
 
 _NONE = wp.constant(-1)
-
-
-@func
-def island_root(state: State, world: Int32, tree: Int32) -> Int32:
-    """Root of the island of a tree; compresses the path to it."""
-    root = tree + 0
-    while state.tree_island[world, root] != root:
-        above = state.tree_island[world, root]
-        state.tree_island[world, root] = state.tree_island[world, above]
-        root = state.tree_island[world, root]
-    return root
 
 
 @func
 def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
     """Join the islands of two trees, unless one of the trees cannot move."""
     if can_move(model, a) and can_move(model, b):
-        root_a = island_root(state, world, a)
-        root_b = island_root(state, world, b)
+        root_a = find_root(state.tree_island, world, a)
+        root_b = find_root(state.tree_island, world, b)
         state.tree_island[world, wp.max(root_a, root_b)] = wp.min(root_a, root_b)
 
 
@@ -50,25 +43,17 @@ def note_contact(pair_rows: PairRows, world: Int32, tree: Int32, touches: Int32)
 
 
 @func
-def build_islands(
+def unite_touching(
     settings: Settings,
     model: Model,
     state: State,
     shapes: Shapes,
     contacts: Contacts,
-    users: UserConstraints,
     pair_rows: PairRows,
     world: Int32,
 ):
-    """Find islands, and list the constraints and contacts of each; also mark islands at rest.
-
-    Constraints and contacts of trees that are asleep are left out.
-    """
-    contact_count = contacts.count_contacts[world, 0]
-    for tree in range(settings.tree_count):
-        state.tree_island[world, tree] = model.tree[tree].batch
-        pair_rows.tree_contacts[world, tree] = 0
-    for contact in range(contact_count):
+    """Put trees that touch into one island, and note what contacts each tree has."""
+    for contact in range(contacts.count_contacts[world, THERE]):
         pair = contacts.contact_shapes[world, contact]
         moves_a = link_moves(model, pair[2])
         moves_b = link_moves(model, pair[3])
@@ -81,21 +66,98 @@ def build_islands(
             note_contact(pair_rows, world, shapes.shape_tree[pair[1]], touches)
         if moves_a and moves_b:
             unite(model, state, world, shapes.shape_tree[pair[0]], shapes.shape_tree[pair[1]])
-    unite_tied(settings, model, state, users, world)
 
+
+@func
+def sort_rows(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+):
+    """Bring the orders of manifolds and constraints, and Bullet's islands, up to date.
+
+    They depend on the overlaps and user constraints only, and are kept until these change, if nothing sleeps.
+    In other cases SORTED is negative.
+    """
+    lasts = Int32(1)
     for tree in range(settings.tree_count):
-        state.tree_island[world, tree] = island_root(state, world, tree)
+        if is_asleep(state, world, tree):
+            lasts = Int32(0)
+    if lasts == 1 and contacts.count_contacts[world, SORTED] > 0:
+        return
+    join_links(settings, model, shapes, contacts, users, pair_rows, world)
+    number_islands(settings, model, pair_rows, world)
+    sort_constraints(settings, model, state, pair_rows, world)
+    manifolds = sort_manifolds(model, state, shapes, contacts, pair_rows, world)
+    batch_islands(settings, model, state, pair_rows, world, manifolds)
+    contacts.count_contacts[world, SORTED] = wp.where(lasts == 1, manifolds + 1, -1 - manifolds)
+
+
+@func
+def merge_moving(settings: Settings, state: State, pair_rows: PairRows, world: Int32):
+    """Merge islands of trees that Bullet solves together, except those at rest."""
+    for tree in range(settings.tree_count):
+        pair_rows.tree_first_moving[world, tree] = _NONE
+    for tree in range(settings.tree_count):
+        island = state.tree_island[world, tree]
+        if pair_rows.tree_rest[world, island] == MOVING and not is_asleep(state, world, tree):
+            batch = state.batch_tree[world, island]
+            if pair_rows.tree_first_moving[world, batch] == _NONE:
+                pair_rows.tree_first_moving[world, batch] = tree
+                pair_rows.tree_rest[world, tree] = Int32(MOVING)
+            state.tree_island[world, tree] = pair_rows.tree_first_moving[world, batch]
+
+
+@func
+def list_constraints(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
+    """Make the linked list of constraints of each island."""
+    for tree in range(settings.tree_count):
         pair_rows.tree_first_constraint[world, tree] = _NONE
-    constraint = settings.constraint_count - 1
-    while constraint >= 0:
+    place = settings.constraint_count + 0
+    while place > 0:
+        place -= 1
+        constraint = state.batch_constraint[world, place]
         tree = model.constraint[constraint].tree
         if not is_asleep(state, world, tree):
             root = state.tree_island[world, tree]
             pair_rows.constraint_next[world, constraint] = pair_rows.tree_first_constraint[world, root]
             pair_rows.tree_first_constraint[world, root] = constraint
-        constraint -= 1
-    list_contacts(settings, model, state, shapes, contacts, users, pair_rows, world)
+
+
+@func
+def build_islands(
+    settings: Settings,
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+):
+    """Find islands, and list the constraints and contacts of each; also mark islands at rest.
+
+    Trees that touch or are tied together are one island. Those at rest are solved by themselves; all others
+    together with those that Bullet sweeps over together with them. Constraints and contacts of trees that are
+    asleep are left out.
+    """
+    for tree in range(settings.tree_count):
+        state.tree_island[world, tree] = tree
+        pair_rows.tree_contacts[world, tree] = 0
+    unite_touching(settings, model, state, shapes, contacts, pair_rows, world)
+    unite_tied(settings, model, state, users, world)
+    for tree in range(settings.tree_count):
+        state.tree_island[world, tree] = find_root(state.tree_island, world, tree)
+    sort_rows(settings, model, state, shapes, contacts, users, pair_rows, world)
     find_resting_islands(settings, model, state, pair_rows, world)
+    merge_moving(settings, state, pair_rows, world)
+    list_constraints(settings, model, state, pair_rows, world)
+    list_contacts(settings, model, state, shapes, contacts, pair_rows, world)
 
 
 @func

@@ -9,7 +9,8 @@ import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
 from carom.kernels.solver.activity import link_moves, squared_motion
-from carom.kernels.solver.islands import island_root, unite, unite_tied
+from carom.kernels.solver.islands import unite, unite_tied
+from carom.kernels.solver.union_find import find_root
 from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
 from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
@@ -79,11 +80,11 @@ def settle_kernel(
     unite_tied(settings, model, state, users, world)
     for tree in range(settings.tree_count):
         if state.tree_activity[world, tree] == ACTIVE and has_moving_shapes(model, shapes, tree):
-            pair_rows.tree_awake[world, island_root(state, world, tree)] = 1
+            pair_rows.tree_awake[world, find_root(state.tree_island, world, tree)] = 1
     for tree in range(settings.tree_count):
         activity = state.tree_activity[world, tree]
         if activity != ACTIVE and has_moving_shapes(model, shapes, tree):
-            if pair_rows.tree_awake[world, island_root(state, world, tree)] == 0:
+            if pair_rows.tree_awake[world, find_root(state.tree_island, world, tree)] == 0:
                 state.tree_activity[world, tree] = ASLEEP
             elif activity == ASLEEP:
                 state.tree_activity[world, tree] = WOKEN

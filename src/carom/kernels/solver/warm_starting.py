@@ -131,8 +131,12 @@ def find_resting_islands(settings: Settings, model: Model, state: State, pair_ro
     """Compute the state of rest of each island, and stop anchored islands in which all blocks hold."""
     for tree in range(settings.tree_count):
         pair_rows.tree_rest[world, tree] = Int32(HELD)
-        if pair_rows.tree_first_constraint[world, tree] >= 0 or settings.contact_warm_starting == 0.0:
+        if settings.contact_warm_starting == 0.0:
             pair_rows.tree_rest[world, tree] = Int32(MOVING)
+    for constraint in range(settings.constraint_count):
+        tree = model.constraint[constraint].tree
+        if not is_asleep(state, world, tree):
+            pair_rows.tree_rest[world, state.tree_island[world, tree]] = Int32(MOVING)
     for tree in range(settings.tree_count):
         if is_asleep(state, world, tree):
             continue
