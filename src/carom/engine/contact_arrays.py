@@ -17,6 +17,7 @@ from carom.native.tables import ArrayTable
 
 # Initial number of contacts in each of many worlds.
 _LEAST_CONTACTS = 4
+_OVERLAPS = ("overlap_shapes", "overlap_place", "overlap_manifold")
 
 
 class ContactArrays:
@@ -73,7 +74,8 @@ class ContactArrays:
         numpy = self.contacts.numpy
         counts = numpy["count_contacts"][0]
         first, count = self.shapes.shape_rows(rows)
-        overlaps = without_shapes(numpy["overlap_shapes"][0, : counts[OVERLAPS]], first, count)
+        pairs, places, manifolds = (numpy[name][0, : counts[OVERLAPS]] for name in _OVERLAPS)
+        overlaps = without_shapes(pairs, places, manifolds, first, count)
         known = int(counts[KNOWN])
         known -= max(0, min(count, known - first))
         remove_shapes = self.shapes.removal(rows)
@@ -81,8 +83,10 @@ class ContactArrays:
         def remove() -> None:
             remove_shapes()
             self.forget_contacts()
-            numpy["overlap_shapes"][0, : len(overlaps)] = overlaps
-            counts[OVERLAPS], counts[KNOWN] = len(overlaps), known
+            left = len(overlaps[0])
+            for name, rows in zip(_OVERLAPS, overlaps, strict=True):
+                numpy[name][0, :left] = rows
+            counts[OVERLAPS], counts[KNOWN] = left, known
 
         return remove
 

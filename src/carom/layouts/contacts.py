@@ -5,6 +5,7 @@ of the same two shapes, in contiguous rows; manifolds are sorted by the lower, t
 """
 
 from carom.layouts.types import (
+    Index2,
     Index2Rows,
     Index4,
     Index4Rows,
@@ -140,6 +141,26 @@ class Candidate:
 
 
 @struct
+class Overlap:
+    """A row of the overlaps of `Contacts`."""
+
+    pair: Index2
+    place: Int32
+    manifold: Int32
+
+
+@struct
+class NewOverlap:
+    """An overlap that is not among those of the last substep."""
+
+    pair: Index2
+    turn: Int32  # when Bullet finds it, see `overlap_turns.turn_of`
+    wanted: Int32  # 1 if there is to be a manifold, else 0
+    place: Int32  # as in `Overlap`
+    manifold: Int32
+
+
+@struct
 class Pairs:
     """Intermediate results of collision detection; lengths are in `engine.detection_capacity`."""
 
@@ -172,10 +193,10 @@ class Pairs:
     queue_entry: IntRows  # in the order of the pair cache
     queue_manifold: IntRows  # old ones in the order of manifolds
     queue_wanted: IntRows  # by old overlap: what becomes of it
-    queue_new: Index4Rows  # new overlaps, as `Contacts.overlap_shapes`; sorted
+    queue_new: Rows[NewOverlap]  # sorted by shapes
     queue_turn: IntRows  # new overlaps in the order in which they are found
-    queue_merged: Index4Rows  # old and new overlaps, sorted
-    queue_start: Index4Rows  # overlaps at the start of the step
+    queue_merged: Rows[Overlap]  # old and new overlaps, sorted by shapes
+    queue_start: Rows[Overlap]  # overlaps at the start of the step
 
     # Bullet's tree of bounds, see `kernels.contact.bounds_tree`: the shapes are its leaves.
     twig_lower: Vector3Rows
@@ -232,7 +253,9 @@ class Contacts:
     contact_impulse: Vector3Rows  # of the last substep: normal, along directions 1 and 2
     contact_warm_start: RealRows  # counter of warm starting, see `warm_starting.next_warm_start`
     # Pairs of shapes whose bounds overlap, with places in two orders; see `kernels.contact.overlaps`.
-    overlap_shapes: Index4Rows  # shape a, b, place in the pair cache, place among manifolds or -1; sorted
+    overlap_shapes: Index2Rows  # the lower and the higher shape row; sorted
+    overlap_place: IntRows  # in the pair cache
+    overlap_manifold: IntRows  # place among manifolds, or NO_MANIFOLD
     overlap_sorted: IntRows  # the overlaps of trees that can move, in the order of relaxation
     count_contacts: IntRows  # columns: THERE to SORTED
 

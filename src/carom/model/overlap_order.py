@@ -10,35 +10,37 @@ import numpy as np
 from carom.layouts.contacts import NO_MANIFOLD
 
 
-def without_shapes(overlaps: np.ndarray, first: int, count: int) -> np.ndarray:
+def without_shapes(
+    pairs: np.ndarray, places: np.ndarray, manifolds: np.ndarray, first: int, count: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The overlaps that remain when the shapes in rows [first, first + count) are removed.
 
     As in Bullet, one shape after the other loses its overlaps, in the order of the pair cache, and the last
     one moves to the place of each that is removed.
 
     Args:
-        overlaps: `Contacts.overlap_shapes` of a world, shape (n, 4).
+        pairs: `Contacts.overlap_shapes` of a world, shape (n, 2).
+        places: `Contacts.overlap_place`, shape (n,).
+        manifolds: `Contacts.overlap_manifold`, shape (n,).
         first: Row of the first shape.
         count: Number of shapes.
 
     Returns:
-        The same of the world without these shapes; rows of later shapes are `count` less.
+        The same three of the world without these shapes; rows of later shapes are `count` less.
     """
     end = first + count
-    pairs = overlaps[:, :2]
     doomed = ((pairs >= first) & (pairs < end)).any(axis=1)
-    left = overlaps.copy()
-    if doomed.any():
-        cache, manifolds = np.argsort(overlaps[:, 2]).tolist(), np.argsort(overlaps[:, 3]).tolist()
-        # Those without a manifold come first.
-        del manifolds[: int((overlaps[:, 3] == NO_MANIFOLD).sum())]
-        for shape in range(first, end):
-            _remove_shape(set(np.flatnonzero((pairs == shape).any(axis=1)).tolist()), cache, manifolds)
-        left[cache, 2] = np.arange(len(cache))
-        left[manifolds, 3] = np.arange(len(manifolds))
-        left = left[~doomed]
-    left[:, :2] -= count * (left[:, :2] >= end)
-    return left
+    left = pairs - count * (pairs >= end), places.copy(), manifolds.copy()
+    if not doomed.any():
+        return left
+    cache, order = np.argsort(places).tolist(), np.argsort(manifolds).tolist()
+    # Those without a manifold come first.
+    del order[: int((manifolds == NO_MANIFOLD).sum())]
+    for shape in range(first, end):
+        _remove_shape(set(np.flatnonzero((pairs == shape).any(axis=1)).tolist()), cache, order)
+    left[1][cache] = np.arange(len(cache))
+    left[2][order] = np.arange(len(order))
+    return left[0][~doomed], left[1][~doomed], left[2][~doomed]
 
 
 def _remove_shape(doomed: set[int], cache: list[int], manifolds: list[int]) -> None:

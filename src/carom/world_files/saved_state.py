@@ -105,10 +105,11 @@ def split_impulses(contacts: dict[str, np.ndarray]) -> None:
 def add_overlaps(contacts: dict[str, np.ndarray]) -> None:
     """Add the arrays of overlaps that older files do not have; the next step finds all overlaps."""
     counts = contacts.get("count_contacts")
-    if counts is not None and counts.ndim == 1 and "overlap_shapes" not in contacts:
+    if counts is not None and counts.ndim == 1 and "overlap_place" not in contacts:
         counts[THERE + 1 :] = 0
-        contacts["overlap_shapes"] = np.zeros((0, 4), dtype=np.int32)
-        contacts["overlap_sorted"] = np.zeros(0, dtype=np.int32)
+        contacts["overlap_shapes"] = np.zeros((0, 2), dtype=np.int32)
+        for name in ("overlap_place", "overlap_manifold", "overlap_sorted"):
+            contacts[name] = np.zeros(0, dtype=np.int32)
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:
@@ -243,14 +244,14 @@ def _check_overlaps(world: World, snapshot: Snapshot) -> None:
     shape_count = world.contact_arrays.shapes.shape_count
     if not 0 <= snapshot.contacts["count_contacts"][KNOWN] <= shape_count:
         raise ValueError("the number of known shapes is out of range")
-    overlaps = snapshot.contacts["overlap_shapes"].astype(np.int64)
-    if not len(overlaps):
+    first, second = snapshot.contacts["overlap_shapes"].astype(np.int64).T
+    if not len(first):
         return
-    first, second = overlaps[:, 0], overlaps[:, 1]
     if first.min() < 0 or second.max() >= shape_count or (first >= second).any():
         raise ValueError("an overlap refers to a shape that does not exist")
     if (np.diff(first * shape_count + second) <= 0).any():
         raise ValueError("the overlaps are not sorted")
-    for places in (overlaps[:, 2], overlaps[overlaps[:, 3] != NO_MANIFOLD, 3]):
+    manifolds = snapshot.contacts["overlap_manifold"]
+    for places in (snapshot.contacts["overlap_place"], manifolds[manifolds != NO_MANIFOLD]):
         if (np.sort(places) != np.arange(len(places))).any():
             raise ValueError("the places of overlaps are not all different")

@@ -117,8 +117,8 @@ def put_forward(pairs: Pairs, world: Int32, first: Int32, end: Int32, shape: Int
     """
     for place in range(first, end):
         row = pairs.queue_turn[world, place]
-        new = pairs.queue_new[world, row]
-        if new[0] == shape or new[1] == shape:
+        pair = pairs.queue_new[world, row].pair
+        if pair[0] == shape or pair[1] == shape:
             pairs.queue_turn[world, place] = pairs.queue_turn[world, first]
             pairs.queue_turn[world, first] = row
             return first + 1
@@ -156,7 +156,7 @@ def end_of_turn(pairs: Pairs, world: Int32, first: Int32, count: Int32, turn: In
     end = first + 0
     searching = end < count
     while searching:
-        searching = pairs.queue_new[world, pairs.queue_turn[world, end]][2] == turn
+        searching = pairs.queue_new[world, pairs.queue_turn[world, end]].turn == turn
         if searching:
             end += 1
             searching = end < count

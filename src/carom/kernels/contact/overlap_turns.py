@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.contact.bounds import boxes_meet
 from carom.kernels.contact.bounds_tree import sort_as_in_new_scene
 from carom.kernels.structs import Model, Pairs, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.kernels.types import Index2, Int32, Vector3, func, real
 from carom.layouts.contacts import NEAR
 
 # How far Bullet widens the bounds of a body on each side, except when it is created [m].
@@ -54,7 +54,7 @@ def turn_of(
     state: State,
     pairs: Pairs,
     world: Int32,
-    pair: Index4,
+    pair: Index2,
     known: Int32,
 ) -> Int32:
     """When Bullet finds a new overlap, as a number that increases with time.
@@ -103,20 +103,16 @@ def sort_new(
     known only in a new scene; else those with later bodies come first.
     """
     for i in range(count):
-        pair = pairs.queue_new[world, i]
-        pairs.queue_new[world, i] = Index4(
-            pair[0],
-            pair[1],
-            turn_of(settings, shapes, model, state, pairs, world, pair, known),
-            pair[3],
-        )
+        pair = pairs.queue_new[world, i].pair
+        turn = turn_of(settings, shapes, model, state, pairs, world, pair, known)
+        pairs.queue_new[world, i].turn = turn
     first = Int32(0)
     for stage in range(2):
         lowest = stage * settings.shape_count
         for shape in range(settings.shape_count):
             pairs.shape_pair_end[world, shape] = 0
         for i in range(count):
-            turn = pairs.queue_new[world, i][2] - lowest
+            turn = pairs.queue_new[world, i].turn - lowest
             if turn >= 0 and turn < settings.shape_count:
                 pairs.shape_pair_end[world, turn] = pairs.shape_pair_end[world, turn] + 1
         for shape in range(settings.shape_count):
@@ -126,7 +122,7 @@ def sort_new(
         i = count + 0
         while i > 0:
             i -= 1
-            turn = pairs.queue_new[world, i][2] - lowest
+            turn = pairs.queue_new[world, i].turn - lowest
             if turn >= 0 and turn < settings.shape_count:
                 place = pairs.shape_pair_end[world, turn]
                 pairs.queue_turn[world, place] = i

@@ -15,11 +15,12 @@ import warp as wp
 
 from carom.kernels.contact.bounds import is_bounded
 from carom.kernels.contact.overlap_turns import sort_new
-from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func
+from carom.kernels.structs import Contacts, Model, NewOverlap, Overlap, Pairs, Settings, Shapes, State
+from carom.kernels.types import Index2, Int32, func
 from carom.layouts.contacts import (
     CLOSE,
     KNOWN,
+    NO_MANIFOLD,
     NONE_KEPT,
     OVERLAPS,
     PAIRS,
@@ -39,15 +40,54 @@ def is_before(a: Int32, b: Int32, other_a: Int32, other_b: Int32) -> bool:
 
 
 @func
-def is_unbounded(shapes: Shapes, overlap: Index4) -> bool:
+def is_unbounded(shapes: Shapes, pair: Index2) -> bool:
     """Whether one of two shapes is an infinite plane, whose bounds meet those of all others."""
-    return not (is_bounded(shapes, overlap[0]) and is_bounded(shapes, overlap[1]))
+    return not (is_bounded(shapes, pair[0]) and is_bounded(shapes, pair[1]))
 
 
 @func
 def has_manifold(nearness: Int32) -> Int32:
     """1 if Bullet has a manifold for two shapes that are so near, else 0."""
     return wp.where(nearness == CLOSE, Int32(0), Int32(1))
+
+
+@func
+def read_overlap(contacts: Contacts, world: Int32, row: Int32) -> Overlap:
+    """An overlap with its places in both orders."""
+    overlap = Overlap()
+    overlap.pair = contacts.overlap_shapes[world, row]
+    overlap.place = contacts.overlap_place[world, row]
+    overlap.manifold = contacts.overlap_manifold[world, row]
+    return overlap
+
+
+@func
+def write_overlap(contacts: Contacts, world: Int32, row: Int32, overlap: Overlap):
+    """Write a row of the overlaps."""
+    contacts.overlap_shapes[world, row] = overlap.pair
+    contacts.overlap_place[world, row] = overlap.place
+    contacts.overlap_manifold[world, row] = overlap.manifold
+
+
+@func
+def made_new(pair: Index2, wanted: Int32) -> NewOverlap:
+    """A new overlap, which has no places yet."""
+    new = NewOverlap()
+    new.pair = pair
+    new.wanted = wanted
+    new.manifold = Int32(NO_MANIFOLD)
+    return new
+
+
+@func
+def as_overlap(pairs: Pairs, world: Int32, row: Int32) -> Overlap:
+    """A new overlap as a row of the overlaps."""
+    new = pairs.queue_new[world, row]
+    overlap = Overlap()
+    overlap.pair = new.pair
+    overlap.place = new.place
+    overlap.manifold = new.manifold
+    return overlap
 
 
 @func
@@ -61,8 +101,10 @@ def are_same(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32) -> 
         if i < count:
             pair = pairs.pair_shapes[world, i]
             matches = pair[0] == old[0] and pair[1] == old[1]
-            if matches and (pairs.pair_nearness[world, i] == CLOSE) != (old[3] < 0):
-                return False
+            if matches:
+                has = contacts.overlap_manifold[world, row] != NO_MANIFOLD
+                if has == (pairs.pair_nearness[world, i] == CLOSE):
+                    return False
         if matches:
             i += 1
         elif not is_unbounded(shapes, old):
@@ -97,7 +139,7 @@ def find_changes(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32)
             row += 1
         else:
             wanted = has_manifold(pairs.pair_nearness[world, i])
-            pairs.queue_new[world, fresh] = Index4(pair[0], pair[1], 0, wanted)
+            pairs.queue_new[world, fresh] = made_new(pair, wanted)
             fresh += 1
     while row < old_count:
         gone += note_absent(shapes, pairs, world, row, contacts.overlap_shapes[world, row])
@@ -106,7 +148,7 @@ def find_changes(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32)
 
 
 @func
-def note_absent(shapes: Shapes, pairs: Pairs, world: Int32, row: Int32, old: Index4) -> Int32:
+def note_absent(shapes: Shapes, pairs: Pairs, world: Int32, row: Int32, old: Index2) -> Int32:
     """Note that an overlap is not among the present pairs; returns 1 if it has ended, else 0."""
     if is_unbounded(shapes, old):
         pairs.queue_wanted[world, row] = 1
@@ -117,20 +159,18 @@ def note_absent(shapes: Shapes, pairs: Pairs, world: Int32, row: Int32, old: Ind
 
 @func
 def set_manifold(contacts: Contacts, pairs: Pairs, world: Int32, entry: Int32, place: Int32):
-    """Set the place among manifolds of an entry of `queue_entry`; -1 if it has none."""
+    """Set the place among manifolds of an entry of `queue_entry`; NO_MANIFOLD if it has none."""
     if entry >= 0:
-        old = contacts.overlap_shapes[world, entry]
-        contacts.overlap_shapes[world, entry] = Index4(old[0], old[1], old[2], place)
+        contacts.overlap_manifold[world, entry] = place
     else:
-        new = pairs.queue_new[world, -1 - entry]
-        pairs.queue_new[world, -1 - entry] = Index4(new[0], new[1], new[2], place)
+        pairs.queue_new[world, -1 - entry].manifold = place
 
 
 @func
 def drop_manifold(contacts: Contacts, pairs: Pairs, world: Int32, place: Int32, manifolds: Int32) -> Int32:
     """Remove the manifold at a place, which the last one takes; returns the number that remains."""
     last = pairs.queue_manifold[world, manifolds - 1]
-    set_manifold(contacts, pairs, world, pairs.queue_manifold[world, place], -1)
+    set_manifold(contacts, pairs, world, pairs.queue_manifold[world, place], Int32(NO_MANIFOLD))
     if place < manifolds - 1:
         pairs.queue_manifold[world, place] = last
         set_manifold(contacts, pairs, world, last, place)
@@ -143,10 +183,10 @@ def list_entries(contacts: Contacts, pairs: Pairs, world: Int32, new_count: Int3
     manifolds = Int32(0)
     old_count = contacts.count_contacts[world, OVERLAPS]
     for row in range(old_count):
-        old = contacts.overlap_shapes[world, row]
-        pairs.queue_entry[world, old[2]] = row
-        if old[3] >= 0:
-            pairs.queue_manifold[world, old[3]] = row
+        pairs.queue_entry[world, contacts.overlap_place[world, row]] = row
+        manifold = contacts.overlap_manifold[world, row]
+        if manifold != NO_MANIFOLD:
+            pairs.queue_manifold[world, manifold] = row
             manifolds += 1
     for i in range(new_count):
         pairs.queue_entry[world, old_count + i] = -1 - pairs.queue_turn[world, i]
@@ -173,9 +213,9 @@ def remove_ended(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, m
         if row >= 0:
             ended = pairs.queue_wanted[world, row] == GONE
         if ended:
-            place = contacts.overlap_shapes[world, row][3]
-            if place >= 0:
-                left = drop_manifold(contacts, pairs, world, place, left)
+            manifold = contacts.overlap_manifold[world, row]
+            if manifold != NO_MANIFOLD:
+                left = drop_manifold(contacts, pairs, world, manifold, left)
             end -= 1
             pairs.queue_entry[world, i] = pairs.queue_entry[world, end]
         else:
@@ -192,21 +232,19 @@ def visit_pairs(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, ma
     left = manifolds + 0
     for place in range(count):
         entry = pairs.queue_entry[world, place]
-        has = Int32(-1)
+        manifold = Int32(NO_MANIFOLD)
         wanted = Int32(0)
         if entry >= 0:
-            old = contacts.overlap_shapes[world, entry]
-            contacts.overlap_shapes[world, entry] = Index4(old[0], old[1], place, old[3])
-            has = old[3]
+            contacts.overlap_place[world, entry] = place
+            manifold = contacts.overlap_manifold[world, entry]
             wanted = pairs.queue_wanted[world, entry]
         else:
-            new = pairs.queue_new[world, -1 - entry]
-            pairs.queue_new[world, -1 - entry] = Index4(new[0], new[1], place, -1)
-            wanted = new[3]
+            pairs.queue_new[world, -1 - entry].place = place
+            wanted = pairs.queue_new[world, -1 - entry].wanted
         if wanted == 0:
-            if has >= 0:
-                left = drop_manifold(contacts, pairs, world, has, left)
-        elif has < 0:
+            if manifold != NO_MANIFOLD:
+                left = drop_manifold(contacts, pairs, world, manifold, left)
+        elif manifold == NO_MANIFOLD:
             pairs.queue_manifold[world, left] = entry
             set_manifold(contacts, pairs, world, entry, left)
             left += 1
@@ -219,24 +257,24 @@ def merge(contacts: Contacts, pairs: Pairs, world: Int32, old_count: Int32, new_
     new = Int32(0)
     for row in range(old_count):
         if pairs.queue_wanted[world, row] != GONE:
-            old = contacts.overlap_shapes[world, row]
+            old = read_overlap(contacts, world, row)
             inserting = new < new_count
             while inserting:
-                added = pairs.queue_new[world, new]
-                inserting = is_before(added[0], added[1], old[0], old[1])
+                added = pairs.queue_new[world, new].pair
+                inserting = is_before(added[0], added[1], old.pair[0], old.pair[1])
                 if inserting:
-                    pairs.queue_merged[world, count] = added
+                    pairs.queue_merged[world, count] = as_overlap(pairs, world, new)
                     count += 1
                     new += 1
                     inserting = new < new_count
             pairs.queue_merged[world, count] = old
             count += 1
     while new < new_count:
-        pairs.queue_merged[world, count] = pairs.queue_new[world, new]
+        pairs.queue_merged[world, count] = as_overlap(pairs, world, new)
         count += 1
         new += 1
     for row in range(count):
-        contacts.overlap_shapes[world, row] = pairs.queue_merged[world, row]
+        write_overlap(contacts, world, row, pairs.queue_merged[world, row])
     contacts.count_contacts[world, OVERLAPS] = count
 
 
@@ -281,7 +319,7 @@ def keep_overlaps(contacts: Contacts, pairs: Pairs, world: Int32):
         return
     count = contacts.count_contacts[world, OVERLAPS]
     for row in range(count):
-        pairs.queue_start[world, row] = contacts.overlap_shapes[world, row]
+        pairs.queue_start[world, row] = read_overlap(contacts, world, row)
     pairs.count_pairs[world, START_OVERLAPS] = count
     pairs.count_pairs[world, START_KNOWN] = contacts.count_contacts[world, KNOWN]
 
@@ -293,7 +331,7 @@ def restore_overlaps(contacts: Contacts, pairs: Pairs, world: Int32):
     if count == NONE_KEPT:
         return
     for row in range(count):
-        contacts.overlap_shapes[world, row] = pairs.queue_start[world, row]
+        write_overlap(contacts, world, row, pairs.queue_start[world, row])
     contacts.count_contacts[world, OVERLAPS] = count
     contacts.count_contacts[world, KNOWN] = pairs.count_pairs[world, START_KNOWN]
     contacts.count_contacts[world, SORTED] = 0

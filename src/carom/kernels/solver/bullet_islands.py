@@ -31,10 +31,10 @@ def join_overlapping(model: Model, shapes: Shapes, contacts: Contacts, pair_rows
     """Join links whose bounds overlap, in the order of the pair cache."""
     count = contacts.count_contacts[world, OVERLAPS]
     for row in range(count):
-        pair_rows.order_row[world, contacts.overlap_shapes[world, row][2]] = row
+        pair_rows.order_row[world, contacts.overlap_place[world, row]] = row
     for place in range(count):
-        overlap = contacts.overlap_shapes[world, pair_rows.order_row[world, place]]
-        join(model, pair_rows, world, shapes.shape_link[overlap[0]], shapes.shape_link[overlap[1]])
+        pair = contacts.overlap_shapes[world, pair_rows.order_row[world, place]]
+        join(model, pair_rows, world, shapes.shape_link[pair[0]], shapes.shape_link[pair[1]])
 
 
 @func

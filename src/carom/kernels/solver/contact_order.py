@@ -10,8 +10,8 @@ import warp as wp
 from carom.kernels.solver.activity import is_asleep, pushed_tree
 from carom.kernels.solver.island_sort import sort_by_island
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func
-from carom.layouts.contacts import OVERLAPS, SORTED, THERE
+from carom.kernels.types import Index2, Index4, Int32, func
+from carom.layouts.contacts import NO_MANIFOLD, OVERLAPS, SORTED, THERE
 
 # End of a list.
 NONE = wp.constant(-1)
@@ -27,13 +27,13 @@ def same_shapes(contacts: Contacts, world: Int32, contact: Int32, pair: Index4) 
 
 
 @func
-def with_links(shapes: Shapes, overlap: Index4) -> Index4:
-    """The shapes of an overlap and their links, as in `Contacts.contact_shapes`."""
-    return Index4(overlap[0], overlap[1], shapes.shape_link[overlap[0]], shapes.shape_link[overlap[1]])
+def with_links(shapes: Shapes, pair: Index2) -> Index4:
+    """Two shapes and their links, as in `Contacts.contact_shapes`."""
+    return Index4(pair[0], pair[1], shapes.shape_link[pair[0]], shapes.shape_link[pair[1]])
 
 
 @func
-def is_between(contacts: Contacts, world: Int32, contact: Int32, overlap: Index4) -> bool:
+def is_between(contacts: Contacts, world: Int32, contact: Int32, overlap: Index2) -> bool:
     """Whether a contact exists and is between two shapes, of which the first has the lower row."""
     if contact >= contacts.count_contacts[world, THERE]:
         return False
@@ -61,8 +61,8 @@ def gather_manifolds(
     """List the manifolds of trees that can move and are awake, in their order; returns their number."""
     total = Int32(0)
     for row in range(contacts.count_contacts[world, OVERLAPS]):
-        manifold = contacts.overlap_shapes[world, row][3]
-        if manifold >= 0:
+        manifold = contacts.overlap_manifold[world, row]
+        if manifold != NO_MANIFOLD:
             pair_rows.order_row[world, manifold] = row
             total += 1
     count = Int32(0)
