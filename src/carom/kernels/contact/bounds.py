@@ -14,9 +14,7 @@ UNBOUNDED = real(1.0e18)
 @func
 def local_center(shapes: Shapes, shape: Int32) -> Vector3:
     """Centre of a shape's bounds in the shape frame."""
-    if shapes.shape_kind[shape] > PLANE:
-        return shapes.shape_center[shape]
-    return Vector3(0.0, 0.0, 0.0)
+    return shapes.shape_center[shape] if shapes.shape_kind[shape] > PLANE else Vector3(0.0, 0.0, 0.0)
 
 
 @func
@@ -107,9 +105,7 @@ def look_ahead(
         state.dof_velocity[world, first + 5],
     )
     motion = maximum(motion, wp.length(velocity) * settings.time_step)
-    if motion > 0.5 * radius and motion < UNBOUNDED:
-        return motion
-    return 0.0
+    return motion if motion > 0.5 * radius and motion < UNBOUNDED else 0.0
 
 
 @func

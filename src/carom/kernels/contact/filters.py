@@ -67,9 +67,7 @@ def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
     """Whether collision groups and masks let two links collide."""
     a_passes = shapes.link_group[a] & shapes.link_mask[b] != 0
     b_passes = shapes.link_group[b] & shapes.link_mask[a] != 0
-    if settings.filter_both == 1:
-        return a_passes and b_passes
-    return a_passes or b_passes
+    return a_passes and b_passes if settings.filter_both == 1 else a_passes or b_passes
 
 
 @func
@@ -86,6 +84,4 @@ def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32
     if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):
         return False
     wanted = pair_filter(shapes, settings, a, b)
-    if wanted >= 0:
-        return wanted == 1
-    return masks_match(shapes, settings, a, b)
+    return wanted == 1 if wanted >= 0 else masks_match(shapes, settings, a, b)

@@ -111,9 +111,7 @@ def collide_in_order(
 @func
 def rank(kind: Int32) -> Int32:
     """Rank of a kind of shape in the order of the narrow phase: its code, but planes last."""
-    if kind == PLANE:
-        return 100
-    return kind
+    return 100 if kind == PLANE else kind
 
 
 @func

@@ -168,9 +168,7 @@ def generalized_forces(
             needed = wp.dot(scratch.dof[world, dof].angular, moment) + wp.dot(
                 scratch.dof[world, dof].linear, force
             )
-            applied = real(0.0)
-            if purpose == FREE_MOTION:
-                applied = state.dof_torque[world, dof]
+            applied = state.dof_torque[world, dof] if purpose == FREE_MOTION else 0.0
             scratch.dof[world, dof].force = applied - needed
             dof += 1
         if link > base:

@@ -22,9 +22,7 @@ UNBOUNDED = real(math.inf)
 @func
 def stated(given: Int32, bit: Int32, numbers: Reals, joint: Int32, otherwise: real) -> real:
     """The number for a joint if such numbers are given, else the default `otherwise`."""
-    if given & bit != 0:
-        return numbers[joint]
-    return otherwise
+    return numbers[joint] if given & bit != 0 else otherwise
 
 
 @func

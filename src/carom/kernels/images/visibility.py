@@ -130,9 +130,7 @@ def where_positive(span: Vector2, slope: real, start: real) -> Vector2:
         return Vector2(wp.max(span[0], -start / slope), span[1])
     if slope < 0.0:
         return Vector2(span[0], wp.min(span[1], -start / slope))
-    if start < 0.0:
-        return Vector2(_HUGE, -_HUGE)
-    return span
+    return Vector2(_HUGE, -_HUGE) if start < 0.0 else span
 
 
 @func

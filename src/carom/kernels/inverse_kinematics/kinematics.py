@@ -90,9 +90,7 @@ def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
         axis = -axis
         cosine = -cosine
     sine = wp.length(axis)
-    if sine < 1.0e-12:
-        return 2.0 * axis
-    return axis * (2.0 * wp.atan2(sine, cosine) / sine)
+    return 2.0 * axis if sine < 1.0e-12 else axis * (2.0 * wp.atan2(sine, cosine) / sine)
 
 
 @wp.struct
@@ -184,9 +182,7 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
 def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
     """The quaternion at `q` after a rotation by the rotation vector `rate`, in its own axes."""
     angle = wp.length(rate)
-    scale = real(0.5)
-    if angle > 1.0e-9:
-        scale = wp.sin(0.5 * angle) / angle
+    scale = wp.sin(0.5 * angle) / angle if angle > 1.0e-9 else 0.5
     change = Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * angle))
     now = Quaternion(coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3])
     return wp.normalize(now * change)

@@ -231,9 +231,7 @@ def inverse_kinematics_kernel(
         first = measure_errors(sizes, chain, search, oriented)
         bearable = wp.max(patience * first.distance, _NEAR)
     follow(sizes, chain, search, oriented, step_kind, iterations, threshold)
-    outside = Int32(0)
-    if bounded == 1:
-        outside = keep_limits(sizes, chain, search, search.coordinate_now)
+    outside = keep_limits(sizes, chain, search, search.coordinate_now) if bounded == 1 else Int32(0)
     place(sizes, chain, search, search.coordinate_now)
     errors = measure_errors(sizes, chain, search, oriented)
     copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
@@ -255,9 +253,7 @@ def inverse_kinematics_kernel(
             search.column[column].weight = search.column[column].weight / mean
     for dof in range(sizes.dofs):
         search.dof[dof].step = real(0.0)
-    left = further
-    if bounded == 1 and not content:
-        left = wp.max(further, _WITHIN_LIMITS)
+    left = wp.max(further, _WITHIN_LIMITS) if bounded == 1 and not content else further
     spread = _FIRST_SPREAD
     worth = real(1.0)
     seed = Int32(1)

@@ -165,9 +165,7 @@ def moved_on(
     if mechanism.node[node].joint_type == REVOLUTE:
         per_rate = mechanism.dof[dof].angular[2]
         spin = per_rate * joints[rates + dof]
-        spin_up = real(0.0)
-        if accelerations >= 0:
-            spin_up = per_rate * joints[accelerations + dof]
+        spin_up = per_rate * joints[accelerations + dof] if accelerations >= 0 else 0.0
         return (
             Vector3(angular[0], angular[1], angular[2] + spin),
             Vector3(change[0] + angular[1] * spin, change[1] - angular[0] * spin, change[2] + spin_up),

@@ -128,9 +128,7 @@ def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Re
     unused = real(0.0)
     if sizes.base_dofs > 0:
         positions += BASE_POSITIONS
-    rates = positions + sizes.coordinates
-    if as_pybullet == 1:
-        rates = positions + sizes.dofs - sizes.base_dofs
+    rates = positions + sizes.dofs - sizes.base_dofs if as_pybullet == 1 else positions + sizes.coordinates
     if sizes.base_dofs > 0:
         omega = vector_at(question, rates)
         alpha = vector_at(question, rates + sizes.dofs)

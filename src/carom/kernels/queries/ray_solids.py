@@ -200,7 +200,5 @@ def ray_plane(start: Vector3, way: Vector3, normal: Vector3):
     """Ray against a plane through the origin, from either side; the normal is that of the side hit."""
     height = wp.dot(start, normal)
     slope = wp.dot(way, normal)
-    fraction = real(MISS)
-    if height * slope < 0.0 and wp.abs(height) <= wp.abs(slope):
-        fraction = -height / slope
+    fraction = -height / slope if height * slope < 0.0 and wp.abs(height) <= wp.abs(slope) else real(MISS)
     return fraction, normal * wp.sign(height)

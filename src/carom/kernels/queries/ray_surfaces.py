@@ -35,9 +35,7 @@ def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, 
     enter = wp.max(wp.max(wp.min(one, other)), 0.0)
     leave = wp.min(wp.min(wp.max(one, other)), last)
     # Empty boxes have their lower corner above their upper one.
-    if enter <= leave and lower[0] <= upper[0]:
-        return enter
-    return MISS
+    return enter if enter <= leave and lower[0] <= upper[0] else MISS
 
 
 @func
@@ -107,9 +105,7 @@ def time_to_leave(place: real, speed: real, cell: Int32) -> real:
     """Time at which a point that moves along an axis leaves a unit cell."""
     if speed > 0.0:
         return (real(cell) + 1.0 - place) / speed
-    if speed < 0.0:
-        return (real(cell) - place) / speed
-    return HUGE
+    return (real(cell) - place) / speed if speed < 0.0 else HUGE
 
 
 @func

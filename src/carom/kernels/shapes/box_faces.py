@@ -35,9 +35,7 @@ def incident_axis(direction: Vector3) -> Int32:
     """Axis of the component with the largest magnitude; of equal ones the last, or else the first."""
     size = wp.abs(direction)
     axis = Int32(wp.where(size[1] > size[0], 1, 0))
-    if size[axis] > size[2]:
-        return axis
-    return Int32(2)
+    return axis if size[axis] > size[2] else Int32(2)
 
 
 @func
@@ -90,9 +88,7 @@ def centroid(polygon: Vector3Rows, world: Int32, count: Int32) -> Vector3:
         part = here[0] * there[1] - here[1] * there[0]
         area += part
         moment += (here + there) * part
-    if wp.abs(area) < NO_AREA:
-        return first
-    return first + moment / (3.0 * area)
+    return first if wp.abs(area) < NO_AREA else first + moment / (3.0 * area)
 
 
 @func
@@ -213,9 +209,7 @@ def box_face_points(
     if touching > MOST:
         keep_four_around(polygon, workspace, world, touching)
         touching = Int32(MOST)
-    normal = outward
-    if reference_is_a == 1:
-        normal = -outward
+    normal = -outward if reference_is_a == 1 else outward
     for row in range(touching):
         corner = polygon[world, row]
         height = half[axis]

@@ -105,9 +105,7 @@ def box_axis(
             reach += EDGE_REACH * (half_a[i1] + half_a[i2] + half_b[j1] + half_b[j2])
             apart = wp.abs(along) - reach
             # Gaps are negative where boxes overlap.
-            needed = best * (1.0 + EDGE_SHARE)
-            if best <= 0.0:
-                needed = best / (1.0 + EDGE_SHARE)
+            needed = best / (1.0 + EDGE_SHARE) if best <= 0.0 else best * (1.0 + EDGE_SHARE)
             # The length is at most 1: a negative gap is at most `apart`.
             if apart > needed or apart > 0.0:
                 length = wp.sqrt(length_sq)

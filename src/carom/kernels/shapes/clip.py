@@ -23,9 +23,7 @@ def clip_by_side(
     if inside == count:
         return count
     kept = Int32(0)
-    edges = count
-    if count == 2:
-        edges = Int32(1)
+    edges = Int32(1) if count == 2 else count
     room = clipped.shape[1]
     here = polygon[world, 0]
     height = wp.dot(here - point, outward)
@@ -132,8 +130,6 @@ def clip_faces(
         distance = core_distance - radius_a - radius_b
         if distance <= max_distance:
             # The corner is on the core of the incident shape.
-            point = v + normal * radius_b
-            if reference_is_a == 0:
-                point = v - normal * (core_distance - radius_b)
+            point = v - normal * (core_distance - radius_b) if reference_is_a == 0 else v + normal * radius_b
             total = add_candidate(candidates, world, total, point, normal, distance)
     return total

@@ -126,12 +126,8 @@ def collide_faces(
     """Add the candidates of two faces lying on each other; none if neither is perpendicular to the normal."""
     normal_a, count_a = face_towards(shapes, core_a, a, -normal, pairs.polygon_a, world)
     normal_b, count_b = face_towards(shapes, core_b, b, normal, pairs.polygon_b, world)
-    flat_a = -wp.dot(normal_a, normal)
-    flat_b = wp.dot(normal_b, normal)
-    if count_a < 3:
-        flat_a = real(0.0)
-    if count_b < 3:
-        flat_b = real(0.0)
+    flat_a = 0.0 if count_a < 3 else -wp.dot(normal_a, normal)
+    flat_b = 0.0 if count_b < 3 else wp.dot(normal_b, normal)
     count = found
     if flat_a >= flat_b and flat_a > FLAT_ON:
         if core_b.kind == BOX:

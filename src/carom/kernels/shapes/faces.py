@@ -41,12 +41,8 @@ def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, worl
     carry more of it.
     """
     axis = main_axis(wp.transpose(core.frame) * outward)
-    u = Int32(0)
-    v = Int32(2)
-    if axis == 0:
-        u = Int32(1)
-    if axis == 2:
-        v = Int32(1)
+    u = Int32(1) if axis == 0 else Int32(0)
+    v = Int32(1) if axis == 2 else Int32(2)
     edge_u = column(core.frame, u) * core.size[u]
     edge_v = column(core.frame, v) * core.size[v]
     center = core.position + outward * core.size[axis]

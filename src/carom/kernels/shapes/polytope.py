@@ -65,9 +65,7 @@ def axis_direction(side: Int32, x: Vector3, y: Vector3, z: Vector3) -> Vector3:
         direction = y
     elif side // 2 == 2:
         direction = z
-    if side % 2 == 1:
-        return -direction
-    return direction
+    return -direction if side % 2 == 1 else direction
 
 
 @func
@@ -270,9 +268,7 @@ def overlap(
     Returns:
         The depth [m], the unit normal from b towards a, and the deepest points of a and of b.
     """
-    direction = start
-    if wp.length_sq(start) == 0.0:
-        direction = Vector3(0.0, 0.0, 1.0)
+    direction = Vector3(0.0, 0.0, 1.0) if wp.length_sq(start) == 0.0 else start
     count, flat = first_tetrahedron(core_a, core_b, vertex_position, points, points_a, world, direction)
     if count < 4:
         normal = wp.normalize(flat)

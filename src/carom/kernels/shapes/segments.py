@@ -43,9 +43,7 @@ def nearest_places(offset: Vector3, half_a: Vector3, half_b: Vector3):
     place_a = real(0.0)
     if determinant > PARALLEL * aa * bb:
         place_a = wp.clamp((ab * b_offset - bb * a_offset) / determinant, -1.0, 1.0)
-    place_b = real(0.0)
-    if bb > TINY:
-        place_b = wp.clamp((ab * place_a + b_offset) / bb, -1.0, 1.0)
+    place_b = wp.clamp((ab * place_a + b_offset) / bb, -1.0, 1.0) if bb > TINY else 0.0
     if aa > TINY:
         place_a = wp.clamp((ab * place_b - a_offset) / aa, -1.0, 1.0)
     if bb > TINY:
@@ -71,9 +69,7 @@ def add_round_contact(
     distance = length - radius_a - radius_b
     if distance > max_distance:
         return count
-    normal = fallback
-    if length * length > TINY:
-        normal = offset / length
+    normal = offset / length if length * length > TINY else fallback
     return add_candidate(candidates, world, count, point_b + normal * radius_b, normal, distance)
 
 
@@ -106,9 +102,7 @@ def collide_segments(
         if start < end:
             count = Int32(0)
             for side in range(2):
-                place = start
-                if side == 1:
-                    place = end
+                place = end if side == 1 else start
                 point_a = middle_a + half_a * place
                 place_b = wp.dot(point_a - middle_b, half_b) / wp.length_sq(half_b)
                 point_b = middle_b + half_b * wp.clamp(place_b, -1.0, 1.0)

@@ -31,9 +31,7 @@ ROOM = 16
 @func
 def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
     """Radius by which a surface's triangles are rounded [m]: its margin; 0 against spheres, as in Bullet."""
-    if core.kind == SPHERE:
-        return 0.0
-    return shapes.shape_margin[surface]
+    return 0.0 if core.kind == SPHERE else shapes.shape_margin[surface]
 
 
 @func

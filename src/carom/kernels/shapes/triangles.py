@@ -137,17 +137,13 @@ def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) 
 @func
 def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
     """Cursor at which a traversal of the triangles of a surface starts."""
-    if shapes.shape_kind[surface] == TRIANGLES:
-        return 1
-    return 0
+    return 1 if shapes.shape_kind[surface] == TRIANGLES else 0
 
 
 @func
 def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
     """Cursor at which a traversal continues after a triangle."""
-    if shapes.shape_kind[surface] == TRIANGLES:
-        return next_node(cursor)
-    return cursor + 1
+    return next_node(cursor) if shapes.shape_kind[surface] == TRIANGLES else cursor + 1
 
 
 @func

@@ -27,9 +27,7 @@ _SINGULAR = real(1.0e-9)
 @func
 def other_row(row: Int32, axis: Int32) -> Int32:
     """The row of a touch or anchor along an axis, 0 to 2, given its first row; -1 if it has no rows."""
-    if row < 0:
-        return row
-    return row + axis
+    return row if row < 0 else row + axis
 
 
 @func

@@ -24,9 +24,7 @@ _SAME = real(1.0e-9)
 def away_from(offset: Vector3, otherwise: Vector3) -> Vector3:
     """Unit vector along an offset; `otherwise` if the offset has no length."""
     length = wp.length(offset)
-    if length > _TINY:
-        return offset / length
-    return otherwise
+    return offset / length if length > _TINY else otherwise
 
 
 @func

@@ -86,9 +86,7 @@ def may_near(
     a = model.tree[soft.soft[body].tree].first_link
     b = model.tree[soft.soft[other].tree].first_link
     wanted = pair_filter(shapes, settings, a, b)
-    if wanted >= 0:
-        return wanted == 1
-    return masks_match(shapes, settings, a, b)
+    return wanted == 1 if wanted >= 0 else masks_match(shapes, settings, a, b)
 
 
 @func
@@ -169,9 +167,7 @@ def look_at_node(
     if usual and distance <= max_distance:
         usual = near_at_rest(soft, node, face, soft.soft[body].thickness)
     if distance <= max_distance and not usual:
-        side = sign_of(wp.dot(offset, normal))
-        if closed:
-            side = real(1.0)
+        side = 1.0 if closed else sign_of(wp.dot(offset, normal))
         note_face(work, world, node, face, side, distance)
 
 

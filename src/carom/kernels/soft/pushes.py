@@ -133,9 +133,7 @@ def add_push_rows(
 @func
 def row_mass(pair_rows: PairRows, world: Int32, row: Int32) -> real:
     """Effective inverse mass along a row [1/kg]; 0 for row -1, that of an immovable link."""
-    if row < 0:
-        return 0.0
-    return pair_rows.row_terms[world, row].inverse_mass
+    return 0.0 if row < 0 else pair_rows.row_terms[world, row].inverse_mass
 
 
 @func

@@ -55,9 +55,7 @@ def may_meet(
     own = model.tree[soft.soft[body].tree].first_link
     link = shapes.shape_link[shape]
     wanted = pair_filter(shapes, settings, own, link)
-    if wanted >= 0:
-        return wanted == 1
-    return masks_match(shapes, settings, own, link)
+    return wanted == 1 if wanted >= 0 else masks_match(shapes, settings, own, link)
 
 
 @func

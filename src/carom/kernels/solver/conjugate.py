@@ -63,9 +63,7 @@ def go_on(
         Squared norm of the change of impulses by the sweep.
     """
     square = squared_change(pair_rows, world, manifold_blocks)
-    share = real(0.0)
-    if square < last_square:
-        share = square / last_square
+    share = square / last_square if square < last_square else 0.0
     manifold_block = Int32(0)
     while manifold_block < manifold_blocks:
         normal = (

@@ -56,10 +56,8 @@ def add_contact_rows(
             angular = terms.normal
             coefficient = terms.friction[2]
         else:
-            angular = terms.rolling1
             coefficient = terms.friction[1]
-            if place > rows[ROLLING_ROW]:
-                angular = terms.rolling2
+            angular = terms.rolling2 if place > rows[ROLLING_ROW] else terms.rolling1
 
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, place, block, terms.ends, terms.point_a, terms.point_b,

@@ -133,9 +133,7 @@ def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, poin
 @func
 def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Angular velocity of a fixed base; 0 for free bases."""
-    if model.tree[tree].fixed == 0:
-        return Vector3(0.0, 0.0, 0.0)
-    return base_omega(model, state, world, tree)
+    return Vector3(0.0, 0.0, 0.0) if model.tree[tree].fixed == 0 else base_omega(model, state, world, tree)
 
 
 @func

@@ -12,9 +12,7 @@ from carom.layouts.contacts import ROWS_PER_PAIR
 @func
 def tree_blocks(model: Model, tree: Int32) -> Int32:
     """Number of blocks of four in a vector over a tree's active dofs; 0 for the world, -1."""
-    if tree < 0:
-        return Int32(0)
-    return (model.tree[tree].dof_count + 3) // 4
+    return Int32(0) if tree < 0 else (model.tree[tree].dof_count + 3) // 4
 
 
 @func
@@ -84,12 +82,8 @@ def place_row(
     """Store the trees of a row and the first block of its Jacobian; returns the next free block."""
     blocks_a = tree_blocks(model, tree_a)
     blocks_b = tree_blocks(model, tree_b)
-    delta_a = Int32(0)
-    delta_b = Int32(0)
-    if tree_a >= 0:
-        delta_a = model.tree[tree_a].first_delta
-    if tree_b >= 0:
-        delta_b = model.tree[tree_b].first_delta
+    delta_a = model.tree[tree_a].first_delta if tree_a >= 0 else Int32(0)
+    delta_b = model.tree[tree_b].first_delta if tree_b >= 0 else Int32(0)
     pair_rows.row_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
     pair_rows.row_start[world, row] = start
     pair_rows.row_bound[world, row] = Int32(-1)
@@ -113,9 +107,7 @@ def write_row(
     `softness` (constraint force mixing) is the velocity by which the row yields per unit of impulse.
     """
     effective_mass = inverse_or_off(inverse_mass + softness)
-    diagonal = real(0.0)
-    if effective_mass > 0.0:
-        diagonal = 1.0 / effective_mass
+    diagonal = 1.0 / effective_mass if effective_mass > 0.0 else 0.0
     terms = RowTerms()
     terms.share = change * effective_mass
     terms.effective_mass = effective_mass
@@ -207,9 +199,7 @@ def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: In
     second = wanted_impulse(scratch, pair_rows, world, place, start2, terms2)
     square = first * first + second * second
     if square >= bound * bound:
-        scale = real(0.0)
-        if square > 0.0:
-            scale = bound / wp.sqrt(square)
+        scale = bound / wp.sqrt(square) if square > 0.0 else 0.0
         first = first * scale
         second = second * scale
     change1 = first - terms1.impulse

@@ -89,9 +89,7 @@ def write_row_numbers(
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
-    impulse = real(0.0)
-    if mass > 0.0 and terms.start[0] > 0.0:
-        impulse = terms.start[row]
+    impulse = terms.start[row] if mass > 0.0 and terms.start[0] > 0.0 else 0.0
     if row == 0:
         pair_rows.manifold_block[world, manifold_block].friction[contact] = terms.friction[0]
         pair_rows.manifold_block[world, manifold_block].normal_share[contact] = change * mass

@@ -107,9 +107,7 @@ def scale_to_circle(square: real, bound: real) -> real:
     It is not inlined, so that square root and quotient are not computed for impulses within the circle, as
     most are.
     """
-    if bound == 0.0:
-        return 0.0
-    return bound / wp.sqrt(square)
+    return 0.0 if bound == 0.0 else bound / wp.sqrt(square)
 
 
 @func

@@ -127,9 +127,7 @@ def sweep_island(
     residual = real(0.0)
     square = real(0.0)
     sweep = Int32(0)
-    searching = Int32(0)
-    if (visits > 0 or units > 0) and most > 0:
-        searching = Int32(1)
+    searching = Int32(1) if (visits > 0 or units > 0) and most > 0 else Int32(0)
     while searching == 1:
         if resting == 1:
             remember_impulses(pair_rows, world, manifold_blocks)

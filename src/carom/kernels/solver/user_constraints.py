@@ -16,17 +16,13 @@ _PARALLEL = real(1e-6)
 @func
 def world_point(state: State, world: Int32, tree: Int32, link: Int32, local: Vector3) -> Vector3:
     """World position of a point given in a link's frame, or in the world frame if `tree` is -1."""
-    if tree < 0:
-        return local
-    return wp.transform_point(state.link_pose[world, link], local)
+    return local if tree < 0 else wp.transform_point(state.link_pose[world, link], local)
 
 
 @func
 def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Quaternion) -> Quaternion:
     """World orientation of a frame given in a link's frame, or in the world frame if `tree` is -1."""
-    if tree < 0:
-        return local
-    return wp.transform_get_rotation(state.link_pose[world, link]) * local
+    return local if tree < 0 else wp.transform_get_rotation(state.link_pose[world, link]) * local
 
 
 @func
@@ -36,9 +32,7 @@ def user_row_count(kind: Int32) -> Int32:
         return Int32(1)
     if kind == USER_POINT_TO_POINT:
         return Int32(3)
-    if kind == USER_PRISMATIC:
-        return Int32(5)
-    return Int32(6)
+    return Int32(5) if kind == USER_PRISMATIC else Int32(6)
 
 
 @func
@@ -136,9 +130,7 @@ def add_pose_rows(
     bound = users.user_max_impulse[user]
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
-        error = wp.dot(apart, linear)
-        if axis >= 0:
-            error = turned[axis]
+        error = turned[axis] if axis >= 0 else wp.dot(apart, linear)
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
@@ -197,10 +189,8 @@ def add_gear_row(
     link_b = users.user_link_b[user]
     auxiliary = users.user_gear_auxiliary[user]
     ratio = users.user_gear_ratio[user]
-    auxiliary_rate = real(0.0)
     error = real(0.0)
-    if auxiliary >= 0:
-        auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof]
+    auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof] if auxiliary >= 0 else 0.0
     if users.user_erp[user] != 0.0:
         angle = joint_position(model, state, world, link_a) + ratio * joint_position(
             model, state, world, link_b
