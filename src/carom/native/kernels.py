@@ -20,12 +20,7 @@ _SCALARS: Mapping[str, Any] = {
 
 
 class Kernel:
-    """A compiled kernel: a C function that takes two addresses, those of its bounds and of its arguments.
-
-    Args:
-        name: Name of the function in `carom.kernels`.
-        find_library: Returns the library that contains it.
-    """
+    """A compiled kernel: a C function that takes two addresses, those of its bounds and of its arguments."""
 
     def __init__(self, name: str, find_library: Callable[[], Library] = library) -> None:
         self.name = name

@@ -298,13 +298,7 @@ class Parameter:
 
 
 class QuickCalls:
-    """The quick calls of this process.
-
-    Args:
-        symbols: The loaded library.
-        calls: Address of the table of calls.
-        clients: Address of the table of clients.
-        python: Pointers to functions, objects and types of Python, by their names.
+    """The quick calls of this process, in a table of the library, with pointers to what they need of Python.
 
     Attributes:
         clients: Address of a `Client`, by number; 0 if Python has to handle its calls.
@@ -365,10 +359,8 @@ def quick_calls(vectorcall: int) -> QuickCalls | None:
     """The quick calls of this process, for the first caller; None for others, and if there are none.
 
     They need a usual build of CPython: in others the header of objects differs, or threads run in parallel.
-    They point to objects of one interpreter, so other interpreters of the process have none.
-
-    Args:
-        vectorcall: Address of the function that calls a Python function.
+    They point to objects of one interpreter, so other interpreters of the process have none. `vectorcall` is
+    the address of the function that calls a Python function.
     """
     if (
         sys.implementation.name != "cpython"

@@ -76,9 +76,7 @@ class _Table(ctypes.Structure):
 class RowChanges:
     """Changes of the rows of tables, valid until one of their arrays is replaced.
 
-    Args:
-        fields: All arrays of the tables.
-        references: Those of its fields that contain row numbers.
+    They take all arrays of the tables, and those fields that contain row numbers.
     """
 
     def __init__(self, fields: list[RowsOfAxis], references: list[RowNumbers]) -> None:
@@ -123,10 +121,8 @@ class RowChanges:
     def put(self, rows: bytes, first: Mapping[str, int], count: bytes) -> None:
         """Put rows into unused places of every world, as `first_rows` returned them for equal tables.
 
-        Args:
-            rows: The rows, with row numbers as if no other rows were there.
-            first: Where they go, by axis.
-            count: How many there are, `packed`.
+        The rows have row numbers as if no other rows were there. They go to the rows `first`, by axis;
+        `count`, how many there are, is `packed`.
         """
         self._put(self._table, rows, self.packed(first), count)
 

@@ -9,15 +9,9 @@ from typing import Any
 
 
 def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
-    """The results of a kernel of `turns.cpp`.
+    """The `count` results of a kernel of `turns.cpp`; None if it has none for these numbers.
 
-    Args:
-        kernel: Its name, without the prefix `carom_`.
-        numbers: Its arguments, as many as it takes.
-        count: Number of results.
-
-    Returns:
-        The results; None if the kernel has none for these numbers.
+    Its name is given without the prefix `carom_`.
     """
     results = (ctypes.c_double * count)()
     well = _function(kernel)((ctypes.c_double * len(numbers))(*numbers), results, None)

@@ -96,13 +96,7 @@ def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
 def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index2, equal: Int32) -> Int32:
     """Skip previous contacts, which are sorted by pair, from row `first` on; returns the row reached.
 
-    Args:
-        pairs: The previous contacts.
-        world: The world.
-        first: Row to start at.
-        end: End of the previous contacts.
-        pair: Pair of shapes; contacts of pairs before this one are skipped.
-        equal: 1 to skip the contacts of this pair as well, else 0.
+    Contacts of pairs before `pair` are skipped, and if `equal` is 1, not 0, those of this pair as well.
     """
     row = first
     skipping = row < end

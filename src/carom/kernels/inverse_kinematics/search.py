@@ -103,17 +103,9 @@ def descend(
 ):
     """Minimise the errors from `coordinate_now` on, until they are below the threshold or progress is slow.
 
-    Args:
-        sizes: The numbers of joints, ends and so on.
-        chain: The chain.
-        search: The targets and options, with joint frames and errors at `coordinate_now`.
-        oriented: 1 if the ends have target orientations as well.
-        budget: Maximum number of poses to try.
-        threshold: Tolerance of distances [m] and angles [rad].
-        errors: The errors at `coordinate_now`.
-
-    Returns:
-        The errors at the end, and the number of poses tried.
+    `search` has joint frames and errors at `coordinate_now`, as has `errors`. `oriented` is 1 if the ends
+    have target orientations as well, `threshold` the tolerance of distances [m] and angles [rad]. At most
+    `budget` poses are tried. Returns the errors at the end, and the number of poses tried.
     """
     blocks = (1 + oriented) * sizes.ends
     tried = Int32(0)
@@ -204,17 +196,11 @@ def inverse_kinematics_kernel(
 ):
     """Search for joint positions and write them to `coordinate_best`.
 
-    Args:
-        sizes: The numbers of joints, ends and so on.
-        chain: The chain.
-        search: The targets and options.
-        oriented: 1 if the ends have target orientations as well.
-        step_kind: Method of PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
-        bounded: 1 if there are limits.
-        iterations: Maximum number of steps of PyBullet's iteration.
-        further: Number of poses that may be tried after that; with limits at least `_WITHIN_LIMITS`.
-        threshold: Tolerance of distances [m] and angles [rad].
-        patience: PyBullet's result is taken, converged or not, if at most this share of the distance is left.
+    `oriented` is 1 if the ends have target orientations as well, `bounded` 1 if there are limits, `threshold`
+    the tolerance of distances [m] and angles [rad]. PyBullet's iteration has at most `iterations` steps of
+    the method `step_kind`: `DAMPED`, `NULL_SPACE` or `SELECTIVE`. After it `further` poses may be tried; with
+    limits at least `_WITHIN_LIMITS`. PyBullet's result is taken, converged or not, if at most the share
+    `patience` of the distance is left.
     """
     take_targets(sizes, search)
     for column in range(sizes.columns):

@@ -112,15 +112,10 @@ def newton_euler(
 ):
     """Compute the generalized forces in `output`, for the positions in `input` and the motion given.
 
-    Args:
-        sizes: Sizes of the mechanism.
-        mechanism: The mechanism.
-        omega: Angular velocity of the base.
-        alpha: Its derivative.
-        acceleration: Linear acceleration of the base minus gravity.
-        joints: Array with the rates and accelerations of the dofs.
-        rates: Index in it of the rate of dof 0, counted as if a free base's rates were there.
-        accelerations: The same for accelerations; negative if all of them are 0.
+    The motion of the base is its angular velocity, the derivative of that, and its linear acceleration minus
+    gravity. `joints` has rates and accelerations of the dofs: `rates` and `accelerations` are the indices in
+    it of those of dof 0, counted as if a free base's were there; `accelerations` is negative if all of them
+    are 0.
     """
     keep_motion(mechanism, 0, omega, alpha, acceleration)
     mechanism.motion[0].force = Vector3(0.0, 0.0, 0.0)

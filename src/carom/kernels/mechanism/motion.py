@@ -68,14 +68,9 @@ def rotation_by_angles(roll: real, pitch: real, yaw: real) -> Quaternion:
 def take_positions(
     sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, first: Int32, by_angles: Int32
 ):
-    """Copy the positions of the joints from the question to `input`.
+    """Copy the positions of the joints from the question of `motion_kernel`, from `first` on, to `input`.
 
-    Args:
-        sizes: Sizes of the mechanism.
-        mechanism: The mechanism.
-        question: As for `motion_kernel`.
-        first: Index in it of the first joint position.
-        by_angles: 1: positions of spherical joints are roll, pitch and yaw instead of a quaternion.
+    If `by_angles` is 1, positions of spherical joints are roll, pitch and yaw instead of a quaternion.
     """
     joint_dofs = sizes.dofs - sizes.base_dofs
     if by_angles == 0 or sizes.coordinates == joint_dofs:
@@ -111,15 +106,11 @@ def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
 def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, as_pybullet: Int32):
     """Compute in `output` the generalized forces that cause a motion; for a free base, force before torque.
 
-    Args:
-        sizes: Sizes of the mechanism.
-        mechanism: The mechanism.
-        question: Gravity in the axes of the base; positions; rates; accelerations. With a free base,
-            gravity is in world axes; position and quaternion of the base come before the other positions,
-            its angular velocity and its velocity, in its own axes, before the other rates, and their
-            derivatives likewise.
-        as_pybullet: 1: gravity acts on a free base in the same direction as in PyBullet, and positions of
-            spherical joints are roll, pitch and yaw.
+    The question is gravity in the axes of the base; positions; rates; accelerations. With a free base,
+    gravity is in world axes; position and quaternion of the base come before the other positions, its angular
+    velocity and its velocity, in its own axes, before the other rates, and their derivatives likewise. If
+    `as_pybullet` is 1, gravity acts on a free base in the same direction as in PyBullet, and positions of
+    spherical joints are roll, pitch and yaw.
     """
     positions = POSE + 0
     acceleration = -vector_at(question, 0)

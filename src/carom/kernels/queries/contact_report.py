@@ -28,17 +28,9 @@ def report_contacts_kernel(
 ):
     """List the contacts between two bodies or two of their links; either side may be any body.
 
-    Args:
-        contacts: All contacts.
-        places: Body and link index of each link row.
-        report: Output, with room for all contacts.
-        world: The world.
-        count: Number of contacts.
-        body_a: Body a of every listed contact; negative for any body, and then no sides are exchanged.
-        link_a: Link of this body; see `fits`.
-        body_b: The other body.
-        link_b: Link of the other body.
-        time_step: Duration of a step, to convert impulses to forces [s].
+    If body a is negative it is any body, and no sides are exchanged; otherwise every contact listed is
+    between this body as a and the other as b. For links see `fits`. Impulses become forces by `time_step`
+    [s].
     """
     listed = Int32(0)
     for row in range(count):

@@ -269,21 +269,12 @@ def rays_kernel(
     hit_number: Int32,
     separation: real,
 ):
-    """Cast the rays of several worlds; rays are in the order of the worlds.
+    """Cast the rays of several worlds, `count` in each; rays are in the order of the worlds.
 
     The kernel has `threads` threads for each world. `prepare_rays_kernel` must have run for these worlds.
-
-    Args:
-        shapes: All shapes.
-        pairs: Poses and hierarchy.
-        places: Body and link index of each link row.
-        rays: The rays, and their hits as output.
-        first_world: Row of the first world.
-        count: Number of rays in each world.
-        threads: Number of threads that share the rays of a world.
-        mask: Collision groups of the links that rays can hit.
-        hit_number: 0 for the first hit, n for the n-th after it, in the order along the ray.
-        separation: After a hit, further hits on the same link within this fraction of the ray are skipped.
+    Rays hit links of the collision groups in `mask`. Hit number 0 is the first, n the n-th after it, in the
+    order along the ray; after a hit, further hits on the same link within the fraction `separation` of the
+    ray are skipped.
     """
     world = first_world + wp.tid() // threads
     start = world * count

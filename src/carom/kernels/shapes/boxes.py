@@ -43,15 +43,10 @@ def main_axis(direction: Vector3) -> Int32:
 def box_axis(
     frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, max_distance: real
 ):
-    """Separating axis test of two boxes.
+    """Separating axis test of two boxes, given by rotation matrices and half extents.
 
-    Args:
-        frame_a: Rotation matrix of a.
-        half_a: Half extents of a.
-        frame_b: Rotation matrix of b.
-        half_b: Half extents of b.
-        offset: Vector from the centre of a to that of b, in world axes.
-        max_distance: The test ends at an axis along which the boxes are further apart than this.
+    `offset` is the vector from the centre of a to that of b, in world axes. The test ends at an axis along
+    which the boxes are further apart than `max_distance` [m].
 
     Returns:
         The kind of axis (see `FACE_A`), its unit vector from b towards a in world axes, and the distance of

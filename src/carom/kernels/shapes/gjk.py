@@ -125,12 +125,8 @@ def nearest_weights(simplex: Matrix43, count: Int32) -> Vector4:
 def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start: Vector3, max_distance: real):
     """Nearest points of two cores.
 
-    Args:
-        core_a: One core.
-        core_b: The other core.
-        vertex_position: Vertices of hulls.
-        start: Approximate direction from b to a.
-        max_distance: The search ends as soon as the distance is known to exceed this [m].
+    `start` is an approximate direction from b to a. The search ends as soon as the distance is known to
+    exceed `max_distance` [m].
 
     Returns:
         The distance [m] and the nearest points on a and on b. If the cores overlap, the distance is 0 and

@@ -252,18 +252,8 @@ def overlap(
 ):
     """Penetration depth: the smallest translation that separates two overlapping cores.
 
-    Args:
-        core_a: One core.
-        core_b: The other core.
-        vertex_position: Vertices of hulls.
-        points: Workspace for the polytope (see `Pairs`).
-        points_a: Likewise.
-        planes: Likewise.
-        faces: Likewise.
-        edges: Likewise.
-        world: The world.
-        start: Approximate direction from b to a.
-        common: A point that is in both cores.
+    The arrays of the polytope are workspace, see `Pairs`. `start` is an approximate direction from b to a,
+    `common` a point that is in both cores.
 
     Returns:
         The depth [m], the unit normal from b towards a, and the deepest points of a and of b.

@@ -29,10 +29,8 @@ def any_perpendicular(direction: Vector3) -> Vector3:
 def nearest_places(offset: Vector3, half_a: Vector3, half_b: Vector3):
     """Nearest points of two segments, as coordinates between -1 and 1 along their half vectors.
 
-    Args:
-        offset: Vector from the middle of b to the middle of a.
-        half_a: Vector from the middle of a to one of its ends; may be zero.
-        half_b: The same for b.
+    `offset` is the vector from the middle of b to that of a. Half vectors go from the middle to one end; they
+    may be zero.
     """
     aa = wp.length_sq(half_a)
     bb = wp.length_sq(half_b)

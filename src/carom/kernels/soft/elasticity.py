@@ -82,18 +82,9 @@ def relax_tetra(
 ) -> bool:
     """Move the corners of a tetrahedron by the effect of its stress in a small step.
 
-    Args:
-        soft: The soft bodies.
-        state: The positions of their nodes, which are changed.
-        places: Positions of the nodes from which the stress is computed.
-        world: The world.
-        tetra: The tetrahedron.
-        shear_gain: mu, times its volume and the square of the small step.
-        bulk_gain: lam, likewise.
-        implicit: Whether the stress is that at the end of the small step.
-
-    Returns:
-        False if it is too stiff for explicit stress; nothing has moved then.
+    The stress is computed from the positions `places`, and that at the end of the small step if `implicit`.
+    The gains are mu and lam, times the tetrahedron's volume and the square of the small step. Returns false
+    if it is too stiff for explicit stress; nothing has moved then.
     """
     four = soft.tetra[tetra].nodes
     inverse = soft.tetra[tetra].inverse

@@ -24,9 +24,8 @@ def counts(soft: SoftModel, node: Int32) -> real:
 def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
     """The rotation nearest to a matrix of moments (Müller, Bender, Chentanez, Macklin, 2016).
 
-    Args:
-        start: A rotation near it.
-        matrix: Sum of the outer products of positions and positions at rest.
+    The matrix is the sum of the outer products of positions and positions at rest; `start` is a rotation near
+    it.
     """
     q = wp.normalize(start)
     turning = Int32(0)

@@ -201,13 +201,7 @@ def nearest_on_shape(
 ):
     """Signed distance of a point from a shape, negative inside, and the outward unit normal, in world axes.
 
-    Args:
-        shapes: All shapes.
-        pairs: Their poses.
-        world: The world.
-        shape: The shape.
-        point: The point in world axes [m].
-        max_distance: A result beyond this distance is not exact, only larger than this [m].
+    A result beyond `max_distance` [m] is not exact, only larger than this.
     """
     frame = pairs.shape_frame[world, shape]
     local = wp.transpose(frame) * (point - pairs.shape_position[world, shape])

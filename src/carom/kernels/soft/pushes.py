@@ -95,20 +95,7 @@ def add_push_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add three rows that push a link at a point along the columns of `axes`.
-
-    Args:
-        model: The trees.
-        state: Their state.
-        scratch: Their inverse mass matrices.
-        pair_rows: Room for rows.
-        world: The world.
-        tree: The tree.
-        link: Its link.
-        point: The point in world axes [m].
-        axes: Directions, as columns.
-        row: Next free row.
-        block: Next free block.
+    """Add three rows that push a link at a point [m] in world axes along the columns of `axes`.
 
     Returns:
         Next free row and block; if there was no room, the given ones, and an overflow in the world's status.

@@ -52,15 +52,8 @@ def go_on(
 ) -> real:
     """Move the impulses further, so that their total change is conjugate to the last search direction.
 
-    Args:
-        scratch: Has the delta velocities.
-        pair_rows: The manifold blocks; `remember_impulses` was called before the sweep.
-        world: The world.
-        manifold_blocks: Their number.
-        last_square: Returned by this function after the sweep before; 0 after the first sweep.
-
-    Returns:
-        Squared norm of the change of impulses by the sweep.
+    `remember_impulses` was called before the sweep. Returns the squared norm of the change of impulses by the
+    sweep; `last_square` is the same of the sweep before, 0 after the first one.
     """
     square = squared_change(pair_rows, world, manifold_blocks)
     share = square / last_square if square < last_square else 0.0

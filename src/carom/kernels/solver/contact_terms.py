@@ -252,15 +252,8 @@ def keep_contact_impulse(
 ):
     """Store the impulses of a contact; if it slides, its friction anchor moves to its present point.
 
-    Args:
-        contacts: The contacts.
-        world: The world.
-        contact: The contact.
-        normal: Impulse along the normal.
-        first: Impulse along the first friction direction.
-        second: Impulse along the second.
-        friction: Coefficient of lateral friction.
-        outcome: Outcome of solving it, see `warm_starting.next_warm_start`.
+    The impulses are along the normal and the two friction directions, `friction` is the coefficient of
+    lateral friction, and `outcome` that of solving the contact, see `warm_starting.next_warm_start`.
     """
     contacts.contact_impulse[world, contact] = Vector3(normal, first, second)
     contacts.contact_warm_start[world, contact] = next_warm_start(

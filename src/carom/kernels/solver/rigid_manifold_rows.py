@@ -61,22 +61,11 @@ def write_row_numbers(
     velocity: real,
     inverse_mass: real,
 ) -> real:
-    """Write all data of a row of a contact except its matrices.
+    """Write all data of a row of a contact except its matrices; returns the row's effective mass.
 
-    Args:
-        settings: Time step, error reduction of friction, and more.
-        shapes: Has the restitution of the links.
-        pair_rows: The manifold block.
-        terms: The contact.
-        world: The world.
-        manifold_block: The manifold block.
-        contact: Index of the contact in the block.
-        row: Row of the contact: 0 is the normal, 1 and 2 are friction.
-        velocity: Present velocity of the row, without set velocities of fixed bases.
-        inverse_mass: Change of this velocity by a unit impulse.
-
-    Returns:
-        Effective mass of the row.
+    Row 0 is the normal, 1 and 2 are friction. `contact` is the contact's index in the block, `velocity` the
+    present velocity of the row, without set velocities of fixed bases, and `inverse_mass` the change of this
+    velocity by a unit impulse.
     """
     if terms.ignored != 0:
         inverse_mass = real(0.0)

@@ -104,17 +104,9 @@ def sweep_island(
 ):
     """Sweep over the rows of an island until it converges; with conjugate directions if it is at rest.
 
-    Args:
-        settings: Has the maximum number of sweeps, and the residual threshold.
-        scratch: Rows over one tree.
-        pair_rows: Rows over two trees.
-        world: The world.
-        rows: Number of rows of motors and limits.
-        visits: Number of rows of motors, limits and user constraints.
-        units: Number of units of contacts.
-        manifold_blocks: Number of manifold blocks among the units.
-        torsion: 1 if there is rolling or spinning friction.
-        resting: 1 if the island is warm started; then all units are manifold blocks of rigid bodies.
+    `rows` are those of motors and limits, `visits` those and the rows of user constraints, `units` the units
+    of contacts, with so many manifold blocks among them. `torsion` is 1 if there is rolling or spinning
+    friction, `resting` if the island is warm started; then all units are manifold blocks of rigid bodies.
 
     Returns:
         Residual of the last sweep, the maximum change of a row's velocity, squared; number of sweeps.
