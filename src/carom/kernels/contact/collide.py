@@ -80,13 +80,7 @@ def can_stay(
 
 @func
 def make_contacts(
-    shapes: Shapes,
-    model: Model,
-    state: State,
-    contacts: Contacts,
-    pairs: Pairs,
-    world: Int32,
-    kept: Int32,
+    shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32, kept: Int32
 ) -> Int32:
     """Write the contacts of all pairs; returns their number, including those beyond the capacity.
 

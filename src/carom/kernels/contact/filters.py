@@ -45,8 +45,7 @@ def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
 @func
 def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
     """The user's filter for two links: 1 collide, 0 do not collide, -1 not set."""
-    low = wp.min(a, b)
-    high = wp.max(a, b)
+    low, high = wp.min(a, b), wp.max(a, b)
     first = Int32(0)
     last = settings.filter_count
     while first < last:
@@ -77,8 +76,7 @@ def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32
     b = shapes.shape_link[shape_b]
     if a == b:
         return False
-    root_a = rigid_root(model, a)
-    root_b = rigid_root(model, b)
+    root_a, root_b = rigid_root(model, a), rigid_root(model, b)
     if root_a == root_b:
         return False
     if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):

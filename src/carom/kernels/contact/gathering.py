@@ -154,8 +154,7 @@ def find_new_points(
         Number of candidates written, 0 if the shapes are too far apart; `AT_ONCE` if the manifold does not
         gather its points.
     """
-    a = sides[0]
-    b = sides[1]
+    a, b = sides[0], sides[1]
     if is_single_sided(shapes, a) or is_single_sided(shapes, b):
         return AT_ONCE
     boxes = are_boxes(shapes, a, b)

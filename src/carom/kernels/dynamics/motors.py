@@ -145,15 +145,6 @@ def spherical_motor_rows(
         change -= motor[MOTOR_KP] * error[axis] * settings.joint_erp / settings.time_step
         change = unless_nan(change, bound)
         row = add_row(
-            model,
-            scratch,
-            world,
-            constraint,
-            row,
-            first + axis,
-            change,
-            effective_mass[axis],
-            -bound,
-            bound,
+            model, scratch, world, constraint, row, first + axis, change, effective_mass[axis], -bound, bound
         )
     return row

@@ -58,8 +58,7 @@ def move_single_body(
     inverse_mass = inverse_or_off(mass)
     rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
     inverse_inertia = turned_inertia(
-        rotation,
-        Vector3(inverse_or_off(moments[0]), inverse_or_off(moments[1]), inverse_or_off(moments[2])),
+        rotation, Vector3(inverse_or_off(moments[0]), inverse_or_off(moments[1]), inverse_or_off(moments[2]))
     )
 
     omega = base_omega(model, state, world, tree)

@@ -11,8 +11,7 @@ from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 @func
 def turned_about_z(rotation: Quaternion, angle: real) -> Quaternion:
     """A rotation followed by a rotation about its own z axis by `angle` [rad]."""
-    s = wp.sin(0.5 * angle)
-    c = wp.cos(0.5 * angle)
+    s, c = wp.sin(0.5 * angle), wp.cos(0.5 * angle)
     return Quaternion(
         rotation[0] * c + rotation[1] * s,
         rotation[1] * c - rotation[0] * s,
@@ -105,9 +104,7 @@ class Errors:
 @func
 def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Errors:
     """Fill `block_error` with the vectors from the ends to their targets; returns their lengths."""
-    distance = real(0.0)
-    angle = real(0.0)
-    squares = real(0.0)
+    distance, angle, squares = real(0.0), real(0.0), real(0.0)
     stride = 1 + oriented
     for end in range(sizes.ends):
         way = search.end_target_position[end] - end_position(chain, search, end)

@@ -108,14 +108,12 @@ def descend(
     `budget` poses are tried. Returns the errors at the end, and the number of poses tried.
     """
     blocks = (1 + oriented) * sizes.ends
-    tried = Int32(0)
-    slow = Int32(0)
+    tried, slow = Int32(0), Int32(0)
     left = errors
     growth = real(1.0)
     while tried < budget and slow < _SLOW_STEPS and (left.distance > threshold or left.angle > threshold):
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
-        attempt = Int32(0)
-        better = Int32(0)
+        attempt, better = Int32(0), Int32(0)
         while better == 0 and attempt < _TRIES and tried < budget:
             damping = growth * _DAMPING_BY_ERROR * left.squares + _LEAST_DAMPING
             bounded_step(sizes, chain, search, search.coordinate_now, blocks, damping)

@@ -28,8 +28,7 @@ def first_rate(sizes: MechanismSizes) -> Int32:
 @func
 def turned_about_z(r: Matrix3, angle: real) -> Matrix3:
     """The product of a rotation matrix and a rotation about z."""
-    s = wp.sin(angle)
-    c = wp.cos(angle)
+    s, c = wp.sin(angle), wp.cos(angle)
     return Matrix3(
         r[0, 0] * c + r[0, 1] * s, r[0, 1] * c - r[0, 0] * s, r[0, 2],
         r[1, 0] * c + r[1, 1] * s, r[1, 1] * c - r[1, 0] * s, r[1, 2],
@@ -177,8 +176,7 @@ def moved_on(
         if accelerations >= 0:
             change += vector_at(joints, accelerations + dof)
         return angular + own, change + wp.cross(angular, own), linear
-    joint_omega = Vector3(0.0, 0.0, 0.0)
-    joint_velocity = Vector3(0.0, 0.0, 0.0)
+    joint_omega, joint_velocity = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     for other in range(dof, dof + mechanism.node[node].dof_count):
         rate = joints[rates + other]
         joint_omega += mechanism.dof[other].angular * rate

@@ -114,8 +114,7 @@ def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Re
     """
     positions = POSE + 0
     acceleration = -vector_at(question, 0)
-    omega = Vector3(0.0, 0.0, 0.0)
-    alpha = Vector3(0.0, 0.0, 0.0)
+    omega, alpha = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     unused = real(0.0)
     if sizes.base_dofs > 0:
         positions += BASE_POSITIONS

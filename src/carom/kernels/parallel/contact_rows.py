@@ -29,9 +29,7 @@ def island_contacts_kernel(
         return
     if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != UNWRITTEN:
         return
-    units = Int32(0)
-    manifold_blocks = Int32(0)
-    torsion = Int32(0)
+    units, manifold_blocks, torsion = Int32(0), Int32(0), Int32(0)
     first_contact = pair_rows.tree_first_contact[world, root]
     if first_contact >= 0:
         units, manifold_blocks, torsion = write_units(

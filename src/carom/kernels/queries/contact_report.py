@@ -35,8 +35,7 @@ def report_contacts_kernel(
     listed = Int32(0)
     for row in range(count):
         shapes = contacts.contact_shapes[world, row]
-        first = shapes[2]
-        second = shapes[3]
+        first, second = shapes[2], shapes[3]
         as_is = fits(places, first, body_a, link_a) and fits(places, second, body_b, link_b)
         swapped = body_a >= 0 and fits(places, second, body_a, link_a) and fits(places, first, body_b, link_b)
         if as_is or swapped:
@@ -44,8 +43,7 @@ def report_contacts_kernel(
             point_b = contacts.contact_point_b[world, row]
             normal = contacts.contact_normal[world, row]
             if not as_is:
-                first = shapes[3]
-                second = shapes[2]
+                first, second = shapes[3], shapes[2]
                 point_a = contacts.contact_point_b[world, row]
                 point_b = contacts.contact_point_a[world, row]
                 normal = -normal

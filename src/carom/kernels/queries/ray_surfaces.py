@@ -30,8 +30,7 @@ def inverse_way(way: Vector3) -> Vector3:
 @func
 def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, last: real) -> real:
     """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if there is none up to `last`."""
-    one = wp.cw_mul(lower - start, inverse)
-    other = wp.cw_mul(upper - start, inverse)
+    one, other = wp.cw_mul(lower - start, inverse), wp.cw_mul(upper - start, inverse)
     enter = wp.max(wp.max(wp.min(one, other)), 0.0)
     leave = wp.min(wp.min(wp.max(one, other)), last)
     # Empty boxes have their lower corner above their upper one.
@@ -69,13 +68,7 @@ def ray_triangle(start: Vector3, way: Vector3, corners: Matrix3):
 
 @func
 def ray_mesh(
-    shapes: Shapes,
-    surface: Int32,
-    start: Vector3,
-    way: Vector3,
-    after: real,
-    inclusive: bool,
-    last: real,
+    shapes: Shapes, surface: Int32, start: Vector3, way: Vector3, after: real, inclusive: bool, last: real
 ):
     """Ray against a triangle mesh: first hit that comes after `after` (see `comes_after`), up to `last`."""
     region = Region()
@@ -110,13 +103,7 @@ def time_to_leave(place: real, speed: real, cell: Int32) -> real:
 
 @func
 def ray_field(
-    shapes: Shapes,
-    surface: Int32,
-    start: Vector3,
-    way: Vector3,
-    after: real,
-    inclusive: bool,
-    last: real,
+    shapes: Shapes, surface: Int32, start: Vector3, way: Vector3, after: real, inclusive: bool, last: real
 ):
     """Ray against a height field, as `ray_mesh`; goes from cell to cell under the ray."""
     center = shapes.shape_center[surface]

@@ -173,8 +173,7 @@ def first_hits(
     # Planes are tested first, because most rays that hit nothing else hit the ground.
     first = count
     end = count + pairs.count_pairs[world, PLANES]
-    node = Int32(1)
-    searching = Int32(1)
+    node, searching = Int32(1), Int32(1)
     while searching == 1:
         for place in range(first, end):
             shape = pairs.shape_order[world, place]

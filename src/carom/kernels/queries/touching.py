@@ -34,8 +34,7 @@ def touching_kernel(
     for contact in range(contacts.count_contacts[world, THERE]):
         a = contacts.contact_shapes[world, contact][2]
         b = contacts.contact_shapes[world, contact][3]
-        is_a = is_between(touching, a, b, anything)
-        is_b = is_between(touching, b, a, anything)
+        is_a, is_b = is_between(touching, a, b, anything), is_between(touching, b, a, anything)
         if is_a:
             touching.place_touching[links * world + touching.link_place[a]] = wp.uint8(1)
         if is_b:

@@ -151,13 +151,11 @@ def box_face_points(
     is the largest distance of a contact [m]; `polygon` and `workspace` are for corners.
     """
     axis = main_axis(wp.transpose(frame) * outward)
-    across1 = Int32(wp.where(axis == 0, 1, 0))
-    across2 = Int32(wp.where(axis == 2, 1, 2))
+    across1, across2 = Int32(wp.where(axis == 0, 1, 0)), Int32(wp.where(axis == 2, 1, 2))
     to_face = wp.matrix_from_rows(column(frame, across1), column(frame, across2), outward)
     local = wp.transpose(other_frame) * outward
     facing = incident_axis(local)
-    side1 = Int32(wp.where(facing == 0, 1, 0))
-    side2 = Int32(wp.where(facing == 2, 1, 2))
+    side1, side2 = Int32(wp.where(facing == 0, 1, 0)), Int32(wp.where(facing == 2, 1, 2))
     inward = column(other_frame, facing) * toward(local[facing], other_half[facing])
     center = to_face * (other_position - position - inward)
     center[2] -= half[axis]

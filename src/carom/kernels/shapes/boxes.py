@@ -86,10 +86,8 @@ def box_axis(
     while pair < 9:
         i = pair // 3
         j = pair % 3
-        j1 = (j + 1) % 3
-        j2 = (j + 2) % 3
-        i1 = (i + 1) % 3
-        i2 = (i + 2) % 3
+        j1, j2 = (j + 1) % 3, (j + 2) % 3
+        i1, i2 = (i + 1) % 3, (i + 2) % 3
         length_sq = turn[i1, j] * turn[i1, j] + turn[i2, j] * turn[i2, j]
         if length_sq > PARALLEL_SQ:
             # Offset and extents of the boxes along the cross product of axis i of a with axis j of b.
@@ -135,8 +133,7 @@ def box_edge_point(
     middle_a = center_a
     middle_b = center_b
     for k in range(3):
-        side_a = column(frame_a, k)
-        side_b = column(frame_b, k)
+        side_a, side_b = column(frame_a, k), column(frame_b, k)
         if k != i:
             middle_a += side_a * toward(-wp.dot(side_a, normal), half_a[k])
         if k != j:

@@ -18,8 +18,7 @@ def box_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32)
     """Write the corners of a box's face most aligned with `direction`; returns its outward normal."""
     local = wp.transpose(core.frame) * direction
     axis = main_axis(local)
-    u = (axis + 1) % 3
-    v = (axis + 2) % 3
+    u, v = (axis + 1) % 3, (axis + 2) % 3
     sign = toward(local[axis], 1.0)
     normal = column(core.frame, axis) * sign
     # With this sign of the second edge the corners are counter-clockwise as seen from outside.
@@ -41,10 +40,8 @@ def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, worl
     carry more of it.
     """
     axis = main_axis(wp.transpose(core.frame) * outward)
-    u = Int32(1) if axis == 0 else Int32(0)
-    v = Int32(1) if axis == 2 else Int32(2)
-    edge_u = column(core.frame, u) * core.size[u]
-    edge_v = column(core.frame, v) * core.size[v]
+    u, v = Int32(1) if axis == 0 else Int32(0), Int32(1) if axis == 2 else Int32(2)
+    edge_u, edge_v = column(core.frame, u) * core.size[u], column(core.frame, v) * core.size[v]
     center = core.position + outward * core.size[axis]
     polygon[world, 0] = center - edge_u - edge_v
     polygon[world, 1] = center - edge_u + edge_v

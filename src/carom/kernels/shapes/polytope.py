@@ -297,8 +297,7 @@ def overlap(
         if plane_height(plane, w) <= PRECISION:
             growing = Int32(0)
         else:
-            edge_count = Int32(0)
-            kept = Int32(0)
+            edge_count, kept = Int32(0), Int32(0)
             for face in range(face_count):
                 seen = faces[world, face]
                 if plane_height(planes[world, face], w) > VISIBLE:

@@ -35,8 +35,7 @@ def nearest_places(offset: Vector3, half_a: Vector3, half_b: Vector3):
     aa = wp.length_sq(half_a)
     bb = wp.length_sq(half_b)
     ab = wp.dot(half_a, half_b)
-    a_offset = wp.dot(half_a, offset)
-    b_offset = wp.dot(half_b, offset)
+    a_offset, b_offset = wp.dot(half_a, offset), wp.dot(half_b, offset)
     determinant = aa * bb - ab * ab
     place_a = real(0.0)
     if determinant > PARALLEL * aa * bb:

@@ -67,9 +67,7 @@ def region_box(shapes: Shapes, region: Region, surface: Int32, node: Int32) -> b
 @func
 def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int32) -> Matrix3:
     """Corners of a triangle as columns, counter-clockwise from outside, in the frame of the surface."""
-    a = Int32(0)
-    b = Int32(0)
-    c = Int32(0)
+    a, b, c = Int32(0), Int32(0), Int32(0)
     if shapes.shape_kind[surface] == TRIANGLES:
         face = shapes.shape_first_face[surface] + cursor - shapes.shape_leaf_count[surface]
         first = shapes.face_first_corner[face]

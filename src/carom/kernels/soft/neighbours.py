@@ -62,9 +62,7 @@ def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size
 @func
 def grid_size(soft: SoftModel, state: State, world: Int32) -> real:
     """Size of the cells [m]: mean length of the faces' first edges, plus four times the largest thickness."""
-    total = real(0.0)
-    count = real(0.0)
-    thickness = real(0.0)
+    total, count, thickness = real(0.0), real(0.0), real(0.0)
     for body in range(soft.count_soft[BODIES]):
         first = soft.soft[body].first_face
         thickness = maximum(thickness, soft.soft[body].thickness)

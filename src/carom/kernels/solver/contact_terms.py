@@ -153,8 +153,7 @@ def contact_terms(
     Initial impulses are the last impulses times `share`.
     """
     pair = contacts.contact_shapes[world, contact]
-    a = pair[2]
-    b = pair[3]
+    a, b = pair[2], pair[3]
     direction1 = contacts.contact_direction1[world, contact]
     direction2 = contacts.contact_direction2[world, contact]
     lateral1 = scaled_direction(state, shapes, world, a, b, direction1)

@@ -47,8 +47,7 @@ def write_jacobian(
     Returns:
         Inverse mass of the row for this tree, and its present velocity.
     """
-    inverse_mass = real(0.0)
-    velocity = real(0.0)
+    inverse_mass, velocity = real(0.0), real(0.0)
     blocks = tree_blocks(model, tree)
     if blocks > 0:
         fill_zero(pair_rows.jacobian_row, start, world, blocks)
@@ -80,8 +79,7 @@ def place_row(
     model: Model, pair_rows: PairRows, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
 ) -> Int32:
     """Store the trees of a row and the first block of its Jacobian; returns the next free block."""
-    blocks_a = tree_blocks(model, tree_a)
-    blocks_b = tree_blocks(model, tree_b)
+    blocks_a, blocks_b = tree_blocks(model, tree_a), tree_blocks(model, tree_b)
     delta_a = model.tree[tree_a].first_delta if tree_a >= 0 else Int32(0)
     delta_b = model.tree[tree_b].first_delta if tree_b >= 0 else Int32(0)
     pair_rows.row_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
@@ -200,10 +198,8 @@ def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: In
     square = first * first + second * second
     if square >= bound * bound:
         scale = bound / wp.sqrt(square) if square > 0.0 else 0.0
-        first = first * scale
-        second = second * scale
-    change1 = first - terms1.impulse
-    change2 = second - terms2.impulse
+        first, second = first * scale, second * scale
+    change1, change2 = first - terms1.impulse, second - terms2.impulse
     pair_rows.row_terms[world, row].impulse = first
     pair_rows.row_terms[world, row + 1].impulse = second
     push_row(scratch, pair_rows, world, place, start1, change1)
@@ -232,8 +228,7 @@ def write_jacobians(
     Returns:
         Inverse mass and relative velocity.
     """
-    inverse_mass = real(0.0)
-    velocity = real(0.0)
+    inverse_mass, velocity = real(0.0), real(0.0)
     side = Int32(0)
     while side < 2:
         point = point_a

@@ -138,8 +138,7 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
             second -= change1 * delassus[2 * i, 2 * i + 1]
             change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
         else:
-            change1 = real(0.0)
-            change2 = real(0.0)
+            change1, change2 = real(0.0), real(0.0)
         change[2 * i] = change1
         change[2 * i + 1] = change2
         wanted -= change1 * delassus[2 * i] + change2 * delassus[2 * i + 1]

@@ -114,8 +114,7 @@ def relax_contact_friction(
             last = row + 0 if kind == SPINNING_ROW else row + 1
             while row <= last:
                 change = maximum(
-                    wp.abs(change),
-                    wp.abs(relax_within(scratch, pair_rows, world, row, -bound, bound)),
+                    wp.abs(change), wp.abs(relax_within(scratch, pair_rows, world, row, -bound, bound))
                 )
                 row += 1
     return change * change

@@ -81,10 +81,7 @@ def write_units(
         Number of units, negative if some did not fit; number of manifold blocks; 1 if some contact has
         rolling or spinning friction.
     """
-    units = Int32(0)
-    manifold_blocks = Int32(0)
-    torsion = Int32(0)
-    next_matrices = Int32(0)
+    units, manifold_blocks, torsion, next_matrices = Int32(0), Int32(0), Int32(0), Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]

@@ -85,14 +85,12 @@ def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
         The direction of a translational row, else 0; the rotation axis of a rotational row, else 0; the axis'
         column in `axes`, -1 for a translational row.
     """
-    linear = Vector3(0.0, 0.0, 0.0)
-    angular = Vector3(0.0, 0.0, 0.0)
+    linear, angular = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     axis = Int32(-1)
     linear_count = Int32(3)
     first_angle = Int32(0)
     if kind == USER_PRISMATIC:
-        linear_count = Int32(2)
-        first_angle = Int32(2)
+        linear_count, first_angle = Int32(2), Int32(2)
     if i < linear_count:
         linear = Vector3(directions[i, 0], directions[i, 1], directions[i, 2])
     else:
