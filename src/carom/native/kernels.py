@@ -13,10 +13,7 @@ from typing import Any
 
 from carom.native.library import Library, library
 
-_SCALARS: Mapping[str, Any] = {
-    "int32": ctypes.c_int32,
-    "float64": ctypes.c_double,
-}
+_SCALARS: Mapping[str, Any] = {"int32": ctypes.c_int32, "float64": ctypes.c_double}
 
 
 class Kernel:

@@ -53,8 +53,5 @@ def maths_sources(functions: Iterable[str], zig_library: Path) -> list[Path]:
 
 def include_folders(zig_library: Path) -> list[Path]:
     """The folders of the sources' headers, our own first."""
-    return [
-        _HERE,
-        zig_library / "libc" / "musl" / "src" / "internal",
-        zig_library / "libc" / "musl" / "src" / "math",
-    ]
+    musl = zig_library / "libc" / "musl" / "src"
+    return [_HERE, musl / "internal", musl / "math"]

@@ -141,19 +141,9 @@ def _generated_code(parts: _Build) -> Path:
             "PYTHONPATH": str(parts.root),
             "WARP_CACHE_PATH": str(work / "warp"),
         }
-        command = [
-            sys.executable,
-            "-m",
-            "carom.native.building.codegen",
-            parts.digest,
-            str(code),
-            *parts.modules,
-        ]
-        run_all(
-            [Job("the kernels' C++", command, lambda: None)],
-            environment,
-            _shows(parts.progress, "generating code"),
-        )
+        program = [sys.executable, "-m", "carom.native.building.codegen"]
+        job = Job("the kernels' C++", [*program, parts.digest, str(code), *parts.modules], lambda: None)
+        run_all([job], environment, _shows(parts.progress, "generating code"))
         keep(code, folder)
     return folder
 
