@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.kinematics import base_velocity
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
@@ -14,7 +15,9 @@ UNBOUNDED = real(1.0e18)
 @func
 def local_center(shapes: Shapes, shape: Int32) -> Vector3:
     """Centre of a shape's bounds in the shape frame."""
-    return shapes.shape_center[shape] if shapes.shape_kind[shape] > PLANE else Vector3(0.0, 0.0, 0.0)
+    if shapes.shape_kind[shape] > PLANE:
+        return shapes.shape_center[shape]
+    return Vector3(0.0, 0.0, 0.0)
 
 
 @func
@@ -98,13 +101,8 @@ def look_ahead(
     now = wp.transform_get_translation(state.link_pose[world, link] * shapes.shape_pose[shape])
     before = wp.transform_get_translation(scratch.link_pose[world, link] * shapes.shape_pose[shape])
     motion = wp.length(now - before)
-    first = model.tree[shapes.shape_tree[shape]].first_velocity
-    velocity = Vector3(
-        state.dof_velocity[world, first + 3],
-        state.dof_velocity[world, first + 4],
-        state.dof_velocity[world, first + 5],
-    )
-    motion = maximum(motion, wp.length(velocity) * settings.time_step)
+    tree = shapes.shape_tree[shape]
+    motion = maximum(motion, wp.length(base_velocity(model, state, world, tree)) * settings.time_step)
     return motion if motion > 0.5 * radius and motion < UNBOUNDED else 0.0
 
 

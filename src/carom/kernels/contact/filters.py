@@ -70,6 +70,13 @@ def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
 
 
 @func
+def links_may_collide(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
+    """Whether two links of different bodies may collide, by user filters, groups and masks."""
+    wanted = pair_filter(shapes, settings, a, b)
+    return wanted == 1 if wanted >= 0 else masks_match(shapes, settings, a, b)
+
+
+@func
 def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, shape_b: Int32) -> bool:
     """Whether two shapes may collide, by self-collision flags, user filters, groups and masks."""
     a = shapes.shape_link[shape_a]
@@ -81,5 +88,4 @@ def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32
         return False
     if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):
         return False
-    wanted = pair_filter(shapes, settings, a, b)
-    return wanted == 1 if wanted >= 0 else masks_match(shapes, settings, a, b)
+    return links_may_collide(shapes, settings, a, b)

@@ -40,13 +40,9 @@ def unless_nan(value: real, other: real) -> real:
 def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
     """Add viscous joint damping as an explicit torque, from the rates before the step."""
     subtract_products(
-        state.dof_torque,
-        model.dof_damping,
-        state.dof_velocity,
-        model.tree[tree].first_dof,
-        world,
+        state.dof_torque, model.dof_damping, state.dof_velocity, model.tree[tree].first_dof, world,
         model.tree[tree].dof_count,
-    )
+    )  # fmt: skip
 
 
 @func

@@ -72,6 +72,16 @@ def inverse_or_off(inverse_mass: real) -> real:
 
 
 @func
+def inverses_or_off(inverse_masses: Vector3) -> Vector3:
+    """As `inverse_or_off`, for three rows or moments of inertia."""
+    return Vector3(
+        inverse_or_off(inverse_masses[0]),
+        inverse_or_off(inverse_masses[1]),
+        inverse_or_off(inverse_masses[2]),
+    )
+
+
+@func
 def dof_effective_mass(model: Model, scratch: Scratch, world: Int32, tree: Int32, dof: Int32) -> real:
     """Effective mass of a row on a single dof."""
     i = dof - model.tree[tree].first_dof
@@ -124,5 +134,4 @@ def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: In
     first = model.link[link].first_dof
     own = angular_inverse_masses(model, scratch, world, tree, first + 2, first)
     parents = angular_inverse_masses(model, scratch, world, tree, model.dof[first].parent, first)
-    total = own + parents
-    return Vector3(inverse_or_off(total[0]), inverse_or_off(total[1]), inverse_or_off(total[2]))
+    return inverses_or_off(own + parents)

@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation
+from carom.kernels.mechanism.dynamics import quaternion_at
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
@@ -46,9 +47,7 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
         elif kind == PRISMATIC:
             origin += z_axis(rotation) * (chain.joint[joint].slide * coordinates[q])
         elif kind == SPHERICAL:
-            rotation = rotation * Quaternion(
-                coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3]
-            )
+            rotation = rotation * quaternion_at(coordinates, q)
         elif kind == PLANAR:
             origin += wp.quat_rotate(
                 rotation,
@@ -181,8 +180,20 @@ def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
     angle = wp.length(rate)
     scale = wp.sin(0.5 * angle) / angle if angle > 1.0e-9 else 0.5
     change = Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * angle))
-    now = Quaternion(coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3])
-    return wp.normalize(now * change)
+    return wp.normalize(quaternion_at(coordinates, q) * change)
+
+
+@func
+def turn_joints(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, result: Reals):
+    """Turn the spherical joints from the positions `start` on by the steps of their dofs."""
+    for joint in range(sizes.joints):
+        if chain.joint[joint].kind == SPHERICAL:
+            dof = chain.joint[joint].first_dof
+            q = chain.joint[joint].first_coordinate
+            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
+            quaternion = turned(start, q, rate)
+            for k in range(4):
+                result[q + k] = quaternion[k]
 
 
 @func
@@ -192,14 +203,7 @@ def advance(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, resul
         coordinate = chain.dof_coordinate[dof]
         if coordinate >= 0:
             result[coordinate] = start[coordinate] + search.dof[dof].step
-    for joint in range(sizes.joints):
-        if chain.joint[joint].kind == SPHERICAL:
-            dof = chain.joint[joint].first_dof
-            q = chain.joint[joint].first_coordinate
-            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
-            quaternion = turned(start, q, rate)
-            for k in range(4):
-                result[q + k] = quaternion[k]
+    turn_joints(sizes, chain, search, start, result)
 
 
 @func

@@ -15,14 +15,13 @@ from carom.kernels.inverse_kinematics.kinematics import (
     fill_jacobian,
     measure_errors,
     place,
-    turned,
+    turn_joints,
 )
 from carom.kernels.inverse_kinematics.selective_step import selective_step
 from carom.kernels.inverse_kinematics.steps import bounded_step, damped_step, null_space_step
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
-from carom.layouts.codes import SPHERICAL
 
 # Iteration ends when the largest change of a joint is smaller than this.
 _NO_STEP = real(1e-14)
@@ -159,14 +158,7 @@ def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed:
             search.coordinate_now[coordinate] = wp.clamp(
                 search.coordinate_start[coordinate] + offset, low, high
             )
-    for joint in range(sizes.joints):
-        if chain.joint[joint].kind == SPHERICAL:
-            dof = chain.joint[joint].first_dof
-            q = chain.joint[joint].first_coordinate
-            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
-            quaternion = turned(search.coordinate_start, q, rate)
-            for k in range(4):
-                search.coordinate_now[q + k] = quaternion[k]
+    turn_joints(sizes, chain, search, search.coordinate_start, search.coordinate_now)
 
 
 @func

@@ -7,7 +7,7 @@ R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5 and 6.
 import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation, rotation_matrix
-from carom.kernels.structs import MechanismSizes, MechanismTable
+from carom.kernels.structs import DofAxis, MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Matrix3, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 from carom.layouts.mechanism import BASE_MOTION
@@ -17,6 +17,12 @@ from carom.layouts.mechanism import BASE_MOTION
 def vector_at(numbers: Reals, first: Int32) -> Vector3:
     """The vector in entries `first` to `first + 2` of an array."""
     return Vector3(numbers[first], numbers[first + 1], numbers[first + 2])
+
+
+@func
+def quaternion_at(numbers: Reals, first: Int32) -> Quaternion:
+    """The quaternion in entries `first` to `first + 3` of an array."""
+    return Quaternion(numbers[first], numbers[first + 1], numbers[first + 2], numbers[first + 3])
 
 
 @func
@@ -55,10 +61,7 @@ def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
     if kind == REVOLUTE:
         return turned_about_z(turn, mechanism.input[q])
     if kind == SPHERICAL:
-        rotation = Quaternion(
-            mechanism.input[q], mechanism.input[q + 1], mechanism.input[q + 2], mechanism.input[q + 3]
-        )
-        return turn * rotation_matrix(wp.normalize(rotation))
+        return turn * rotation_matrix(wp.normalize(quaternion_at(mechanism.input, q)))
     if kind == PLANAR:
         axis = wp.normalize(mechanism.dof[mechanism.node[node].first_dof].angular)
         return turn * rotation_matrix(axis_rotation(axis, mechanism.input[q]))
@@ -99,6 +102,12 @@ def place_nodes(mechanism: MechanismTable, count: Int32):
 
 
 @func
+def along(axis: DofAxis, torque: Vector3, force: Vector3) -> real:
+    """Generalized force of a dof with a torque and a force."""
+    return wp.dot(axis.angular, torque) + wp.dot(axis.linear, force)
+
+
+@func
 def newton_euler(
     sizes: MechanismSizes,
     mechanism: MechanismTable,
@@ -121,7 +130,7 @@ def newton_euler(
     mechanism.motion[0].torque = Vector3(0.0, 0.0, 0.0)
     # Reaction forces on a fixed base are not computed.
     if sizes.base_dofs > 0:
-        keep_forces(mechanism, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
+        keep_forces(mechanism, 0, omega, alpha, acceleration)
     place_nodes(mechanism, sizes.nodes)
     for node in range(1, sizes.nodes):
         parent = mechanism.node[node].parent
@@ -134,8 +143,16 @@ def newton_euler(
             mechanism, node, omega, alpha, acceleration, joints, rates, accelerations
         )
         keep_motion(mechanism, node, omega, alpha, acceleration)
-        keep_forces(mechanism, node, omega, alpha, acceleration, swing_matrix(omega, alpha))
+        keep_forces(mechanism, node, omega, alpha, acceleration)
     gather_forces(sizes, mechanism)
+
+
+@func
+def newton_euler_of_input(sizes: MechanismSizes, mechanism: MechanismTable, accelerations: Int32):
+    """As `newton_euler`, for the motion of the base and the rates in `input`."""
+    numbers = mechanism.input
+    omega, alpha, acceleration = vector_at(numbers, 0), vector_at(numbers, 3), vector_at(numbers, 6)
+    newton_euler(sizes, mechanism, omega, alpha, acceleration, numbers, first_rate(sizes), accelerations)
 
 
 @func
@@ -215,14 +232,10 @@ def keep_motion(
 
 @func
 def keep_forces(
-    mechanism: MechanismTable,
-    node: Int32,
-    omega: Vector3,
-    alpha: Vector3,
-    acceleration: Vector3,
-    swing: Matrix3,
+    mechanism: MechanismTable, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3
 ):
     """Store the force, and the torque about its origin, that a node needs for its motion."""
+    swing = swing_matrix(omega, alpha)
     moment = mechanism.node[node].moment
     inertia = mechanism.node[node].inertia
     mechanism.motion[node].force = mechanism.node[node].mass * acceleration + swing * moment
@@ -251,9 +264,7 @@ def gather_forces(sizes: MechanismSizes, mechanism: MechanismTable):
                 mechanism.output[dof + k] = torque[k]
         else:
             for other in range(dof, dof + mechanism.node[node].dof_count):
-                mechanism.output[other] = wp.dot(mechanism.dof[other].angular, torque) + wp.dot(
-                    mechanism.dof[other].linear, force
-                )
+                mechanism.output[other] = along(mechanism.dof[other], torque, force)
         if node > 0:
             parent = mechanism.node[node].parent
             turn = mechanism.motion[node].turn
@@ -324,9 +335,7 @@ def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
             while carrier >= 0:
                 first_other = mechanism.node[carrier].first_dof
                 for other in range(first_other, first_other + mechanism.node[carrier].dof_count):
-                    value = wp.dot(mechanism.axis[other].angular, torque) + wp.dot(
-                        mechanism.axis[other].linear, force
-                    )
+                    value = along(mechanism.axis[other], torque, force)
                     mechanism.matrix[dof * sizes.dofs + other] = value
                     mechanism.matrix[other * sizes.dofs + dof] = value
                 carrier = mechanism.node[carrier].parent
@@ -350,18 +359,7 @@ def shift(c: Vector3, moment: Vector3) -> Matrix3:
 @kernel
 def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
     """Compute in `output` the generalized forces that cause the motion in `input`."""
-    rates = first_rate(sizes)
-    motion = mechanism.input
-    newton_euler(
-        sizes,
-        mechanism,
-        vector_at(motion, 0),
-        vector_at(motion, 3),
-        vector_at(motion, 6),
-        motion,
-        rates,
-        rates + sizes.dofs - sizes.base_dofs,
-    )
+    newton_euler_of_input(sizes, mechanism, first_rate(sizes) + sizes.dofs - sizes.base_dofs)
 
 
 @kernel

@@ -5,7 +5,7 @@ import math
 import warp as wp
 
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.mechanism.dynamics import newton_euler, turned_back, vector_at
+from carom.kernels.mechanism.dynamics import newton_euler, quaternion_at, turned_back, vector_at
 from carom.kernels.structs import MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.codes import BASE_POSITIONS, SPHERICAL
@@ -93,8 +93,7 @@ def take_positions(
 def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
     """Gravity in the axes of a free base; not finite if the length of its quaternion is 0 or NaN."""
     gravity = vector_at(question, 0)
-    q = POSE + 3
-    turn = Quaternion(question[q], question[q + 1], question[q + 2], question[q + 3])
+    turn = quaternion_at(question, POSE + 3)
     if not wp.length_sq(turn) > 0.0:
         return Vector3(NOT_FINITE, NOT_FINITE, NOT_FINITE)
     if opposite_order == 1:

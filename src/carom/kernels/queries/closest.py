@@ -53,7 +53,6 @@ def nearest_in_order(
     if kind_a == PLANE or kind_a >= TRIANGLES:
         return 0
     core_a = core_of(shapes, pairs, world, a)
-    distance = max_distance + 1.0
     if kind_b >= TRIANGLES:
         distance, normal, point = nearest_on_surface(shapes, pairs, world, a, b, core_a, max_distance)
         if distance > max_distance:

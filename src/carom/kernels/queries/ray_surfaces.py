@@ -6,6 +6,7 @@ Rays hit triangles from both sides; the normal is that of the side hit.
 import warp as wp
 
 from carom.kernels.contact.hierarchy import next_node
+from carom.kernels.maths.rotation import column
 from carom.kernels.queries.ray_solids import MISS
 from carom.kernels.shapes.triangles import Region, cell_at, triangle_corners
 from carom.kernels.structs import Shapes
@@ -46,9 +47,7 @@ def comes_after(fraction: real, after: real, inclusive: bool) -> bool:
 @func
 def ray_triangle(start: Vector3, way: Vector3, corners: Matrix3):
     """Ray against a triangle whose corners are columns."""
-    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
-    b = Vector3(corners[0, 1], corners[1, 1], corners[2, 1])
-    c = Vector3(corners[0, 2], corners[1, 2], corners[2, 2])
+    a, b, c = column(corners, 0), column(corners, 1), column(corners, 2)
     across = wp.cross(b - a, c - a)
     slope = wp.dot(across, way)
     height = wp.dot(across, start - a)
@@ -73,8 +72,7 @@ def ray_mesh(
     """Ray against a triangle mesh: first hit that comes after `after` (see `comes_after`), up to `last`."""
     region = Region()
     leaf_count = shapes.shape_leaf_count[surface]
-    best = real(MISS)
-    best_normal = Vector3(0.0, 0.0, 0.0)
+    best, best_normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     limit = last
     inverse = inverse_way(way)
     node = Int32(1)
@@ -108,8 +106,7 @@ def ray_field(
     """Ray against a height field, as `ray_mesh`; goes from cell to cell under the ray."""
     center = shapes.shape_center[surface]
     size = shapes.shape_size[surface]
-    best = real(MISS)
-    best_normal = Vector3(0.0, 0.0, 0.0)
+    best, best_normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     now = box_entry(start, inverse_way(way), center - size, center + size, last)
     columns = shapes.shape_columns[surface] - 1
     rows = shapes.shape_vertex_count[surface] // shapes.shape_columns[surface] - 1

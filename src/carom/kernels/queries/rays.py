@@ -54,8 +54,7 @@ def ray_shape(
     position = pairs.shape_position[world, shape]
     kind = shapes.shape_kind[shape]
     size = shapes.shape_size[shape]
-    fraction = real(MISS)
-    normal = Vector3(0.0, 0.0, 0.0)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     frame = pairs.shape_frame[world, shape]
     if kind == SPHERE:
         fraction, normal = ray_ball(start, way, position, size[0])
@@ -73,13 +72,9 @@ def ray_shape(
             fraction, normal = ray_cylinder(origin, along, size[0], size[1])
         elif kind == HULL:
             fraction, normal = ray_hull(
-                origin,
-                along,
-                shapes.face_plane,
-                shapes.shape_first_face[shape],
-                shapes.shape_face_count[shape],
-                shapes.shape_margin[shape],
-            )
+                origin, along, shapes.face_plane, shapes.shape_first_face[shape],
+                shapes.shape_face_count[shape], shapes.shape_margin[shape],
+            )  # fmt: skip
         elif kind == TRIANGLES:
             fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
         else:

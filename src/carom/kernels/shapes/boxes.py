@@ -4,6 +4,7 @@ import math
 
 import warp as wp
 
+from carom.kernels.contact.bounds import magnitudes
 from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import toward
@@ -55,11 +56,7 @@ def box_axis(
     """
     turn = wp.transpose(frame_a) * frame_b
     t = wp.transpose(frame_a) * offset
-    size = Matrix3(
-        wp.abs(turn[0, 0]), wp.abs(turn[0, 1]), wp.abs(turn[0, 2]),
-        wp.abs(turn[1, 0]), wp.abs(turn[1, 1]), wp.abs(turn[1, 2]),
-        wp.abs(turn[2, 0]), wp.abs(turn[2, 1]), wp.abs(turn[2, 2]),
-    )  # fmt: skip
+    size = magnitudes(turn)
     gaps_a = wp.abs(t) - half_a - size * half_b
     t_in_b = wp.transpose(turn) * t
     gaps_b = wp.abs(t_in_b) - half_b - wp.transpose(size) * half_a

@@ -71,18 +71,9 @@ def nearest_or_deepest(
         normal = (point_a - point_b) / wp.length(point_a - point_b)
     else:
         depth, normal, point_a, point_b = overlap(
-            core_a,
-            core_b,
-            shapes.vertex_position,
-            pairs.polytope_point,
-            pairs.polytope_point_a,
-            pairs.polytope_plane,
-            pairs.polytope_face,
-            pairs.polytope_edge,
-            world,
-            start,
-            point_a,
-        )
+            core_a, core_b, shapes.vertex_position, pairs.polytope_point, pairs.polytope_point_a,
+            pairs.polytope_plane, pairs.polytope_face, pairs.polytope_edge, world, start, point_a,
+        )  # fmt: skip
         distance = -depth
     return distance, normal, point_a, point_b
 
@@ -95,18 +86,10 @@ def face_towards(
     if core.kind == BOX:
         return box_face(core, direction, polygon, world), Int32(4)
     normal, count = supporting_face(
-        core,
-        shapes.shape_first_face[shape],
-        shapes.shape_face_count[shape],
-        shapes.vertex_position,
-        shapes.face_plane,
-        shapes.face_first_corner,
-        shapes.face_corner_count,
-        shapes.corner_vertex,
-        direction,
-        polygon,
-        world,
-    )
+        core, shapes.shape_first_face[shape], shapes.shape_face_count[shape], shapes.vertex_position,
+        shapes.face_plane, shapes.face_first_corner, shapes.face_corner_count, shapes.corner_vertex,
+        direction, polygon, world,
+    )  # fmt: skip
     return normal, count
 
 

@@ -64,7 +64,9 @@ def segment_half(core: Core) -> Vector3:
 @func
 def toward(value: real, size: real) -> real:
     """`size` with the sign of `value`."""
-    return -size if value < 0.0 else size
+    if value < 0.0:
+        return -size
+    return size
 
 
 @func

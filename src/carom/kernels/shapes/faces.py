@@ -83,43 +83,6 @@ def cylinder_feature(core: Core, direction: Vector3, polygon: Vector3Rows, world
 
 
 @func
-def hull_face(
-    core: Core,
-    first_face: Int32,
-    face_count: Int32,
-    vertex_position: Vectors3,
-    face_plane: Vectors4,
-    face_first_corner: Ints,
-    face_corner_count: Ints,
-    corner_vertex: Ints,
-    direction: Vector3,
-    polygon: Vector3Rows,
-    world: Int32,
-):
-    """Write the corners of a hull's face most aligned with `direction`; returns its normal and their number.
-
-    If a face has more corners than fit, corners are left out at even intervals.
-    """
-    local = wp.transpose(core.frame) * direction
-    best = first_face
-    most = real(-2.0)
-    for face in range(first_face, first_face + face_count):
-        plane = face_plane[face]
-        along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
-        if along > most:
-            most = along
-            best = face
-    plane = face_plane[best]
-    corners = face_corner_count[best]
-    kept = wp.min(corners, polygon.shape[1] // 2)
-    first = face_first_corner[best]
-    for i in range(kept):
-        vertex = corner_vertex[first + (i * corners) // kept]
-        polygon[world, i] = core.position + core.frame * vertex_position[vertex]
-    return core.frame * Vector3(plane[0], plane[1], plane[2]), kept
-
-
-@func
 def triangle_normal(core: Core) -> Vector3:
     """Unit normal of a triangle, on the side from which its corners are counter-clockwise."""
     a = column(core.frame, 0)
@@ -169,11 +132,24 @@ def supporting_face(
         normal, count = cylinder_feature(core, direction, polygon, world)
         return normal, count
     if core.kind == HULL:
-        normal, count = hull_face(
-            core, first_face, face_count, vertex_position, face_plane, face_first_corner,
-            face_corner_count, corner_vertex, direction, polygon, world,
-        )  # fmt: skip
-        return normal, count
+        local = wp.transpose(core.frame) * direction
+        best = first_face
+        most = real(-2.0)
+        for face in range(first_face, first_face + face_count):
+            plane = face_plane[face]
+            along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
+            if along > most:
+                most = along
+                best = face
+        plane = face_plane[best]
+        corners = face_corner_count[best]
+        # If there are more corners than fit, some are left out at even intervals.
+        kept = wp.min(corners, polygon.shape[1] // 2)
+        first = face_first_corner[best]
+        for i in range(kept):
+            vertex = corner_vertex[first + (i * corners) // kept]
+            polygon[world, i] = core.position + core.frame * vertex_position[vertex]
+        return core.frame * Vector3(plane[0], plane[1], plane[2]), kept
     if core.kind == TRIANGLES:
         normal = triangle_face(core, direction, polygon, world)
         return normal, Int32(3)

@@ -60,11 +60,7 @@ def add_corner(
 @func
 def axis_direction(side: Int32, x: Vector3, y: Vector3, z: Vector3) -> Vector3:
     """Direction number `side` of x, -x, y, -y, z, -z, counted from 0."""
-    direction = x
-    if side // 2 == 1:
-        direction = y
-    elif side // 2 == 2:
-        direction = z
+    direction = x if side < 2 else y if side < 4 else z
     return -direction if side % 2 == 1 else direction
 
 
@@ -133,55 +129,36 @@ def first_tetrahedron(
     x = Vector3(1.0, 0.0, 0.0)
     y = Vector3(0.0, 1.0, 0.0)
     z = Vector3(0.0, 0.0, 1.0)
+    line = x
     first = add_corner(core_a, core_b, vertex_position, points, points_a, world, 0, start)
-    most = THIN
-    best = Int32(-1)
-    for side in range(6):
-        w = add_corner(
-            core_a, core_b, vertex_position, points, points_a, world, 1, axis_direction(Int32(side), x, y, z)
-        )
-        if wp.length(w - first) > most:
-            most = wp.length(w - first)
-            best = Int32(side)
-    if best < 0:
-        return Int32(1), start
-    second = add_corner(
-        core_a, core_b, vertex_position, points, points_a, world, 1, axis_direction(best, x, y, z)
-    )
-
-    line = wp.normalize(second - first)
-    x = any_perpendicular(line)
-    y = wp.cross(line, x)
-    most = THIN
-    best = Int32(-1)
-    for side in range(4):
-        w = add_corner(
-            core_a, core_b, vertex_position, points, points_a, world, 2, axis_direction(Int32(side), x, y, z)
-        )
-        away = wp.length(wp.cross(w - first, line))
-        if away > most:
-            most = away
-            best = Int32(side)
-    if best < 0:
-        return Int32(2), x
-    third = add_corner(
-        core_a, core_b, vertex_position, points, points_a, world, 2, axis_direction(best, x, y, z)
-    )
-
-    x = wp.normalize(wp.cross(line, third - first))
-    most = THIN
-    best = Int32(-1)
-    for side in range(2):
-        w = add_corner(
-            core_a, core_b, vertex_position, points, points_a, world, 3, axis_direction(Int32(side), x, y, z)
-        )
-        if wp.abs(wp.dot(w - first, x)) > most:
-            most = wp.abs(wp.dot(w - first, x))
-            best = Int32(side)
-    if best < 0:
-        return Int32(3), x
-    add_corner(core_a, core_b, vertex_position, points, points_a, world, 3, axis_direction(best, x, y, z))
-    return Int32(4), x
+    row = Int32(1)
+    while row < 4:
+        # Of 6, 4 and 2 directions, the one with the corner farthest from the corners so far.
+        most = THIN
+        best = Int32(-1)
+        for side in range(8 - 2 * row):
+            direction = axis_direction(side, x, y, z)
+            w = add_corner(core_a, core_b, vertex_position, points, points_a, world, row, direction) - first
+            away = wp.abs(wp.dot(w, x))
+            if row == 1:
+                away = wp.length(w)
+            elif row == 2:
+                away = wp.length(wp.cross(w, line))
+            if away > most:
+                most = away
+                best = side
+        if best < 0:
+            return row, start if row == 1 else x
+        direction = axis_direction(best, x, y, z)
+        w = add_corner(core_a, core_b, vertex_position, points, points_a, world, row, direction) - first
+        if row == 1:
+            line = wp.normalize(w)
+            x = any_perpendicular(line)
+            y = wp.cross(line, x)
+        elif row == 2:
+            x = wp.normalize(wp.cross(line, w))
+        row += 1
+    return row, x
 
 
 @func

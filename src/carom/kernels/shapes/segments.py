@@ -109,13 +109,6 @@ def collide_segments(
             return count
     place_a, place_b = nearest_places(offset, half_a, half_b)
     return add_round_contact(
-        candidates,
-        world,
-        0,
-        middle_a + half_a * place_a,
-        radius_a,
-        middle_b + half_b * place_b,
-        radius_b,
-        fallback,
-        max_distance,
-    )
+        candidates, world, 0, middle_a + half_a * place_a, radius_a, middle_b + half_b * place_b, radius_b,
+        fallback, max_distance,
+    )  # fmt: skip

@@ -92,7 +92,7 @@ def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int
     p = shapes.vertex_position[a]
     q = shapes.vertex_position[b]
     r = shapes.vertex_position[c]
-    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    return wp.matrix_from_cols(p, q, r)
 
 
 @func

@@ -54,7 +54,7 @@ def edges(places: Vector3Rows, world: Int32, four: Index4) -> Matrix3:
     p = places[world, four[1]] - origin
     q = places[world, four[2]] - origin
     r = places[world, four[3]] - origin
-    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    return wp.matrix_from_cols(p, q, r)
 
 
 @func
@@ -62,7 +62,7 @@ def cofactors(f: Matrix3) -> Matrix3:
     """Cofactors of a matrix: the derivative of its determinant with respect to its entries."""
     first, second, third = column(f, 0), column(f, 1), column(f, 2)
     a, b, c = wp.cross(second, third), wp.cross(third, first), wp.cross(first, second)
-    return Matrix3(a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2])
+    return wp.matrix_from_cols(a, b, c)
 
 
 @func

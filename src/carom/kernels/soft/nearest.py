@@ -151,6 +151,13 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
 
 
 @func
+def face_normal(corners: Matrix3) -> Vector3:
+    """The unit normal of a triangle, its corners as columns."""
+    a = column(corners, 0)
+    return away_from(wp.cross(column(corners, 1) - a, column(corners, 2) - a), Vector3(0.0, 0.0, 1.0))
+
+
+@func
 def on_triangle(corners: Matrix3, point: Vector3, normal: Vector3) -> Vector3:
     """The point of a triangle, its corners as columns, nearest to a point."""
     best = point - normal * wp.dot(point - column(corners, 0), normal)
@@ -177,10 +184,7 @@ def on_surface(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real)
     cursor = triangle_from(shapes, region, shape, first_cursor(shapes, shape))
     while cursor >= 0:
         corners = triangle_corners(shapes, region, shape, cursor)
-        outward = away_from(
-            wp.cross(column(corners, 1) - column(corners, 0), column(corners, 2) - column(corners, 0)),
-            Vector3(0.0, 0.0, 1.0),
-        )
+        outward = face_normal(corners)
         offset = point - on_triangle(corners, point, outward)
         apart = wp.length(offset)
         side = wp.dot(offset, outward)

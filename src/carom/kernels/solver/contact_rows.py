@@ -85,12 +85,8 @@ def keep_contact_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32,
     """Store the impulses of a contact's rows."""
     rows = pair_rows.contact_rows[world, contact]
     keep_contact_impulse(
-        contacts,
-        world,
-        contact,
-        pair_rows.row_terms[world, rows[NORMAL_ROW]].impulse,
+        contacts, world, contact, pair_rows.row_terms[world, rows[NORMAL_ROW]].impulse,
         pair_rows.row_terms[world, rows[LATERAL_ROW]].impulse,
         pair_rows.row_terms[world, rows[LATERAL_ROW] + 1].impulse,
-        pair_rows.row_terms[world, rows[LATERAL_ROW]].friction,
-        Int32(NOT_RESTING),
-    )
+        pair_rows.row_terms[world, rows[LATERAL_ROW]].friction, Int32(NOT_RESTING),
+    )  # fmt: skip

@@ -154,34 +154,28 @@ def contact_terms(
     """
     pair = contacts.contact_shapes[world, contact]
     a, b = pair[2], pair[3]
-    direction1 = contacts.contact_direction1[world, contact]
-    direction2 = contacts.contact_direction2[world, contact]
-    lateral1 = scaled_direction(state, shapes, world, a, b, direction1)
-    lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
-    contacts.contact_direction1[world, contact] = lateral1
-    contacts.contact_direction2[world, contact] = lateral2
     softness, erp = contact_stiffness(settings, shapes, world, a, b)
     terms = ContactTerms()
     terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
     terms.point_a = contacts.contact_point_a[world, contact]
     terms.point_b = contacts.contact_point_b[world, contact]
     terms.normal = contacts.contact_normal[world, contact]
-    terms.lateral1 = lateral1
-    terms.lateral2 = lateral2
-    terms.rolling1 = direction1
-    terms.rolling2 = direction2
+    terms.rolling1 = contacts.contact_direction1[world, contact]
+    terms.rolling2 = contacts.contact_direction2[world, contact]
+    terms.lateral1 = scaled_direction(state, shapes, world, a, b, terms.rolling1)
+    terms.lateral2 = scaled_direction(state, shapes, world, a, b, terms.rolling2)
+    contacts.contact_direction1[world, contact] = terms.lateral1
+    contacts.contact_direction2[world, contact] = terms.lateral2
     terms.drift = anchor_drift(state, shapes, contacts, world, contact)
     terms.distance = contacts.contact_distance[world, contact]
     terms.friction = contact_friction(shapes, world, a, b)
     terms.softness = softness
     terms.erp = erp
     terms.start = share * contacts.contact_impulse[world, contact]
-    terms.ignored = Int32(0)
     solved_up_to = minimum(
         shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
     )
-    if terms.distance > solved_up_to:
-        terms.ignored = Int32(1)
+    terms.ignored = Int32(terms.distance > solved_up_to)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b
     )

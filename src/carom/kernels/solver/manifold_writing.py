@@ -63,9 +63,8 @@ def write_manifold_block(
     contact = Int32(0)
     while contact < count:
         write_articulated_contact(
-            settings, model, state, scratch, shapes, pair_rows,
-            pair_rows.terms[world, contact], world, manifold_block,
-            contact, temporary,
+            settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, contact], world,
+            manifold_block, contact, temporary,
         )  # fmt: skip
         contact += 1
 

@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
+from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.contacts import ROWS_PER_PAIR
@@ -167,11 +168,8 @@ def relax_within(
     terms = pair_rows.row_terms[world, row]
     place = pair_rows.row_place[world, row]
     start = pair_rows.row_start[world, row]
-    impulse = wanted_impulse(scratch, pair_rows, world, place, start, terms)
-    if impulse < lower:
-        impulse = lower
-    if impulse > upper:
-        impulse = upper
+    wanted = wanted_impulse(scratch, pair_rows, world, place, start, terms)
+    impulse = within_bounds(wanted, lower, upper)
     change = impulse - terms.impulse
     pair_rows.row_terms[world, row].impulse = impulse
     push_row(scratch, pair_rows, world, place, start, change)

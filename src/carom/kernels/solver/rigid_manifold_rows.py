@@ -40,12 +40,7 @@ def rigid_body(model: Model, state: State, scratch: Scratch, world: Int32, tree:
 @func
 def row_direction(terms: ContactTerms, row: Int32) -> Vector3:
     """Direction of a row of a contact: row 0 is the normal, rows 1 and 2 are friction."""
-    direction = terms.normal
-    if row == 1:
-        direction = terms.lateral1
-    elif row == 2:
-        direction = terms.lateral2
-    return direction
+    return terms.normal if row == 0 else terms.lateral1 if row == 1 else terms.lateral2
 
 
 @func
@@ -148,12 +143,8 @@ def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, si
     pair_rows.side[world, side].friction_response = friction_response
     pair_rows.manifold_block[world, manifold_block].normal_delassus += normal_response * normal
     pair_rows.manifold_block[world, manifold_block].friction_delassus += friction_response * friction
-    pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
-        world, manifold_block
-    ].normal_share + combination(normal, body.velocity)
-    pair_rows.manifold_block[world, manifold_block].friction_share = pair_rows.manifold_block[
-        world, manifold_block
-    ].friction_share + combination(friction, body.velocity)
+    pair_rows.manifold_block[world, manifold_block].normal_share += combination(normal, body.velocity)
+    pair_rows.manifold_block[world, manifold_block].friction_share += combination(friction, body.velocity)
 
 
 @func

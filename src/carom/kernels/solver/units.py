@@ -128,11 +128,9 @@ def write_units(
 @func
 def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, units: Int32, outcome: Int32):
     """Store the impulses of an island's contacts, and the `outcome` of solving them."""
-    unit = Int32(0)
-    while unit < units:
+    for unit in range(units):
         code = pair_rows.unit_code[world, unit]
         if code < 0:
             keep_manifold_impulses(contacts, pair_rows, world, -1 - code, outcome)
         else:
             keep_contact_impulses(contacts, pair_rows, world, code)
-        unit += 1

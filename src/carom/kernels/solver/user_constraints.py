@@ -87,10 +87,8 @@ def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
     """
     linear, angular = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     axis = Int32(-1)
-    linear_count = Int32(3)
-    first_angle = Int32(0)
-    if kind == USER_PRISMATIC:
-        linear_count, first_angle = Int32(2), Int32(2)
+    linear_count = Int32(2) if kind == USER_PRISMATIC else Int32(3)
+    first_angle = Int32(2) if kind == USER_PRISMATIC else Int32(0)
     if i < linear_count:
         linear = Vector3(directions[i, 0], directions[i, 1], directions[i, 2])
     else:
@@ -100,7 +98,7 @@ def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
 
 
 @func
-def add_pose_rows(
+def add_user_rows(
     settings: Settings,
     model: Model,
     state: State,
@@ -112,10 +110,15 @@ def add_pose_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add the rows of a point-to-point, fixed or prismatic constraint; returns the next free row and block.
+    """Add the rows of one user constraint; returns the next free row and block.
 
-    Each row stops the motion of a relative to b along or about an axis, and corrects a part of the error.
+    Each row of a point-to-point, fixed or prismatic constraint stops the motion of a relative to b along or
+    about an axis, and corrects a part of the error.
     """
+    pair_rows.user_first_row[world, user] = row
+    if users.user_kind[user] == USER_GEAR:
+        row, block = add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, row, block)
+        return row, block
     ends = user_ends(users, user)
     point_a, point_b = held_points(state, users, world, user)
     apart = point_a - point_b
@@ -211,28 +214,6 @@ def add_gear_row(
     bound = users.user_max_impulse[user]
     write_row(pair_rows, world, row, inverse_mass_a + inverse_mass_b, change, 0.0, -bound, bound, 0.0)
     return row + 1, after
-
-
-@func
-def add_user_rows(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    users: UserConstraints,
-    pair_rows: PairRows,
-    world: Int32,
-    user: Int32,
-    row: Int32,
-    block: Int32,
-):
-    """Add the rows of one user constraint; returns the next free row and block."""
-    pair_rows.user_first_row[world, user] = row
-    if users.user_kind[user] == USER_GEAR:
-        row, block = add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, row, block)
-    else:
-        row, block = add_pose_rows(settings, model, state, scratch, users, pair_rows, world, user, row, block)
-    return row, block
 
 
 @func
