@@ -90,7 +90,9 @@ def region_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
     Bullet tests the triangles that meet the bounds, and keeps existing contacts up to the breaking distance.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
-    return maximum(ahead, breaking_distance(shapes, a, b)) if in_contact else ahead
+    if in_contact:
+        return maximum(ahead, breaking_distance(shapes, a, b))
+    return ahead
 
 
 @func

@@ -66,14 +66,18 @@ def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
     """Whether collision groups and masks let two links collide."""
     a_passes = shapes.link_group[a] & shapes.link_mask[b] != 0
     b_passes = shapes.link_group[b] & shapes.link_mask[a] != 0
-    return a_passes and b_passes if settings.filter_both == 1 else a_passes or b_passes
+    if settings.filter_both == 1:
+        return a_passes and b_passes
+    return a_passes or b_passes
 
 
 @func
 def links_may_collide(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
     """Whether two links of different bodies may collide, by user filters, groups and masks."""
     wanted = pair_filter(shapes, settings, a, b)
-    return wanted == 1 if wanted >= 0 else masks_match(shapes, settings, a, b)
+    if wanted >= 0:
+        return wanted == 1
+    return masks_match(shapes, settings, a, b)
 
 
 @func

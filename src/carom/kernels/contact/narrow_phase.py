@@ -102,7 +102,9 @@ def collide_in_order(
 @func
 def rank(kind: Int32) -> Int32:
     """Rank of a kind of shape in the order of the narrow phase: its code, but planes last."""
-    return 100 if kind == PLANE else kind
+    if kind == PLANE:
+        return 100
+    return kind
 
 
 @func

@@ -23,4 +23,6 @@ def side_rank(shapes: Shapes, shape: Int32) -> Int32:
 @func
 def in_order_of_sides(shapes: Shapes, pair: Index2) -> Index2:
     """Shapes of a pair as (a, b); shapes of equal rank keep their order."""
-    return Index2(pair[1], pair[0]) if side_rank(shapes, pair[0]) > side_rank(shapes, pair[1]) else pair
+    if side_rank(shapes, pair[0]) > side_rank(shapes, pair[1]):
+        return Index2(pair[1], pair[0])
+    return pair
