@@ -266,12 +266,9 @@ class QuickCalls:
     ) -> int:
         """The address of the C code of a builtin that tries a kernel first.
 
-        Args:
-            kernel: Its name in the library, without the prefix `carom_`.
-            parameters: The parameters of the Python function, in order.
-            groups: Lengths of the tuples in the result, 0 for a number in place of a tuple; empty if the
-                result is None. None if the kernel makes the result itself.
-            flat: There is one group, and it is the result.
+        The kernel's name is without the prefix `carom_`; parameters are in the order of the Python function.
+        `groups` are the lengths of the tuples in the result, 0 for a number in place of a tuple; empty if the
+        result is None, and None if the kernel makes the result itself. If `flat`, its group is the result.
         """
         made = self._calls[self._made]
         function = ctypes.cast(self._symbols[f"carom_{kernel}"], ctypes.c_void_p)

@@ -146,10 +146,8 @@ class ArrayTable:
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
         field = self._fields[name]
-        shape: tuple[int, ...] = (capacity,)
-        if field.per_world:
-            shape = (self._world_counts[name], *shape)
-        return self._new_array((*shape, *field.shape), field.scalar)
+        worlds = (self._world_counts[name],) if field.per_world else ()
+        return self._new_array((*worlds, capacity, *field.shape), field.scalar)
 
     def _new_array(self, shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
         """An array of zeros in the kind of memory that this table uses."""
@@ -219,10 +217,7 @@ class ArrayTable:
         """A longer copy of a field's array."""
         old = self._memory[name]
         new = self._allocate(name, capacity)
-        if self._fields[name].per_world:
-            new[:, : old.shape[1]] = old
-        else:
-            new[: len(old)] = old
+        new[tuple(map(slice, old.shape))] = old
         return new
 
     def spread(self, name: str, world_count: int) -> bool:

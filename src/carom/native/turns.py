@@ -9,10 +9,7 @@ from typing import Any
 
 
 def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
-    """The `count` results of a kernel of `turns.cpp`; None if it has none for these numbers.
-
-    Its name is given without the prefix `carom_`.
-    """
+    """The `count` results of a kernel of `turns.cpp`, named without `carom_`; None if there are none."""
     results = (ctypes.c_double * count)()
     well = _function(kernel)((ctypes.c_double * len(numbers))(*numbers), results, None)
     return tuple(results) if well else None
