@@ -28,10 +28,7 @@ _SUFFIXES = (".c", ".cpp", ".h", ".py")
 
 
 def source_digest(root: Path) -> str:
-    """Digest of all sources of the native library.
-
-    Args:
-        root: The folder that contains the package `carom`.
+    """Digest of all sources of the native library, in the folder that contains the package `carom`.
 
     Returns:
         32 hexadecimal digits; line endings make no difference.

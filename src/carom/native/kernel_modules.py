@@ -1,49 +1,42 @@
 """The modules that contain kernels."""
 
+
+def _modules(*names: str) -> tuple[str, ...]:
+    return tuple(f"carom.kernels.{name}" for name in names)
+
+
 # Kernels of the native library.
-KERNEL_MODULES = (
-    "carom.kernels.contact.stages",
-    "carom.kernels.dynamics.kinematics",
-    "carom.kernels.dynamics.motor_commands",
-    "carom.kernels.dynamics.step",
-    "carom.kernels.dynamics.step_ends",
-    "carom.kernels.images.draw",
-    "carom.kernels.inverse_kinematics.search",
-    "carom.kernels.mechanism.dynamics",
-    "carom.kernels.mechanism.motion",
-    "carom.kernels.mechanism.stable_pd",
-    "carom.kernels.queries.closest",
-    "carom.kernels.queries.contact_report",
-    "carom.kernels.queries.rays",
-    "carom.kernels.queries.touching",
-    "carom.kernels.soft.stages",
-    "carom.kernels.solver.sleeping",
-    "carom.kernels.solver.stages",
+KERNEL_MODULES = _modules(
+    *(
+        "contact.stages",
+        "dynamics.kinematics",
+        "dynamics.motor_commands",
+        "dynamics.step",
+        "dynamics.step_ends",
+    ),
+    *("images.draw", "inverse_kinematics.search"),
+    *("mechanism.dynamics", "mechanism.motion", "mechanism.stable_pd"),
+    *("queries.closest", "queries.contact_report", "queries.rays", "queries.touching"),
+    *("soft.stages", "solver.sleeping", "solver.stages"),
 )
 # Kernels of steps in fine launches, for GPUs; those that take longest to compile come first.
-PARALLEL_MODULES = (
-    "carom.kernels.parallel.soft_motion",
-    "carom.kernels.parallel.detection",
-    "carom.kernels.parallel.contact_rows",
-    "carom.kernels.parallel.restless_sweeps",
-    "carom.kernels.parallel.batches",
-    "carom.kernels.parallel.sweeps",
-    "carom.kernels.parallel.trees",
-    "carom.kernels.parallel.soft_contact",
-    "carom.kernels.parallel.joint_rows",
-    "carom.kernels.parallel.soft_nodes",
-    "carom.kernels.parallel.runs",
+PARALLEL_MODULES = _modules(
+    *("parallel.soft_motion", "parallel.detection", "parallel.contact_rows", "parallel.restless_sweeps"),
+    *(
+        "parallel.batches",
+        "parallel.sweeps",
+        "parallel.trees",
+        "parallel.soft_contact",
+        "parallel.joint_rows",
+    ),
+    *("parallel.soft_nodes", "parallel.runs"),
 )
 # Kernels that work on arrays on a GPU between steps.
-ARRAY_MODULES = ("carom.kernels.arrays.arithmetic",)
+ARRAY_MODULES = _modules("arrays.arithmetic")
 # Kernels that take a world through a whole stage; on GPUs there are others for this.
-_WHOLE_WORLDS = {
-    "carom.kernels.contact.stages",
-    "carom.kernels.dynamics.step",
-    "carom.kernels.dynamics.step_ends",
-    "carom.kernels.soft.stages",
-    "carom.kernels.solver.stages",
-}
+_WHOLE_WORLDS = _modules(
+    "contact.stages", "dynamics.step", "dynamics.step_ends", "soft.stages", "solver.stages"
+)
 CUDA_MODULES = (
     *PARALLEL_MODULES,
     *ARRAY_MODULES,

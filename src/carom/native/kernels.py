@@ -13,19 +13,11 @@ from typing import Any
 
 from carom.native.library import Library, library
 
-_SCALARS: Mapping[str, Any] = {
-    "int32": ctypes.c_int32,
-    "float64": ctypes.c_double,
-}
+_SCALARS: Mapping[str, Any] = {"int32": ctypes.c_int32, "float64": ctypes.c_double}
 
 
 class Kernel:
-    """A compiled kernel: a C function that takes two addresses, those of its bounds and of its arguments.
-
-    Args:
-        name: Name of the function in `carom.kernels`.
-        find_library: Returns the library that contains it.
-    """
+    """A compiled kernel: a C function that takes two addresses, those of its bounds and of its arguments."""
 
     def __init__(self, name: str, find_library: Callable[[], Library] = library) -> None:
         self.name = name

@@ -27,23 +27,17 @@ class Launch:
 
     Arrays are kept alive, numbers and structs are copied; `replace` changes an argument. A call returns when
     the kernel is done.
-
-    Attributes:
-        kernel: The kernel.
     """
 
     __slots__ = ("_addresses", "_bounds", "_keep_alive", "_packed", "kernel")
 
     def __init__(self, kernel: Kernel, count: int | tuple[int, ...], arguments: Sequence[Any]) -> None:
-        """Pack the arguments of a kernel.
+        """Pack the arguments of a kernel: numbers, arrays (`carom.native.tables.array_view`) and structs.
 
-        Args:
-            kernel: The kernel.
-            count: Number of runs, along each axis if there are several.
-            arguments: Its arguments: numbers, arrays (`carom.native.tables.array_view`) and structs.
+        It will run `count` times, or so many times along each axis.
 
         Raises:
-            TypeError: There are too many or too few.
+            TypeError: There are too many or too few arguments.
         """
         if len(arguments) != len(kernel.indices):
             raise TypeError(f"{kernel.name} takes {', '.join(kernel.indices)}; {len(arguments)} were given")
@@ -69,12 +63,8 @@ class Launch:
     def addresses(self, *scalars: str) -> list[int]:
         """The addresses that another native function needs to run the kernel; valid while this launch exists.
 
-        Args:
-            *scalars: Names of the numbers among the arguments that the function will change.
-
-        Returns:
-            Addresses of the function, of its two arguments, and of these numbers; 0 where there is no such
-            argument.
+        They are those of the function, of its two arguments, and of the named numbers among the arguments,
+        which the function will change; 0 where there is no such argument.
         """
         found = self._addresses.get(scalars)
         if found is None:
@@ -109,12 +99,7 @@ def _packed_arguments(*types: Any) -> Any:
 
 
 class TreeLaunch:
-    """A kernel with a tree among its arguments, which can be run on any tree; for kernels of a microsecond.
-
-    Args:
-        kernel: The kernel.
-        structs: Structs by the names of the kernel's arguments.
-    """
+    """A kernel with a tree among its arguments that can be run on any tree; for kernels of a microsecond."""
 
     __slots__ = ("_launch", "_place", "_run", "_tree")
 

@@ -29,11 +29,7 @@ _loading = threading.Lock()
 
 
 class Library:
-    """A loaded library.
-
-    Args:
-        path: The file; `manifest.json`, written when it was built, is beside it.
-        digest: The required digest, as from `source_digest`.
+    """A loaded library, which has the required digest; its `manifest.json` is beside it.
 
     Attributes:
         path: The file.

@@ -16,12 +16,7 @@ Floats = NDArray[np.float64]
 def product(a: Floats, b: Floats) -> Floats:
     """Product of matrices, or of stacks of them, with terms added in order of their index.
 
-    Args:
-        a: Shape (..., n, k).
-        b: Shape (..., k, m).
-
-    Returns:
-        Shape (..., n, m).
+    Shapes are (..., n, k) and (..., k, m), that of the product is (..., n, m).
     """
     total = a[..., :, :1] * b[..., :1, :]
     for k in range(1, a.shape[-1]):
@@ -30,14 +25,9 @@ def product(a: Floats, b: Floats) -> Floats:
 
 
 def dots(a: Floats, b: Floats) -> Floats:
-    """Scalar products of vectors, with terms added in order of their index.
+    """Scalar products of vectors of shape (..., n), with terms added in order of their index.
 
-    Args:
-        a: Shape (..., n).
-        b: Shape (..., n); the axes before the last are broadcast against those of `a`.
-
-    Returns:
-        Shape (...).
+    The axes before the last are broadcast against each other.
     """
     total = a[..., 0] * b[..., 0]
     for k in range(1, a.shape[-1]):

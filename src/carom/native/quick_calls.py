@@ -45,47 +45,46 @@ DAMPING = ("tree_linear_damping", "tree_angular_damping")
 """Fields of `Model` that quick calls change."""
 
 
-class Launch(ctypes.Structure):
-    """A kernel that is run for one tree."""
-
-    _fields_ = (
-        ("function", ctypes.c_void_p),
-        ("bounds", ctypes.c_void_p),
-        ("arguments", ctypes.c_void_p),
-        ("tree", ctypes.c_void_p),
-    )
+_Address, _Count = ctypes.c_void_p, ctypes.c_int64
 
 
-class ContactReport(ctypes.Structure):
-    """The kernel that lists contacts, its query and its results."""
-
-    _fields_ = (
-        ("function", ctypes.c_void_p),
-        ("bounds", ctypes.c_void_p),
-        ("arguments", ctypes.c_void_p),
-        *((f"asked_{name}", ctypes.c_void_p) for name in REPORT_SCALARS),
-        ("there", ctypes.c_void_p),
-        ("room", ctypes.c_int64),
-        *((f"found_{name}", ctypes.c_void_p) for name in REPORT_ARRAYS),
-    )
+def _fields(kind: Any, names: str) -> tuple[tuple[str, Any], ...]:
+    """Fields of one type by their names, which are separated by spaces."""
+    return tuple((name, kind) for name in names.split())
 
 
 class KernelCall(ctypes.Structure):
     """A kernel and its arguments."""
 
-    _fields_ = tuple((name, ctypes.c_void_p) for name in ("function", "bounds", "arguments"))
+    _fields_ = _fields(_Address, "function bounds arguments")
+
+
+class Launch(KernelCall):
+    """A kernel that is run for one tree."""
+
+    _fields_ = _fields(_Address, "tree")
+
+
+class ContactReport(KernelCall):
+    """The kernel that lists contacts, its query and its results."""
+
+    _fields_ = (
+        *((f"asked_{name}", _Address) for name in REPORT_SCALARS),
+        ("there", _Address),
+        ("room", _Count),
+        *((f"found_{name}", _Address) for name in REPORT_ARRAYS),
+    )
 
 
 class Detection(ctypes.Structure):
     """Collision detection at the current coordinates of all bodies."""
 
     _fields_ = (
-        ("run", ctypes.c_void_p),
+        ("run", _Address),
         ("find_poses", KernelCall),
-        ("poses", ctypes.c_void_p),
-        ("poses_before", ctypes.c_void_p),
-        ("pose_count", ctypes.c_int64),
-        ("status", ctypes.c_void_p),
+        *_fields(_Address, "poses poses_before"),
+        ("pose_count", _Count),
+        ("status", _Address),
     )
 
 
@@ -93,22 +92,17 @@ class Placement(ctypes.Structure):
     """The shapes of all links, and the kernels that place them at the current coordinates."""
 
     _fields_ = (
-        ("place", KernelCall),
-        ("find_poses", KernelCall),
-        ("positions", ctypes.c_void_p),
-        ("placed_at", ctypes.c_void_p),
-        ("position_count", ctypes.c_int64),
-        ("poses", ctypes.c_void_p),
-        ("poses_before", ctypes.c_void_p),
-        ("pose_count", ctypes.c_int64),
-        ("readiness", ctypes.c_void_p),
-        ("shapes", ctypes.c_void_p),
-        ("changes_name", ctypes.c_void_p),
-        ("changes", ctypes.c_int64),
-        *((name, ctypes.c_void_p) for name in ("lower", "upper", "kind", "link")),
-        ("shape_count", ctypes.c_int64),
-        *((name, ctypes.c_void_p) for name in ("first_shape", "link_shapes", "place_body", "place_link")),
-        ("has_bare_links", ctypes.c_int64),
+        *_fields(KernelCall, "place find_poses"),
+        *_fields(_Address, "positions placed_at"),
+        ("position_count", _Count),
+        *_fields(_Address, "poses poses_before"),
+        ("pose_count", _Count),
+        *_fields(_Address, "readiness shapes changes_name"),
+        ("changes", _Count),
+        *_fields(_Address, "lower upper kind link"),
+        ("shape_count", _Count),
+        *_fields(_Address, "first_shape link_shapes place_body place_link"),
+        ("has_bare_links", _Count),
     )
 
 
@@ -117,35 +111,28 @@ class PairSearch(ctypes.Structure):
 
     _fields_ = (
         ("search", KernelCall),
-        *((name, ctypes.c_void_p) for name in ("count", "max_distance", "first", "second")),
-        ("room", ctypes.c_int64),
-        *((name, ctypes.c_void_p) for name in ("found", "pairs", "points")),
+        *_fields(_Address, "count max_distance first second"),
+        ("room", _Count),
+        *_fields(_Address, "found pairs points"),
     )
 
 
 class Step(ctypes.Structure):
     """A step of the world with one substep, as `carom.engine.interpreter` performs it."""
 
-    _fields_ = tuple(
-        (name, ctypes.c_void_p)
-        for name in ("run", "status", "duration", "time", "observers", "contact_count")
-    )
+    _fields_ = _fields(_Address, "run status duration time observers contact_count")
 
 
 class Scene(ctypes.Structure):
     """Data derived from the bodies and arrays of a world."""
 
     _fields_ = (
-        ("find_poses", Launch),
-        ("find_twists", Launch),
-        ("contact_count", ctypes.c_void_p),
-        ("contact_warm_starts", ctypes.c_void_p),
-        ("contact_room", ctypes.c_int64),
-        ("surface", ctypes.c_void_p * len(SURFACE)),
-        ("surface_names", ctypes.c_void_p * len(SURFACE)),
-        ("damping", ctypes.c_void_p * len(DAMPING)),
-        *((name, ctypes.c_void_p) for name in ("mass", "inertia")),
-        *((name, ctypes.c_void_p) for name in ("mass_name", "inertia_name", "fixed_base_name")),
+        *_fields(Launch, "find_poses find_twists"),
+        *_fields(_Address, "contact_count contact_warm_starts"),
+        ("contact_room", _Count),
+        *_fields(_Address * len(SURFACE), "surface surface_names"),
+        ("damping", _Address * len(DAMPING)),
+        *_fields(_Address, "mass inertia mass_name inertia_name fixed_base_name"),
         ("report", ContactReport),
         ("detection", Detection),
         ("placement", Placement),
@@ -157,11 +144,7 @@ class Scene(ctypes.Structure):
 class Link(ctypes.Structure):
     """A link other than a base."""
 
-    _fields_ = (
-        ("inertial_frame", ctypes.c_double * 7),
-        ("from_inertial_frame", ctypes.c_double * 7),
-        ("is_turned", ctypes.c_int64),
-    )
+    _fields_ = (*_fields(ctypes.c_double * 7, "inertial_frame from_inertial_frame"), ("is_turned", _Count))
 
 
 class _MassTerm(ctypes.Structure):
@@ -171,30 +154,21 @@ class _MassTerm(ctypes.Structure):
 class Moments(ctypes.Structure):
     """The moments of inertia that a link's shapes have at a mass, see `carom.model.inertia.MassTerm`."""
 
-    _fields_ = (("terms", _MassTerm * 2 * 3), ("is_known", ctypes.c_int64))
+    _fields_ = (("terms", _MassTerm * 2 * 3), ("is_known", _Count))
 
 
 class Box(ctypes.Structure):
     """The box around the shapes of a link, in its inertial frame."""
 
-    _fields_ = (
-        ("center", ctypes.c_double * 3),
-        ("half", ctypes.c_double * 3),
-        ("is_moved", ctypes.c_int64),
-        ("is_turned", ctypes.c_int64),
-    )
+    _fields_ = (*_fields(ctypes.c_double * 3, "center half"), *_fields(_Count, "is_moved is_turned"))
 
 
 class Joint(ctypes.Structure):
     """A joint: indices of its first coordinates in its body, and bounds of target positions."""
 
     _fields_ = (
-        ("position", ctypes.c_int32),
-        ("velocity", ctypes.c_int32),
-        ("dof_count", ctypes.c_int32),
-        ("has_sensor", ctypes.c_int32),
-        ("lower", ctypes.c_double),
-        ("upper", ctypes.c_double),
+        *_fields(ctypes.c_int32, "position velocity dof_count has_sensor"),
+        *_fields(ctypes.c_double, "lower upper"),
     )
 
 
@@ -203,10 +177,8 @@ class MotorGroup(ctypes.Structure):
 
     _fields_ = (
         ("command", KernelCall),
-        *((name, ctypes.c_void_p) for name in ("mode", "given", "time_step", "refused")),
-        *((name, ctypes.c_void_p) for name in ("position", "velocity", "force", "kp", "kd")),
-        ("indices", ctypes.c_void_p),
-        ("count", ctypes.c_int64),
+        *_fields(_Address, "mode given time_step refused position velocity force kp kd indices"),
+        ("count", _Count),
     )
 
 
@@ -217,27 +189,10 @@ class Body(ctypes.Structure):
     """
 
     _fields_ = (
-        ("position", ctypes.c_void_p),
-        ("velocity", ctypes.c_void_p),
-        ("pose", ctypes.c_void_p),
-        ("twist", ctypes.c_void_p),
-        ("wrench", ctypes.c_void_p),
-        ("motor", ctypes.c_void_p),
-        ("pd", ctypes.c_void_p),
-        ("torque", ctypes.c_void_p),
-        ("motor_impulse", ctypes.c_void_p),
-        ("reaction", ctypes.c_void_p),
-        ("links", ctypes.c_void_p),
-        ("joints", ctypes.c_void_p),
-        ("motors", ctypes.c_void_p),
-        ("link_count", ctypes.c_int64),
-        ("tree", ctypes.c_int64),
-        ("first_link", ctypes.c_int64),
-        ("dynamics", ctypes.c_void_p),
-        ("handle", ctypes.c_void_p),
-        ("derived", ctypes.c_void_p),
-        ("moments", ctypes.c_void_p),
-        ("boxes", ctypes.c_void_p),
+        *_fields(_Address, "position velocity pose twist wrench motor pd torque motor_impulse reaction"),
+        *_fields(_Address, "links joints motors"),
+        *_fields(_Count, "link_count tree first_link"),
+        *_fields(_Address, "dynamics handle derived moments boxes"),
     )
 
 
@@ -245,35 +200,26 @@ class Client(ctypes.Structure):
     """A world, its bodies by number, and two methods of the lock that is held while it changes."""
 
     _fields_ = (
-        ("scene", ctypes.c_void_p),
-        ("bodies", ctypes.c_void_p),
-        ("body_count", ctypes.c_int64),
-        ("acquire", ctypes.c_void_p),
-        ("release", ctypes.c_void_p),
-        ("without_waiting", ctypes.c_void_p),
-        ("connection", ctypes.c_void_p),
-        ("time_step_name", ctypes.c_void_p),
-        ("reports_analytics", ctypes.c_int64),
-        ("world_bodies", ctypes.c_void_p),
-        ("joint_count_name", ctypes.c_void_p),
-        ("encoded_names_name", ctypes.c_void_p),
+        *_fields(_Address, "scene bodies"),
+        ("body_count", _Count),
+        *_fields(_Address, "acquire release without_waiting connection time_step_name"),
+        ("reports_analytics", _Count),
+        *_fields(_Address, "world_bodies joint_count_name encoded_names_name"),
     )
 
 
 class _Parameter(ctypes.Structure):
     _fields_ = (
-        ("name", ctypes.c_void_p),
+        ("name", _Address),
         ("missing", ctypes.c_double),
-        ("kind", ctypes.c_int32),
-        ("is_required", ctypes.c_int32),
+        *_fields(ctypes.c_int32, "kind is_required"),
     )
 
 
 class _QuickCall(ctypes.Structure):
     _fields_ = (
-        ("kernel", ctypes.c_void_p),
-        ("maker", ctypes.c_void_p),
-        ("parameter_count", ctypes.c_int64),
+        *_fields(_Address, "kernel maker"),
+        ("parameter_count", _Count),
         ("parameters", _Parameter * MOST_PARAMETERS),
         ("groups", ctypes.c_int32 * (MOST_GROUPS + 1)),
         ("is_flat", ctypes.c_int32),
@@ -298,13 +244,7 @@ class Parameter:
 
 
 class QuickCalls:
-    """The quick calls of this process.
-
-    Args:
-        symbols: The loaded library.
-        calls: Address of the table of calls.
-        clients: Address of the table of clients.
-        python: Pointers to functions, objects and types of Python, by their names.
+    """The quick calls of this process, in a table of the library, with pointers to what they need of Python.
 
     Attributes:
         clients: Address of a `Client`, by number; 0 if Python has to handle its calls.
@@ -326,12 +266,9 @@ class QuickCalls:
     ) -> int:
         """The address of the C code of a builtin that tries a kernel first.
 
-        Args:
-            kernel: Its name in the library, without the prefix `carom_`.
-            parameters: The parameters of the Python function, in order.
-            groups: Lengths of the tuples in the result, 0 for a number in place of a tuple; empty if the
-                result is None. None if the kernel makes the result itself.
-            flat: There is one group, and it is the result.
+        The kernel's name is without the prefix `carom_`; parameters are in the order of the Python function.
+        `groups` are the lengths of the tuples in the result, 0 for a number in place of a tuple; empty if the
+        result is None, and None if the kernel makes the result itself. If `flat`, its group is the result.
         """
         made = self._calls[self._made]
         function = ctypes.cast(self._symbols[f"carom_{kernel}"], ctypes.c_void_p)
@@ -365,10 +302,8 @@ def quick_calls(vectorcall: int) -> QuickCalls | None:
     """The quick calls of this process, for the first caller; None for others, and if there are none.
 
     They need a usual build of CPython: in others the header of objects differs, or threads run in parallel.
-    They point to objects of one interpreter, so other interpreters of the process have none.
-
-    Args:
-        vectorcall: Address of the function that calls a Python function.
+    They point to objects of one interpreter, so other interpreters of the process have none. `vectorcall` is
+    the address of the function that calls a Python function.
     """
     if (
         sys.implementation.name != "cpython"

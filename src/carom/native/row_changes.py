@@ -44,41 +44,28 @@ class RowNumbers(NamedTuple):
     array: np.ndarray
 
 
+def _fields(names: str) -> tuple[tuple[str, Any], ...]:
+    """Fields of a struct: an address where a `*` follows the name, else an integer of 64 bits."""
+    kinds = ((name, ctypes.c_void_p if "*" in name else ctypes.c_int64) for name in names.split())
+    return tuple((name.rstrip("*"), kind) for name, kind in kinds)
+
+
 class _Field(ctypes.Structure):
-    _fields_ = (
-        ("memory", ctypes.c_void_p),
-        ("worlds", ctypes.c_int64),
-        ("world_bytes", ctypes.c_int64),
-        ("row_bytes", ctypes.c_int64),
-        ("axis", ctypes.c_int64),
-    )
+    _fields_ = _fields("memory* worlds world_bytes row_bytes axis")
 
 
 class _Reference(ctypes.Structure):
-    _fields_ = (
-        ("memory", ctypes.c_void_p),
-        ("row_bytes", ctypes.c_int64),
-        ("numbers", ctypes.c_int64),
-        ("axis", ctypes.c_int64),
-        ("target", ctypes.c_int64),
-    )
+    _fields_ = _fields("memory* row_bytes numbers axis target")
 
 
 class _Table(ctypes.Structure):
-    _fields_ = (
-        ("fields", ctypes.c_void_p),
-        ("references", ctypes.c_void_p),
-        ("field_count", ctypes.c_int64),
-        ("reference_count", ctypes.c_int64),
-    )
+    _fields_ = _fields("fields* references* field_count reference_count")
 
 
 class RowChanges:
     """Changes of the rows of tables, valid until one of their arrays is replaced.
 
-    Args:
-        fields: All arrays of the tables.
-        references: Those of its fields that contain row numbers.
+    They take all arrays of the tables, and those fields that contain row numbers.
     """
 
     def __init__(self, fields: list[RowsOfAxis], references: list[RowNumbers]) -> None:
@@ -98,13 +85,9 @@ class RowChanges:
             record.memory, record.row_bytes = array.ctypes.data, array.strides[0]
             record.numbers = prod(array.shape[1:])
             record.axis, record.target = place[axis], place[target]
-        table = _Table(
-            ctypes.addressof(field_records),
-            ctypes.addressof(reference_records),
-            len(field_records),
-            len(reference_records),
-        )
-        self._kept = field_records, reference_records, table
+        records = field_records, reference_records
+        table = _Table(*map(ctypes.addressof, records), *map(len, records))
+        self._kept = *records, table
         self._table = ctypes.addressof(table)
         self._pack = Struct(f"{len(self._axes)}q").pack
         self._put, self._take = _functions()
@@ -123,10 +106,8 @@ class RowChanges:
     def put(self, rows: bytes, first: Mapping[str, int], count: bytes) -> None:
         """Put rows into unused places of every world, as `first_rows` returned them for equal tables.
 
-        Args:
-            rows: The rows, with row numbers as if no other rows were there.
-            first: Where they go, by axis.
-            count: How many there are, `packed`.
+        The rows have row numbers as if no other rows were there. They go to the rows `first`, by axis;
+        `count`, how many there are, is `packed`.
         """
         self._put(self._table, rows, self.packed(first), count)
 

@@ -68,10 +68,8 @@ def fields_of(struct: type[Struct]) -> Mapping[str, Field]:
 def array_view(array: np.ndarray, axes: int = 1) -> ArrayView:
     """An array as kernels are given it; it keeps the memory alive.
 
-    Args:
-        array: The array. Axes behind the first ones are those of its entries.
-        axes: Number of axes that kernels see. Of two axes the first is the world axis; if it has a single
-            row, all worlds see this row.
+    Kernels see so many axes, those behind them are those of entries. Of two axes the first is the world axis;
+    if it has a single row, all worlds see this row.
 
     Raises:
         ValueError: The entries along the last axis are not next to each other, as kernels expect.
@@ -88,15 +86,10 @@ def array_view(array: np.ndarray, axes: int = 1) -> ArrayView:
 
 
 def put_array(struct: Any, name: str, values: npt.ArrayLike) -> np.ndarray:
-    """Make a field of a struct an array of one axis with these values, which the struct keeps alive.
-
-    Args:
-        struct: The struct.
-        name: The field.
-        values: Shape (n, *shape of an entry).
+    """Make a field of a struct an array of one axis with values of shape (n, *shape of an entry).
 
     Returns:
-        The array that kernels see.
+        The array that kernels see, which the struct keeps alive.
     """
     field = fields_of(type(struct))[name]
     array = np.ascontiguousarray(values, dtype=field.scalar).reshape(-1, *field.shape)
@@ -129,15 +122,10 @@ class ArrayTable:
         first_capacity: int = _FIRST_CAPACITY,
         references: Mapping[str, str] | None = None,
     ) -> None:
-        """Make the arrays with the least capacity.
+        """Make the arrays of a struct, whose fields are all arrays, with `first_capacity` rows on each axis.
 
-        Args:
-            struct: Struct whose fields are all arrays.
-            world_count: Length of the world axis.
-            entry_views: Fields that show the vectors of another field scalar by scalar.
-            first_capacity: Number of rows to allocate on each axis.
-            references: Fields whose values are row numbers, with the axis of these rows; values are updated
-                when rows move.
+        The fields in `entry_views` show the vectors of another field scalar by scalar. The values of those in
+        `references` are row numbers, of the axis named there; they are updated when rows move.
         """
         self._struct = struct
         self._entry_views = dict(entry_views or {})
@@ -158,10 +146,8 @@ class ArrayTable:
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
         field = self._fields[name]
-        shape: tuple[int, ...] = (capacity,)
-        if field.per_world:
-            shape = (self._world_counts[name], *shape)
-        return self._new_array((*shape, *field.shape), field.scalar)
+        worlds = (self._world_counts[name],) if field.per_world else ()
+        return self._new_array((*worlds, capacity, *field.shape), field.scalar)
 
     def _new_array(self, shape: tuple[int, ...], dtype: np.dtype[Any]) -> np.ndarray:
         """An array of zeros in the kind of memory that this table uses."""
@@ -205,12 +191,7 @@ class ArrayTable:
         return memory
 
     def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
-        """Make room for `needed` rows on each axis; true if arrays were replaced.
-
-        Args:
-            needed: Rows by axis.
-            growth: Least factor by which an axis grows.
-        """
+        """Make room for `needed` rows by axis, growing by a least factor; true if arrays were replaced."""
         capacity = self.capacity
         for axis, count in needed.items():
             if count > capacity.get(axis, count):
@@ -236,10 +217,7 @@ class ArrayTable:
         """A longer copy of a field's array."""
         old = self._memory[name]
         new = self._allocate(name, capacity)
-        if self._fields[name].per_world:
-            new[:, : old.shape[1]] = old
-        else:
-            new[: len(old)] = old
+        new[tuple(map(slice, old.shape))] = old
         return new
 
     def spread(self, name: str, world_count: int) -> bool:
@@ -254,10 +232,8 @@ class ArrayTable:
     def copy(self, world_count: int | None = None, rows: Mapping[str, int] | None = None) -> ArrayTable:
         """A table with the same content.
 
-        Args:
-            world_count: Number of worlds, each with a copy of the first world's rows; None for the worlds
-                as they are.
-            rows: Number of rows to keep, by axis, without capacity for more.
+        It has `world_count` worlds, each with a copy of the first world's rows, or the worlds as they are. If
+        `rows` has an axis, so many of its rows are kept, without capacity for more.
         """
         rows = rows or {}
         other = ArrayTable.__new__(ArrayTable)
@@ -295,15 +271,10 @@ class ArrayTable:
     def removal(
         self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
     ) -> Callable[[], None]:
-        """Prepare to remove consecutive rows of some axes; later rows move up and the freed rows are zero.
+        """Prepare to remove `count` rows, from the row `first` on, of the `used` ones of some axes.
 
-        Args:
-            first: First row to remove, by axis.
-            count: Number of rows to remove, by axis; other axes keep theirs.
-            used: Rows in use, by axis.
-
-        Returns:
-            A function that removes the rows; it can be called again if it was interrupted.
+        Later rows move up and the freed rows are zero. The function returned removes the rows; it can be
+        called again if it was interrupted.
         """
         return self.row_changes.removal(first, count, used)
 

@@ -9,16 +9,7 @@ from typing import Any
 
 
 def worked_out(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...] | None:
-    """The results of a kernel of `turns.cpp`.
-
-    Args:
-        kernel: Its name, without the prefix `carom_`.
-        numbers: Its arguments, as many as it takes.
-        count: Number of results.
-
-    Returns:
-        The results; None if the kernel has none for these numbers.
-    """
+    """The `count` results of a kernel of `turns.cpp`, named without `carom_`; None if there are none."""
     results = (ctypes.c_double * count)()
     well = _function(kernel)((ctypes.c_double * len(numbers))(*numbers), results, None)
     return tuple(results) if well else None

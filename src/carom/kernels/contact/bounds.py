@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.kinematics import base_velocity
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
@@ -106,16 +107,9 @@ def look_ahead(
     now = wp.transform_get_translation(state.link_pose[world, link] * shapes.shape_pose[shape])
     before = wp.transform_get_translation(scratch.link_pose[world, link] * shapes.shape_pose[shape])
     motion = wp.length(now - before)
-    first = model.tree[shapes.shape_tree[shape]].first_velocity
-    velocity = Vector3(
-        state.dof_velocity[world, first + 3],
-        state.dof_velocity[world, first + 4],
-        state.dof_velocity[world, first + 5],
-    )
-    motion = maximum(motion, wp.length(velocity) * settings.time_step)
-    if motion > 0.5 * radius and motion < UNBOUNDED:
-        return motion
-    return 0.0
+    tree = shapes.shape_tree[shape]
+    motion = maximum(motion, wp.length(base_velocity(model, state, world, tree)) * settings.time_step)
+    return motion if motion > 0.5 * radius and motion < UNBOUNDED else 0.0
 
 
 @func

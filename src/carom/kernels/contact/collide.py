@@ -80,13 +80,7 @@ def can_stay(
 
 @func
 def make_contacts(
-    shapes: Shapes,
-    model: Model,
-    state: State,
-    contacts: Contacts,
-    pairs: Pairs,
-    world: Int32,
-    kept: Int32,
+    shapes: Shapes, model: Model, state: State, contacts: Contacts, pairs: Pairs, world: Int32, kept: Int32
 ) -> Int32:
     """Write the contacts of all pairs; returns their number, including those beyond the capacity.
 
@@ -149,21 +143,8 @@ def add_manifold(
 ) -> Int32:
     """Write the contacts of a pair from its candidates; contacts beyond the capacity are only counted.
 
-    Args:
-        shapes: All shapes.
-        state: Poses of the links.
-        contacts: Contacts to write.
-        pairs: Candidates and previous contacts.
-        world: The world.
-        pair: The pair.
-        found: First result of `find_candidates`.
-        count: Second result of `find_candidates`.
-        first: First previous contact of the pair.
-        last: End of its previous contacts.
-        wanted: Number of contacts of the earlier pairs.
-
-    Returns:
-        Number of contacts, including those of this pair.
+    `found` and `count` are the results of `find_candidates`, [first, last) the previous contacts of the pair,
+    and `wanted` is the number of contacts of the earlier pairs. Returns the number with those of this pair.
     """
     sides = in_order_of_sides(shapes, pair)
     far = breaking_distance(shapes, pair[0], pair[1])

@@ -45,8 +45,7 @@ def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
 @func
 def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
     """The user's filter for two links: 1 collide, 0 do not collide, -1 not set."""
-    low = wp.min(a, b)
-    high = wp.max(a, b)
+    low, high = wp.min(a, b), wp.max(a, b)
     first = Int32(0)
     last = settings.filter_count
     while first < last:
@@ -73,19 +72,24 @@ def masks_match(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
 
 
 @func
+def links_may_collide(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> bool:
+    """Whether two links of different bodies may collide, by user filters, groups and masks."""
+    wanted = pair_filter(shapes, settings, a, b)
+    if wanted >= 0:
+        return wanted == 1
+    return masks_match(shapes, settings, a, b)
+
+
+@func
 def may_collide(shapes: Shapes, model: Model, settings: Settings, shape_a: Int32, shape_b: Int32) -> bool:
     """Whether two shapes may collide, by self-collision flags, user filters, groups and masks."""
     a = shapes.shape_link[shape_a]
     b = shapes.shape_link[shape_b]
     if a == b:
         return False
-    root_a = rigid_root(model, a)
-    root_b = rigid_root(model, b)
+    root_a, root_b = rigid_root(model, a), rigid_root(model, b)
     if root_a == root_b:
         return False
     if shapes.shape_tree[shape_a] == shapes.shape_tree[shape_b] and not touches_itself(shapes, model, a, b):
         return False
-    wanted = pair_filter(shapes, settings, a, b)
-    if wanted >= 0:
-        return wanted == 1
-    return masks_match(shapes, settings, a, b)
+    return links_may_collide(shapes, settings, a, b)

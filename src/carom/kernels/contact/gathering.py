@@ -83,12 +83,7 @@ def lies_on_face(shapes: Shapes, shape: Int32, outward: Vector3) -> bool:
 def rolls_on(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32, outward: Vector3) -> bool:
     """Whether a shape touches with a surface on which it rolls, not with a face on which it lies.
 
-    Args:
-        shapes: All shapes.
-        pairs: Poses of the shapes.
-        world: The world.
-        shape: The shape.
-        outward: The contact's normal, out of the shape.
+    `outward` is the contact's normal, out of the shape.
     """
     about = shapes.shape_rolling[shape]
     if about == NO_ROLLING or about == ROLLING_ABOUT_ANY:
@@ -152,21 +147,14 @@ def find_new_points(
 ) -> Int32:
     """Write the new candidates of a manifold that gathers its points: the deepest; of two boxes up to four.
 
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for candidates, poses of the shapes, and the previous contacts.
-        world: The world.
-        sides: The two shapes.
-        max_distance: Largest distance of a contact [m].
-        first: First previous contact of the two shapes.
-        last: End of their previous contacts.
+    `max_distance` is the largest distance of a contact [m], [first, last) are the previous contacts of the
+    pair.
 
     Returns:
         Number of candidates written, 0 if the shapes are too far apart; `AT_ONCE` if the manifold does not
         gather its points.
     """
-    a = sides[0]
-    b = sides[1]
+    a, b = sides[0], sides[1]
     if is_single_sided(shapes, a) or is_single_sided(shapes, b):
         return AT_ONCE
     boxes = are_boxes(shapes, a, b)

@@ -96,13 +96,7 @@ def restore_contacts(contacts: Contacts, pairs: Pairs, world: Int32):
 def skip_contacts(pairs: Pairs, world: Int32, first: Int32, end: Int32, pair: Index2, equal: Int32) -> Int32:
     """Skip previous contacts, which are sorted by pair, from row `first` on; returns the row reached.
 
-    Args:
-        pairs: The previous contacts.
-        world: The world.
-        first: Row to start at.
-        end: End of the previous contacts.
-        pair: Pair of shapes; contacts of pairs before this one are skipped.
-        equal: 1 to skip the contacts of this pair as well, else 0.
+    Contacts of pairs before `pair` are skipped, and if `equal` is 1, not 0, those of this pair as well.
     """
     row = first
     skipping = row < end
@@ -203,17 +197,10 @@ def write_contact(contacts: Contacts, pairs: Pairs, world: Int32, row: Int32, si
     point_a = candidate_on_a(pairs.candidate, world, candidate)
     point_b = pairs.candidate[world, candidate].point
     write_place(
-        contacts,
-        world,
-        row,
-        sides.shapes,
-        wp.transform_point(sides.to_a, point_a),
-        wp.transform_point(sides.to_b, point_b),
-        point_a,
-        point_b,
-        pairs.candidate[world, candidate].normal,
+        contacts, world, row, sides.shapes, wp.transform_point(sides.to_a, point_a),
+        wp.transform_point(sides.to_b, point_b), point_a, point_b, pairs.candidate[world, candidate].normal,
         pairs.candidate[world, candidate].distance,
-    )
+    )  # fmt: skip
 
 
 @func
@@ -231,14 +218,9 @@ def write_new_contact(
     """Write a candidate as contact `row`, with the impulses of its predecessor in [first, last)."""
     write_contact(contacts, pairs, world, row, sides, candidate)
     before = predecessor(
-        pairs,
-        world,
-        first,
-        last,
-        contacts.contact_local_a[world, row],
-        contacts.contact_local_b[world, row],
+        pairs, world, first, last, contacts.contact_local_a[world, row], contacts.contact_local_b[world, row],
         far,
-    )
+    )  # fmt: skip
     keep_for_matching(contacts, pairs, world, before, row)
     if before < 0 and last > first:
         # A new point of an existing manifold does not end warm starting of the other points.

@@ -46,19 +46,10 @@ def collide_boxes(
 def collide_simple(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, max_distance: real
 ) -> Int32:
-    """Write the candidates of a pair whose nearest points have a closed form.
+    """Write the candidates of a pair in the order of `in_order` whose nearest points have a closed form.
 
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for candidates, and the poses of the shapes.
-        world: The world.
-        a: Row of one shape.
-        b: Row of the other shape, not before a in the order of `in_order`.
-        core_a: Core of a.
-        max_distance: Largest distance of a contact [m].
-
-    Returns:
-        Number of candidates; -1 if the pair has no such closed form.
+    `max_distance` is the largest distance of a contact [m]. Returns the number of candidates; -1 if the pair
+    has no such closed form.
     """
     kind_a = core_a.kind
     kind_b = shapes.shape_kind[b]
@@ -128,16 +119,10 @@ def in_order(shapes: Shapes, a: Int32, b: Int32):
 def collide_shapes(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real, around: real
 ) -> Int32:
-    """Write at most four candidates for two shapes at most `max_distance` apart; returns their number.
+    """Write at most four candidates for two shapes at most `max_distance` [m] apart; returns their number.
 
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for intermediate results, and the poses of the shapes.
-        world: The world.
-        a: Row of one shape.
-        b: Row of the other shape; normals point from b towards a.
-        max_distance: Largest distance of a contact [m].
-        around: Distance from the convex shape's bounds within which triangles are tested [m].
+    Normals point from b towards a. Triangles are tested within the distance `around` [m] from the bounds of
+    the convex shape.
     """
     first, second = in_order(shapes, a, b)
     count = collide_in_order(shapes, pairs, world, first, second, max_distance, around)

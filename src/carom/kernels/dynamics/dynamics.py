@@ -88,8 +88,7 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
 
     omega = base_omega(model, state, world, tree)
     velocity = base_velocity(model, state, world, tree)
-    alpha = Vector3(0.0, 0.0, 0.0)
-    acceleration = Vector3(0.0, 0.0, 0.0)
+    alpha, acceleration = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     if model.tree[tree].fixed == 0:
         # The base's velocity stays constant, so its spatial acceleration is -omega x velocity.
         acceleration = -wp.cross(omega, velocity)
@@ -103,8 +102,7 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
                 velocity = scratch.link[world, parent].velocity
                 alpha = scratch.link[world, parent].alpha
                 acceleration = scratch.link[world, parent].acceleration
-            joint_omega = Vector3(0.0, 0.0, 0.0)
-            joint_velocity = Vector3(0.0, 0.0, 0.0)
+            joint_omega, joint_velocity = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
             first = model.link[link].first_dof
             dof = first + 0
             while dof < first + model.link[link].dof_count:
@@ -168,9 +166,7 @@ def generalized_forces(
             needed = wp.dot(scratch.dof[world, dof].angular, moment) + wp.dot(
                 scratch.dof[world, dof].linear, force
             )
-            applied = real(0.0)
-            if purpose == FREE_MOTION:
-                applied = state.dof_torque[world, dof]
+            applied = state.dof_torque[world, dof] if purpose == FREE_MOTION else 0.0
             scratch.dof[world, dof].force = applied - needed
             dof += 1
         if link > base:

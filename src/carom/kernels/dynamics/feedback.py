@@ -100,8 +100,7 @@ def measure_joint_wrenches(
             force = scratch.link[world, link].force
             torque = scratch.link[world, link].moment - wp.cross(scratch.link[world, link].offset, force)
             to_link = wp.transpose(scratch.link[world, link].rotation)
-            force = to_link * force
-            torque = to_link * torque
+            force, torque = to_link * force, to_link * torque
             if settings.feedback_in_joint != 0:
                 torque -= wp.cross(force, model.link[link].com_from_pivot)
             if settings.feedback_in_world != 0:

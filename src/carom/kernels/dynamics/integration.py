@@ -2,10 +2,10 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import base_omega, base_velocity, load_quaternion
+from carom.kernels.dynamics.kinematics import base_omega, base_velocity, load_quaternion, three_numbers
 from carom.kernels.maths.rotation import axis_rotation, rotation_step
 from carom.kernels.structs import Model, State
-from carom.kernels.types import Int32, Quaternion, Vector3, func, real
+from carom.kernels.types import Int32, Quaternion, func, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 
 
@@ -41,11 +41,7 @@ def integrate_positions(model: Model, state: State, world: Int32, tree: Int32, d
         if joint_type == REVOLUTE or joint_type == PRISMATIC:
             state.position[world, q] += dt * state.dof_velocity[world, dof]
         elif joint_type == SPHERICAL:
-            rate = Vector3(
-                state.dof_velocity[world, dof],
-                state.dof_velocity[world, dof + 1],
-                state.dof_velocity[world, dof + 2],
-            )
+            rate = three_numbers(state.dof_velocity, world, dof)
             current = load_quaternion(state, world, q)
             store_quaternion(state, world, q, rotation_step(wp.quat_rotate(current, rate), dt) * current)
         elif joint_type == PLANAR:

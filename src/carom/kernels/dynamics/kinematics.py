@@ -4,19 +4,31 @@ import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation, canonical, rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Quaternion, Transform, TransformRows, Vector3, Vector6, func, kernel
+from carom.kernels.types import (
+    Int32,
+    Quaternion,
+    RealRows,
+    Transform,
+    TransformRows,
+    Vector3,
+    Vector6,
+    func,
+    kernel,
+)
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
+
+
+@func
+def three_numbers(rows: RealRows, world: Int32, first: Int32) -> Vector3:
+    """The numbers of a world from `first` on, as a vector."""
+    return Vector3(rows[world, first], rows[world, first + 1], rows[world, first + 2])
 
 
 @func
 def load_quaternion(state: State, world: Int32, q: Int32) -> Quaternion:
     """The quaternion in coordinates `q` to `q + 3`."""
-    return Quaternion(
-        state.position[world, q],
-        state.position[world, q + 1],
-        state.position[world, q + 2],
-        state.position[world, q + 3],
-    )
+    xyz = three_numbers(state.position, world, q)
+    return Quaternion(xyz[0], xyz[1], xyz[2], state.position[world, q + 3])
 
 
 @func
@@ -24,7 +36,7 @@ def forward_kinematics(model: Model, state: State, poses: TransformRows, world: 
     """Fill `poses` with the world poses of a tree's inertial frames, from its coordinates."""
     base = model.tree[tree].first_link
     q = model.tree[tree].first_position
-    position = Vector3(state.position[world, q], state.position[world, q + 1], state.position[world, q + 2])
+    position = three_numbers(state.position, world, q)
     orientation = canonical(load_quaternion(state, world, q + 3))
     poses[world, base] = Transform(position, orientation)
 
@@ -125,19 +137,13 @@ def motion_subspaces(model: Model, poses: TransformRows, scratch: Scratch, world
 @func
 def base_omega(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Angular velocity of a tree's base [rad/s]."""
-    v = model.tree[tree].first_velocity
-    return Vector3(
-        state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
-    )
+    return three_numbers(state.dof_velocity, world, model.tree[tree].first_velocity)
 
 
 @func
 def base_velocity(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Velocity of the centre of mass of a tree's base [m/s]."""
-    v = model.tree[tree].first_velocity + 3
-    return Vector3(
-        state.dof_velocity[world, v], state.dof_velocity[world, v + 1], state.dof_velocity[world, v + 2]
-    )
+    return three_numbers(state.dof_velocity, world, model.tree[tree].first_velocity + 3)
 
 
 @func

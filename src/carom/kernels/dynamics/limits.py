@@ -114,21 +114,10 @@ def spherical_limit_rows(
         if wp.abs(error) > _EPSILON:
             change = -state.dof_velocity[world, first + axis]
             change -= error * settings.joint_erp / settings.time_step
-            lower = real(0.0)
-            upper = bound
-            if error > 0.0:
-                lower = -bound
-                upper = real(0.0)
+            lower = -bound if error > 0.0 else 0.0
+            upper = 0.0 if error > 0.0 else bound
             row = add_row(
-                model,
-                scratch,
-                world,
-                constraint,
-                row,
-                first + axis,
-                change,
-                effective_mass[axis],
-                lower,
+                model, scratch, world, constraint, row, first + axis, change, effective_mass[axis], lower,
                 upper,
-            )
+            )  # fmt: skip
     return row

@@ -62,36 +62,25 @@ def composite_inertia(model: Model, scratch: Scratch, world: Int32, tree: Int32)
 @func
 def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Replace the joint-space inertia in `block_factor` by L, and store the inverses of the pivots D."""
-    first = model.tree[tree].first_dof
-    count = model.tree[tree].dof_count
-    blocks = (count + 3) // 4
-    if count > 0:
-        factorise_rows(
-            scratch.block_factor, model.tree[tree].first_block, scratch.dof, first, world, count, blocks,
-            LEAST_PIVOT,
-        )  # fmt: skip
+    factorise_rows(
+        scratch.block_factor, model.tree[tree].first_block, scratch.dof, model.tree[tree].first_dof, world,
+        model.tree[tree].dof_count, LEAST_PIVOT,
+    )  # fmt: skip
 
 
 @func
 def solve(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Replace the generalized forces in `dof_force` by the accelerations they cause."""
-    first = model.tree[tree].first_dof
-    count = model.tree[tree].dof_count
-    blocks = (count + 3) // 4
-    if count > 0:
-        solve_rows(
-            scratch.block_factor, model.tree[tree].first_block, scratch.dof, first, world, count, blocks
-        )
+    solve_rows(
+        scratch.block_factor, model.tree[tree].first_block, scratch.dof, model.tree[tree].first_dof, world,
+        model.tree[tree].dof_count,
+    )  # fmt: skip
 
 
 @func
 def invert(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Fill `block_inverse_mass` with the inverse of the joint-space inertia."""
-    first = model.tree[tree].first_dof
-    count = model.tree[tree].dof_count
-    blocks = (count + 3) // 4
-    if count > 0:
-        invert_rows(
-            scratch.block_inverse_mass, scratch.block_factor, model.tree[tree].first_block, scratch.dof,
-            first, world, count, blocks,
-        )  # fmt: skip
+    invert_rows(
+        scratch.block_inverse_mass, scratch.block_factor, model.tree[tree].first_block, scratch.dof,
+        model.tree[tree].first_dof, world, model.tree[tree].dof_count,
+    )  # fmt: skip

@@ -41,6 +41,7 @@ def write_row(
 
 
 @wp.func_native("""
+    const int blocks = (count + 3) / 4;
     auto* rows = &wp::index(matrix, world, start);
     auto* dof = &wp::index(dofs, world, first);
     for (int k = count - 1; k >= 0; --k) {
@@ -69,7 +70,6 @@ def factorise_rows(
     first: Int32,
     world: Int32,
     count: Int32,
-    blocks: Int32,
     least_pivot: real,
 ):
     """Replace a matrix H = Lᵀ D L by L; `inverse_pivot` becomes 1 / D, or 0 if D is below `least_pivot`."""
@@ -77,6 +77,7 @@ def factorise_rows(
 
 
 @wp.func_native("""
+    const int blocks = (count + 3) / 4;
     const auto* rows = &wp::index(matrix, world, start);
     auto* dof = &wp::index(dofs, world, first);
     for (int k = count - 1; k >= 0; --k) {
@@ -93,14 +94,13 @@ def factorise_rows(
         dof[k].force = acceleration;
     }
 """)
-def solve_rows(
-    matrix: Vector4Rows, start: Int32, dofs: DofRows, first: Int32, world: Int32, count: Int32, blocks: Int32
-):
+def solve_rows(matrix: Vector4Rows, start: Int32, dofs: DofRows, first: Int32, world: Int32, count: Int32):
     """Replace `force` of the dofs by the solution of Lᵀ D L x = force."""
     ...
 
 
 @wp.func_native("""
+    const int blocks = (count + 3) / 4;
     auto* rows = &wp::index(inverse, world, start);
     const auto* factors = &wp::index(matrix, world, start);
     const auto* dof = &wp::index(dofs, world, first);
@@ -134,7 +134,6 @@ def invert_rows(
     first: Int32,
     world: Int32,
     count: Int32,
-    blocks: Int32,
 ):
     """Fill the inverse A of a matrix Lᵀ D L.
 

@@ -22,9 +22,7 @@ UNBOUNDED = real(math.inf)
 @func
 def stated(given: Int32, bit: Int32, numbers: Reals, joint: Int32, otherwise: real) -> real:
     """The number for a joint if such numbers are given, else the default `otherwise`."""
-    if given & bit != 0:
-        return numbers[joint]
-    return otherwise
+    return numbers[joint] if given & bit != 0 else otherwise
 
 
 @func
@@ -64,19 +62,10 @@ def command_motors_kernel(
 ):
     """Set the motors of joints, or add joint torques; does nothing if a number is not finite.
 
-    For each joint the result is that of `AxisMotor.command` in `carom.scene.joint_motor`.
-
-    Args:
-        state: The state of all worlds.
-        commands: The commands of the motors.
-        world: The world.
-        count: Number of joints.
-        default_force: Maximum force if forces are not given; with `TORQUE`, the torque [N or N m].
-        default_kp: Position gain if these are not given.
-        default_kd: Velocity gain if these are not given.
-        mode: `VELOCITY`, `TORQUE` or `POSITION`.
-        given: Bits of the quantities given; positions and velocities that are not given are 0.
-        time_step: Duration by which forces become impulses [s].
+    For each joint the result is that of `AxisMotor.command` in `carom.scene.joint_motor`. `mode` is
+    `VELOCITY`, `TORQUE` or `POSITION`, and `given` has the bits of the quantities given. Positions and
+    velocities that are not given are 0; forces [N or N m], with `TORQUE` the torques, and gains are the
+    defaults. Forces become impulses by `time_step` [s].
     """
     if not wp.isfinite(sum_of_given(commands, count, given)):
         commands.joint_refused[0] = 1

@@ -40,13 +40,9 @@ def unless_nan(value: real, other: real) -> real:
 def joint_damping(model: Model, state: State, world: Int32, tree: Int32):
     """Add viscous joint damping as an explicit torque, from the rates before the step."""
     subtract_products(
-        state.dof_torque,
-        model.dof_damping,
-        state.dof_velocity,
-        model.tree[tree].first_dof,
-        world,
+        state.dof_torque, model.dof_damping, state.dof_velocity, model.tree[tree].first_dof, world,
         model.tree[tree].dof_count,
-    )
+    )  # fmt: skip
 
 
 @func
@@ -145,15 +141,6 @@ def spherical_motor_rows(
         change -= motor[MOTOR_KP] * error[axis] * settings.joint_erp / settings.time_step
         change = unless_nan(change, bound)
         row = add_row(
-            model,
-            scratch,
-            world,
-            constraint,
-            row,
-            first + axis,
-            change,
-            effective_mass[axis],
-            -bound,
-            bound,
+            model, scratch, world, constraint, row, first + axis, change, effective_mass[axis], -bound, bound
         )
     return row

@@ -68,9 +68,17 @@ def inverse_mass_entry(model: Model, scratch: Scratch, world: Int32, tree: Int32
 @func
 def inverse_or_off(inverse_mass: real) -> real:
     """Effective mass of a row from its inverse mass; 0 if that is too small, as nothing can move."""
-    if inverse_mass > LEAST_INVERSE_MASS:
-        return 1.0 / inverse_mass
-    return 0.0
+    return 1.0 / inverse_mass if inverse_mass > LEAST_INVERSE_MASS else 0.0
+
+
+@func
+def inverses_or_off(inverse_masses: Vector3) -> Vector3:
+    """As `inverse_or_off`, for three rows or moments of inertia."""
+    return Vector3(
+        inverse_or_off(inverse_masses[0]),
+        inverse_or_off(inverse_masses[1]),
+        inverse_or_off(inverse_masses[2]),
+    )
 
 
 @func
@@ -126,5 +134,4 @@ def axis_effective_masses(model: Model, scratch: Scratch, world: Int32, tree: In
     first = model.link[link].first_dof
     own = angular_inverse_masses(model, scratch, world, tree, first + 2, first)
     parents = angular_inverse_masses(model, scratch, world, tree, model.dof[first].parent, first)
-    total = own + parents
-    return Vector3(inverse_or_off(total[0]), inverse_or_off(total[1]), inverse_or_off(total[2]))
+    return inverses_or_off(own + parents)

@@ -13,12 +13,18 @@ from carom.kernels.dynamics.dynamics import (
     turned_inertia,
     update_velocities,
 )
-from carom.kernels.dynamics.kinematics import base_omega, base_subspace, base_velocity, forward_kinematics
+from carom.kernels.dynamics.kinematics import (
+    base_omega,
+    base_subspace,
+    base_velocity,
+    forward_kinematics,
+    three_numbers,
+)
 from carom.kernels.dynamics.quarantine import report_fault
-from carom.kernels.dynamics.rows import inverse_or_off
+from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Matrix3, Vector3, Vector4, func, real
+from carom.kernels.types import Int32, Matrix3, Vector4, func, real
 
 
 @func
@@ -57,10 +63,7 @@ def move_single_body(
     mass = model.link_mass[world, link]
     inverse_mass = inverse_or_off(mass)
     rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
-    inverse_inertia = turned_inertia(
-        rotation,
-        Vector3(inverse_or_off(moments[0]), inverse_or_off(moments[1]), inverse_or_off(moments[2])),
-    )
+    inverse_inertia = turned_inertia(rotation, inverses_or_off(moments))
 
     omega = base_omega(model, state, world, tree)
     velocity = base_velocity(model, state, world, tree)
@@ -75,16 +78,8 @@ def move_single_body(
         torque -= spin * damping_rate(angular_damping, wp.length(omega))
 
     first = model.tree[tree].first_dof
-    applied = Vector3(
-        state.dof_torque[world, first], state.dof_torque[world, first + 1], state.dof_torque[world, first + 2]
-    )
-    angular = inverse_inertia * (torque + applied)
-    applied = Vector3(
-        state.dof_torque[world, first + 3],
-        state.dof_torque[world, first + 4],
-        state.dof_torque[world, first + 5],
-    )
-    linear = inverse_mass * (force + applied)
+    angular = inverse_inertia * (torque + three_numbers(state.dof_torque, world, first))
+    linear = inverse_mass * (force + three_numbers(state.dof_torque, world, first + 3))
     for axis in range(3):
         scratch.dof[world, first + axis].force = angular[axis]
         scratch.dof[world, first + 3 + axis].force = linear[axis]

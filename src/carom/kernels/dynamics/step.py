@@ -56,13 +56,7 @@ def move_tree(
 
 @func
 def free_motion(
-    model: Model,
-    settings: Settings,
-    state: State,
-    scratch: Scratch,
-    world: Int32,
-    tree: Int32,
-    pushed: bool,
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
 ):
     """Update velocities for the substep without constraints; if `pushed`, also the data for constraints."""
     if is_asleep(state, world, tree):

@@ -47,8 +47,7 @@ def is_lit(light: View, lighting: Lighting, point: Vector4) -> bool:
     """Whether the light reaches a point, given in homogeneous pixels of the light's view."""
     if point[3] <= 0.0:
         return True
-    x = wp.round(point[0] / point[3])
-    y = wp.round(point[1] / point[3])
+    x, y = wp.round(point[0] / point[3]), wp.round(point[1] / point[3])
     # Written so that NaN fails the test as well.
     if not (x >= 0.0 and y >= 0.0):
         return True
@@ -136,9 +135,7 @@ def shade_span(
         w = third[0] * x + third_start
         # Perspective-correct interpolation: the corners' weights in space, not on the screen.
         distance = 1.0 / (u + v + w)
-        u = u * distance
-        v = v * distance
-        w = w * distance
+        u, v, w = u * distance, v * distance, w * distance
         uv = first_uv * u + second_uv * v + third_uv * w
         shadow = real(1.0)
         if lighting.shadow + lighting.projected > 0:

@@ -46,8 +46,7 @@ def widened(bounds: Vector4, p: Vector4) -> Vector4:
     """Bounds extended to include a point; unlimited if the point is not in front of the camera."""
     if p[3] <= 0.0:
         return Vector4(-_HUGE, -_HUGE, _HUGE, _HUGE)
-    x = p[0] / p[3]
-    y = p[1] / p[3]
+    x, y = p[0] / p[3], p[1] / p[3]
     return Vector4(wp.min(bounds[0], x), wp.min(bounds[1], y), wp.max(bounds[2], x), wp.max(bounds[3], y))
 
 
@@ -57,8 +56,7 @@ def widened_by_edge(bounds: Vector4, a: Vector4, b: Vector4) -> Vector4:
 
     The corner is left out if it is before the near plane.
     """
-    above_a = a[2] + a[3]
-    above_b = b[2] + b[3]
+    above_a, above_b = a[2] + a[3], b[2] + b[3]
     result = bounds
     if above_a >= 0.0:
         result = widened(result, a)
@@ -130,9 +128,7 @@ def where_positive(span: Vector2, slope: real, start: real) -> Vector2:
         return Vector2(wp.max(span[0], -start / slope), span[1])
     if slope < 0.0:
         return Vector2(span[0], wp.min(span[1], -start / slope))
-    if start < 0.0:
-        return Vector2(_HUGE, -_HUGE)
-    return span
+    return Vector2(_HUGE, -_HUGE) if start < 0.0 else span
 
 
 @func

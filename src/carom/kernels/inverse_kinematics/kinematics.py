@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation
+from carom.kernels.mechanism.dynamics import quaternion_at
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
@@ -11,8 +12,7 @@ from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 @func
 def turned_about_z(rotation: Quaternion, angle: real) -> Quaternion:
     """A rotation followed by a rotation about its own z axis by `angle` [rad]."""
-    s = wp.sin(0.5 * angle)
-    c = wp.cos(0.5 * angle)
+    s, c = wp.sin(0.5 * angle), wp.cos(0.5 * angle)
     return Quaternion(
         rotation[0] * c + rotation[1] * s,
         rotation[1] * c - rotation[0] * s,
@@ -47,9 +47,7 @@ def place(sizes: ChainSizes, chain: Chain, search: Search, coordinates: Reals):
         elif kind == PRISMATIC:
             origin += z_axis(rotation) * (chain.joint[joint].slide * coordinates[q])
         elif kind == SPHERICAL:
-            rotation = rotation * Quaternion(
-                coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3]
-            )
+            rotation = rotation * quaternion_at(coordinates, q)
         elif kind == PLANAR:
             origin += wp.quat_rotate(
                 rotation,
@@ -90,9 +88,7 @@ def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
         axis = -axis
         cosine = -cosine
     sine = wp.length(axis)
-    if sine < 1.0e-12:
-        return 2.0 * axis
-    return axis * (2.0 * wp.atan2(sine, cosine) / sine)
+    return 2.0 * axis if sine < 1.0e-12 else axis * (2.0 * wp.atan2(sine, cosine) / sine)
 
 
 @wp.struct
@@ -107,9 +103,7 @@ class Errors:
 @func
 def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: Int32) -> Errors:
     """Fill `block_error` with the vectors from the ends to their targets; returns their lengths."""
-    distance = real(0.0)
-    angle = real(0.0)
-    squares = real(0.0)
+    distance, angle, squares = real(0.0), real(0.0), real(0.0)
     stride = 1 + oriented
     for end in range(sizes.ends):
         way = search.end_target_position[end] - end_position(chain, search, end)
@@ -184,12 +178,22 @@ def fill_jacobian(sizes: ChainSizes, chain: Chain, search: Search, coordinates: 
 def turned(coordinates: Reals, q: Int32, rate: Vector3) -> Quaternion:
     """The quaternion at `q` after a rotation by the rotation vector `rate`, in its own axes."""
     angle = wp.length(rate)
-    scale = real(0.5)
-    if angle > 1.0e-9:
-        scale = wp.sin(0.5 * angle) / angle
+    scale = wp.sin(0.5 * angle) / angle if angle > 1.0e-9 else 0.5
     change = Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * angle))
-    now = Quaternion(coordinates[q], coordinates[q + 1], coordinates[q + 2], coordinates[q + 3])
-    return wp.normalize(now * change)
+    return wp.normalize(quaternion_at(coordinates, q) * change)
+
+
+@func
+def turn_joints(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, result: Reals):
+    """Turn the spherical joints from the positions `start` on by the steps of their dofs."""
+    for joint in range(sizes.joints):
+        if chain.joint[joint].kind == SPHERICAL:
+            dof = chain.joint[joint].first_dof
+            q = chain.joint[joint].first_coordinate
+            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
+            quaternion = turned(start, q, rate)
+            for k in range(4):
+                result[q + k] = quaternion[k]
 
 
 @func
@@ -199,14 +203,7 @@ def advance(sizes: ChainSizes, chain: Chain, search: Search, start: Reals, resul
         coordinate = chain.dof_coordinate[dof]
         if coordinate >= 0:
             result[coordinate] = start[coordinate] + search.dof[dof].step
-    for joint in range(sizes.joints):
-        if chain.joint[joint].kind == SPHERICAL:
-            dof = chain.joint[joint].first_dof
-            q = chain.joint[joint].first_coordinate
-            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
-            quaternion = turned(start, q, rate)
-            for k in range(4):
-                result[q + k] = quaternion[k]
+    turn_joints(sizes, chain, search, start, result)
 
 
 @func

@@ -15,14 +15,13 @@ from carom.kernels.inverse_kinematics.kinematics import (
     fill_jacobian,
     measure_errors,
     place,
-    turned,
+    turn_joints,
 )
 from carom.kernels.inverse_kinematics.selective_step import selective_step
 from carom.kernels.inverse_kinematics.steps import bounded_step, damped_step, null_space_step
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
-from carom.layouts.codes import SPHERICAL
 
 # Iteration ends when the largest change of a joint is smaller than this.
 _NO_STEP = real(1e-14)
@@ -103,27 +102,17 @@ def descend(
 ):
     """Minimise the errors from `coordinate_now` on, until they are below the threshold or progress is slow.
 
-    Args:
-        sizes: The numbers of joints, ends and so on.
-        chain: The chain.
-        search: The targets and options, with joint frames and errors at `coordinate_now`.
-        oriented: 1 if the ends have target orientations as well.
-        budget: Maximum number of poses to try.
-        threshold: Tolerance of distances [m] and angles [rad].
-        errors: The errors at `coordinate_now`.
-
-    Returns:
-        The errors at the end, and the number of poses tried.
+    `search` has joint frames and errors at `coordinate_now`, as has `errors`. `oriented` is 1 if the ends
+    have target orientations as well, `threshold` the tolerance of distances [m] and angles [rad]. At most
+    `budget` poses are tried. Returns the errors at the end, and the number of poses tried.
     """
     blocks = (1 + oriented) * sizes.ends
-    tried = Int32(0)
-    slow = Int32(0)
+    tried, slow = Int32(0), Int32(0)
     left = errors
     growth = real(1.0)
     while tried < budget and slow < _SLOW_STEPS and (left.distance > threshold or left.angle > threshold):
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
-        attempt = Int32(0)
-        better = Int32(0)
+        attempt, better = Int32(0), Int32(0)
         while better == 0 and attempt < _TRIES and tried < budget:
             damping = growth * _DAMPING_BY_ERROR * left.squares + _LEAST_DAMPING
             bounded_step(sizes, chain, search, search.coordinate_now, blocks, damping)
@@ -169,14 +158,7 @@ def scatter(sizes: ChainSizes, chain: Chain, search: Search, spread: real, seed:
             search.coordinate_now[coordinate] = wp.clamp(
                 search.coordinate_start[coordinate] + offset, low, high
             )
-    for joint in range(sizes.joints):
-        if chain.joint[joint].kind == SPHERICAL:
-            dof = chain.joint[joint].first_dof
-            q = chain.joint[joint].first_coordinate
-            rate = Vector3(search.dof[dof].step, search.dof[dof + 1].step, search.dof[dof + 2].step)
-            quaternion = turned(search.coordinate_start, q, rate)
-            for k in range(4):
-                search.coordinate_now[q + k] = quaternion[k]
+    turn_joints(sizes, chain, search, search.coordinate_start, search.coordinate_now)
 
 
 @func
@@ -204,17 +186,11 @@ def inverse_kinematics_kernel(
 ):
     """Search for joint positions and write them to `coordinate_best`.
 
-    Args:
-        sizes: The numbers of joints, ends and so on.
-        chain: The chain.
-        search: The targets and options.
-        oriented: 1 if the ends have target orientations as well.
-        step_kind: Method of PyBullet's iteration: `DAMPED`, `NULL_SPACE` or `SELECTIVE`.
-        bounded: 1 if there are limits.
-        iterations: Maximum number of steps of PyBullet's iteration.
-        further: Number of poses that may be tried after that; with limits at least `_WITHIN_LIMITS`.
-        threshold: Tolerance of distances [m] and angles [rad].
-        patience: PyBullet's result is taken, converged or not, if at most this share of the distance is left.
+    `oriented` is 1 if the ends have target orientations as well, `bounded` 1 if there are limits, `threshold`
+    the tolerance of distances [m] and angles [rad]. PyBullet's iteration has at most `iterations` steps of
+    the method `step_kind`: `DAMPED`, `NULL_SPACE` or `SELECTIVE`. After it `further` poses may be tried; with
+    limits at least `_WITHIN_LIMITS`. PyBullet's result is taken, converged or not, if at most the share
+    `patience` of the distance is left.
     """
     take_targets(sizes, search)
     for column in range(sizes.columns):
@@ -231,9 +207,7 @@ def inverse_kinematics_kernel(
         first = measure_errors(sizes, chain, search, oriented)
         bearable = wp.max(patience * first.distance, _NEAR)
     follow(sizes, chain, search, oriented, step_kind, iterations, threshold)
-    outside = Int32(0)
-    if bounded == 1:
-        outside = keep_limits(sizes, chain, search, search.coordinate_now)
+    outside = keep_limits(sizes, chain, search, search.coordinate_now) if bounded == 1 else Int32(0)
     place(sizes, chain, search, search.coordinate_now)
     errors = measure_errors(sizes, chain, search, oriented)
     copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
@@ -255,9 +229,7 @@ def inverse_kinematics_kernel(
             search.column[column].weight = search.column[column].weight / mean
     for dof in range(sizes.dofs):
         search.dof[dof].step = real(0.0)
-    left = further
-    if bounded == 1 and not content:
-        left = wp.max(further, _WITHIN_LIMITS)
+    left = wp.max(further, _WITHIN_LIMITS) if bounded == 1 and not content else further
     spread = _FIRST_SPREAD
     worth = real(1.0)
     seed = Int32(1)

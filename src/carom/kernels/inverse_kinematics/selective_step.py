@@ -21,8 +21,7 @@ def diagonalise_rows(search: Search, rows: Int32):
     a = search.spectrum_matrix
     sweep = Int32(0)
     while sweep < _MOST_SWEEPS:
-        off = real(0.0)
-        trace = real(0.0)
+        off, trace = real(0.0), real(0.0)
         for i in range(rows):
             trace += a[i * rows + i]
             for k in range(i):
@@ -109,14 +108,12 @@ def direction_block(search: Search, blocks: Int32, block: Int32, direction: Int3
 def add_direction(sizes: ChainSizes, chain: Chain, search: Search, blocks: Int32, direction: Int32):
     """Add the part of the step along one singular vector."""
     singular = wp.sqrt(search.spectrum_matrix[direction * 3 * blocks + direction])
-    along = real(0.0)
-    end_motion = real(0.0)
+    along, end_motion = real(0.0), real(0.0)
     for block in range(blocks):
         part = direction_block(search, blocks, block, direction)
         along += wp.dot(part, search.block_error[block])
         end_motion += wp.length(part)
-    joint_motion = real(0.0)
-    greatest = real(0.0)
+    joint_motion, greatest = real(0.0), real(0.0)
     for column in range(sizes.columns):
         share = wp.abs(direction_share(search, blocks, column, direction) / singular)
         max_distance = real(0.0)

@@ -195,8 +195,7 @@ def bounded_step(
     """
     for column in range(sizes.columns):
         search.column[column].held = 0
-    passes = Int32(0)
-    settled = Int32(0)
+    passes, settled = Int32(0), Int32(0)
     while settled == 0:
         start_from_errors(search, blocks)
         for column in range(sizes.columns):

@@ -50,9 +50,7 @@ def canonical(q: Quaternion) -> Quaternion:
             lead = q[1]
         if wp.abs(q[2]) > wp.abs(lead):
             lead = q[2]
-    if lead < 0.0:
-        return Quaternion(-q[0], -q[1], -q[2], -q[3])
-    return q
+    return Quaternion(-q[0], -q[1], -q[2], -q[3]) if lead < 0.0 else q
 
 
 @func

@@ -7,7 +7,7 @@ R. Featherstone, Rigid Body Dynamics Algorithms (2008), chapters 5 and 6.
 import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation, rotation_matrix
-from carom.kernels.structs import MechanismSizes, MechanismTable
+from carom.kernels.structs import DofAxis, MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Matrix3, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.codes import PLANAR, PRISMATIC, REVOLUTE, SPHERICAL
 from carom.layouts.mechanism import BASE_MOTION
@@ -20,6 +20,12 @@ def vector_at(numbers: Reals, first: Int32) -> Vector3:
 
 
 @func
+def quaternion_at(numbers: Reals, first: Int32) -> Quaternion:
+    """The quaternion in entries `first` to `first + 3` of an array."""
+    return Quaternion(numbers[first], numbers[first + 1], numbers[first + 2], numbers[first + 3])
+
+
+@func
 def first_rate(sizes: MechanismSizes) -> Int32:
     """Index in `input` of the rate of dof 0, counted as if a free base's rates were there."""
     return BASE_MOTION + sizes.coordinates - sizes.base_dofs
@@ -28,8 +34,7 @@ def first_rate(sizes: MechanismSizes) -> Int32:
 @func
 def turned_about_z(r: Matrix3, angle: real) -> Matrix3:
     """The product of a rotation matrix and a rotation about z."""
-    s = wp.sin(angle)
-    c = wp.cos(angle)
+    s, c = wp.sin(angle), wp.cos(angle)
     return Matrix3(
         r[0, 0] * c + r[0, 1] * s, r[0, 1] * c - r[0, 0] * s, r[0, 2],
         r[1, 0] * c + r[1, 1] * s, r[1, 1] * c - r[1, 0] * s, r[1, 2],
@@ -56,10 +61,7 @@ def joint_turn(mechanism: MechanismTable, node: Int32) -> Matrix3:
     if kind == REVOLUTE:
         return turned_about_z(turn, mechanism.input[q])
     if kind == SPHERICAL:
-        rotation = Quaternion(
-            mechanism.input[q], mechanism.input[q + 1], mechanism.input[q + 2], mechanism.input[q + 3]
-        )
-        return turn * rotation_matrix(wp.normalize(rotation))
+        return turn * rotation_matrix(wp.normalize(quaternion_at(mechanism.input, q)))
     if kind == PLANAR:
         axis = wp.normalize(mechanism.dof[mechanism.node[node].first_dof].angular)
         return turn * rotation_matrix(axis_rotation(axis, mechanism.input[q]))
@@ -100,6 +102,12 @@ def place_nodes(mechanism: MechanismTable, count: Int32):
 
 
 @func
+def along(axis: DofAxis, torque: Vector3, force: Vector3) -> real:
+    """Generalized force of a dof with a torque and a force."""
+    return wp.dot(axis.angular, torque) + wp.dot(axis.linear, force)
+
+
+@func
 def newton_euler(
     sizes: MechanismSizes,
     mechanism: MechanismTable,
@@ -112,22 +120,17 @@ def newton_euler(
 ):
     """Compute the generalized forces in `output`, for the positions in `input` and the motion given.
 
-    Args:
-        sizes: Sizes of the mechanism.
-        mechanism: The mechanism.
-        omega: Angular velocity of the base.
-        alpha: Its derivative.
-        acceleration: Linear acceleration of the base minus gravity.
-        joints: Array with the rates and accelerations of the dofs.
-        rates: Index in it of the rate of dof 0, counted as if a free base's rates were there.
-        accelerations: The same for accelerations; negative if all of them are 0.
+    The motion of the base is its angular velocity, the derivative of that, and its linear acceleration minus
+    gravity. `joints` has rates and accelerations of the dofs: `rates` and `accelerations` are the indices in
+    it of those of dof 0, counted as if a free base's were there; `accelerations` is negative if all of them
+    are 0.
     """
     keep_motion(mechanism, 0, omega, alpha, acceleration)
     mechanism.motion[0].force = Vector3(0.0, 0.0, 0.0)
     mechanism.motion[0].torque = Vector3(0.0, 0.0, 0.0)
     # Reaction forces on a fixed base are not computed.
     if sizes.base_dofs > 0:
-        keep_forces(mechanism, 0, omega, alpha, acceleration, swing_matrix(omega, alpha))
+        keep_forces(mechanism, 0, omega, alpha, acceleration)
     place_nodes(mechanism, sizes.nodes)
     for node in range(1, sizes.nodes):
         parent = mechanism.node[node].parent
@@ -140,8 +143,16 @@ def newton_euler(
             mechanism, node, omega, alpha, acceleration, joints, rates, accelerations
         )
         keep_motion(mechanism, node, omega, alpha, acceleration)
-        keep_forces(mechanism, node, omega, alpha, acceleration, swing_matrix(omega, alpha))
+        keep_forces(mechanism, node, omega, alpha, acceleration)
     gather_forces(sizes, mechanism)
+
+
+@func
+def newton_euler_of_input(sizes: MechanismSizes, mechanism: MechanismTable, accelerations: Int32):
+    """As `newton_euler`, for the motion of the base and the rates in `input`."""
+    numbers = mechanism.input
+    omega, alpha, acceleration = vector_at(numbers, 0), vector_at(numbers, 3), vector_at(numbers, 6)
+    newton_euler(sizes, mechanism, omega, alpha, acceleration, numbers, first_rate(sizes), accelerations)
 
 
 @func
@@ -165,9 +176,7 @@ def moved_on(
     if mechanism.node[node].joint_type == REVOLUTE:
         per_rate = mechanism.dof[dof].angular[2]
         spin = per_rate * joints[rates + dof]
-        spin_up = real(0.0)
-        if accelerations >= 0:
-            spin_up = per_rate * joints[accelerations + dof]
+        spin_up = per_rate * joints[accelerations + dof] if accelerations >= 0 else 0.0
         return (
             Vector3(angular[0], angular[1], angular[2] + spin),
             Vector3(change[0] + angular[1] * spin, change[1] - angular[0] * spin, change[2] + spin_up),
@@ -184,8 +193,7 @@ def moved_on(
         if accelerations >= 0:
             change += vector_at(joints, accelerations + dof)
         return angular + own, change + wp.cross(angular, own), linear
-    joint_omega = Vector3(0.0, 0.0, 0.0)
-    joint_velocity = Vector3(0.0, 0.0, 0.0)
+    joint_omega, joint_velocity = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     for other in range(dof, dof + mechanism.node[node].dof_count):
         rate = joints[rates + other]
         joint_omega += mechanism.dof[other].angular * rate
@@ -224,14 +232,10 @@ def keep_motion(
 
 @func
 def keep_forces(
-    mechanism: MechanismTable,
-    node: Int32,
-    omega: Vector3,
-    alpha: Vector3,
-    acceleration: Vector3,
-    swing: Matrix3,
+    mechanism: MechanismTable, node: Int32, omega: Vector3, alpha: Vector3, acceleration: Vector3
 ):
     """Store the force, and the torque about its origin, that a node needs for its motion."""
+    swing = swing_matrix(omega, alpha)
     moment = mechanism.node[node].moment
     inertia = mechanism.node[node].inertia
     mechanism.motion[node].force = mechanism.node[node].mass * acceleration + swing * moment
@@ -260,9 +264,7 @@ def gather_forces(sizes: MechanismSizes, mechanism: MechanismTable):
                 mechanism.output[dof + k] = torque[k]
         else:
             for other in range(dof, dof + mechanism.node[node].dof_count):
-                mechanism.output[other] = wp.dot(mechanism.dof[other].angular, torque) + wp.dot(
-                    mechanism.dof[other].linear, force
-                )
+                mechanism.output[other] = along(mechanism.dof[other], torque, force)
         if node > 0:
             parent = mechanism.node[node].parent
             turn = mechanism.motion[node].turn
@@ -333,9 +335,7 @@ def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
             while carrier >= 0:
                 first_other = mechanism.node[carrier].first_dof
                 for other in range(first_other, first_other + mechanism.node[carrier].dof_count):
-                    value = wp.dot(mechanism.axis[other].angular, torque) + wp.dot(
-                        mechanism.axis[other].linear, force
-                    )
+                    value = along(mechanism.axis[other], torque, force)
                     mechanism.matrix[dof * sizes.dofs + other] = value
                     mechanism.matrix[other * sizes.dofs + dof] = value
                 carrier = mechanism.node[carrier].parent
@@ -359,18 +359,7 @@ def shift(c: Vector3, moment: Vector3) -> Matrix3:
 @kernel
 def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
     """Compute in `output` the generalized forces that cause the motion in `input`."""
-    rates = first_rate(sizes)
-    motion = mechanism.input
-    newton_euler(
-        sizes,
-        mechanism,
-        vector_at(motion, 0),
-        vector_at(motion, 3),
-        vector_at(motion, 6),
-        motion,
-        rates,
-        rates + sizes.dofs - sizes.base_dofs,
-    )
+    newton_euler_of_input(sizes, mechanism, first_rate(sizes) + sizes.dofs - sizes.base_dofs)
 
 
 @kernel

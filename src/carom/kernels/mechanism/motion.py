@@ -5,7 +5,7 @@ import math
 import warp as wp
 
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.mechanism.dynamics import newton_euler, turned_back, vector_at
+from carom.kernels.mechanism.dynamics import newton_euler, quaternion_at, turned_back, vector_at
 from carom.kernels.structs import MechanismSizes, MechanismTable
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
 from carom.layouts.codes import BASE_POSITIONS, SPHERICAL
@@ -68,14 +68,9 @@ def rotation_by_angles(roll: real, pitch: real, yaw: real) -> Quaternion:
 def take_positions(
     sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, first: Int32, by_angles: Int32
 ):
-    """Copy the positions of the joints from the question to `input`.
+    """Copy the positions of the joints from the question of `motion_kernel`, from `first` on, to `input`.
 
-    Args:
-        sizes: Sizes of the mechanism.
-        mechanism: The mechanism.
-        question: As for `motion_kernel`.
-        first: Index in it of the first joint position.
-        by_angles: 1: positions of spherical joints are roll, pitch and yaw instead of a quaternion.
+    If `by_angles` is 1, positions of spherical joints are roll, pitch and yaw instead of a quaternion.
     """
     joint_dofs = sizes.dofs - sizes.base_dofs
     if by_angles == 0 or sizes.coordinates == joint_dofs:
@@ -98,8 +93,7 @@ def take_positions(
 def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
     """Gravity in the axes of a free base; not finite if the length of its quaternion is 0 or NaN."""
     gravity = vector_at(question, 0)
-    q = POSE + 3
-    turn = Quaternion(question[q], question[q + 1], question[q + 2], question[q + 3])
+    turn = quaternion_at(question, POSE + 3)
     if not wp.length_sq(turn) > 0.0:
         return Vector3(NOT_FINITE, NOT_FINITE, NOT_FINITE)
     if opposite_order == 1:
@@ -111,26 +105,19 @@ def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
 def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, as_pybullet: Int32):
     """Compute in `output` the generalized forces that cause a motion; for a free base, force before torque.
 
-    Args:
-        sizes: Sizes of the mechanism.
-        mechanism: The mechanism.
-        question: Gravity in the axes of the base; positions; rates; accelerations. With a free base,
-            gravity is in world axes; position and quaternion of the base come before the other positions,
-            its angular velocity and its velocity, in its own axes, before the other rates, and their
-            derivatives likewise.
-        as_pybullet: 1: gravity acts on a free base in the same direction as in PyBullet, and positions of
-            spherical joints are roll, pitch and yaw.
+    The question is gravity in the axes of the base; positions; rates; accelerations. With a free base,
+    gravity is in world axes; position and quaternion of the base come before the other positions, its angular
+    velocity and its velocity, in its own axes, before the other rates, and their derivatives likewise. If
+    `as_pybullet` is 1, gravity acts on a free base in the same direction as in PyBullet, and positions of
+    spherical joints are roll, pitch and yaw.
     """
     positions = POSE + 0
     acceleration = -vector_at(question, 0)
-    omega = Vector3(0.0, 0.0, 0.0)
-    alpha = Vector3(0.0, 0.0, 0.0)
+    omega, alpha = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     unused = real(0.0)
     if sizes.base_dofs > 0:
         positions += BASE_POSITIONS
-    rates = positions + sizes.coordinates
-    if as_pybullet == 1:
-        rates = positions + sizes.dofs - sizes.base_dofs
+    rates = positions + sizes.dofs - sizes.base_dofs if as_pybullet == 1 else positions + sizes.coordinates
     if sizes.base_dofs > 0:
         omega = vector_at(question, rates)
         alpha = vector_at(question, rates + sizes.dofs)

@@ -8,23 +8,18 @@ from carom.kernels.mechanism.cholesky import solve_damped
 from carom.kernels.mechanism.dynamics import (
     composite_inertia,
     first_rate,
-    newton_euler,
+    newton_euler_of_input,
     place_in_base,
+    quaternion_at,
     vector_at,
 )
 from carom.kernels.structs import Control, MechanismSizes, MechanismTable
-from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, kernel, real
+from carom.kernels.types import Int32, Quaternion, Vector3, func, kernel, real
 from carom.layouts.codes import SPHERICAL
 from carom.layouts.mechanism import BASE_MOTION
 
 _NO_ANGLE = real(1e-6)
 _HALF_TURN = real(math.pi)
-
-
-@func
-def quaternion_at(numbers: Reals, first: Int32) -> Quaternion:
-    """The quaternion in entries `first` to `first + 3` of an array."""
-    return Quaternion(numbers[first], numbers[first + 1], numbers[first + 2], numbers[first + 3])
 
 
 @func
@@ -58,8 +53,7 @@ def wanted_torques(sizes: MechanismSizes, mechanism: MechanismTable, control: Co
         turn = Vector3(0.0, 0.0, 0.0)
         if mechanism.node[node].joint_type == SPHERICAL:
             start = quaternion_at(mechanism.input, BASE_MOTION + q)
-            u = rates + first
-            rate = Vector3(mechanism.input[u], mechanism.input[u + 1], mechanism.input[u + 2])
+            rate = vector_at(mechanism.input, rates + first)
             turn = turn_between(advanced(start, rate, time_step), quaternion_at(control.coordinate_target, q))
         for k in range(mechanism.node[node].dof_count):
             dof = first + k
@@ -81,17 +75,7 @@ def stable_pd_kernel(
     sizes: MechanismSizes, mechanism: MechanismTable, control: Control, base_is_held: Int32, time_step: real
 ):
     """Compute in `dof_torque` the torques of stable PD control for the next step."""
-    still = Int32(-1)
-    newton_euler(
-        sizes,
-        mechanism,
-        vector_at(mechanism.input, 0),
-        vector_at(mechanism.input, 3),
-        vector_at(mechanism.input, 6),
-        mechanism.input,
-        first_rate(sizes),
-        still,
-    )
+    newton_euler_of_input(sizes, mechanism, -1)
     for node in range(sizes.nodes):
         place_in_base(mechanism, node)
     composite_inertia(sizes, mechanism)

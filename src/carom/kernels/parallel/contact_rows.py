@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.parallel.workspace import GIVEN_UP, UNWRITTEN, WRITTEN, is_called_off, pair_rows_of_island
+from carom.kernels.parallel.workspace import GIVEN_UP, UNWRITTEN, WRITTEN, is_at_stage, pair_rows_of_island
 from carom.kernels.solver.units import write_units
 from carom.kernels.structs import Contacts, IslandWork, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, kernel, real
@@ -25,13 +25,9 @@ def island_contacts_kernel(
     An island whose rows do not fit is given up, and with it the step of its world.
     """
     root, world = wp.tid()
-    if is_called_off(state, world):
+    if not is_at_stage(state, work, world, root, UNWRITTEN):
         return
-    if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != UNWRITTEN:
-        return
-    units = Int32(0)
-    manifold_blocks = Int32(0)
-    torsion = Int32(0)
+    units, manifold_blocks, torsion = Int32(0), Int32(0), Int32(0)
     first_contact = pair_rows.tree_first_contact[world, root]
     if first_contact >= 0:
         units, manifold_blocks, torsion = write_units(

@@ -5,6 +5,7 @@ import warp as wp
 from carom.kernels.parallel.workspace import (
     UNWRITTEN,
     WRITTEN,
+    is_at_stage,
     is_called_off,
     pair_rows_of_island,
     scratch_of_island,
@@ -15,6 +16,7 @@ from carom.kernels.solver.units import keep_unit_impulses
 from carom.kernels.solver.warm_starting import NOT_RESTING
 from carom.kernels.structs import (
     Contacts,
+    IslandProgress,
     IslandWork,
     Model,
     PairRows,
@@ -45,16 +47,15 @@ def island_rows_kernel(
     rows, pair_row, block, visits = island_rows(
         model, settings, state, own_scratch, users, own_pair_rows, world, root
     )
-    work.tree_progress[world, root].rows = rows
-    work.tree_progress[world, root].pair_row = pair_row
-    work.tree_progress[world, root].block = block
-    work.tree_progress[world, root].visits = visits
-    work.tree_progress[world, root].units = 0
-    work.tree_progress[world, root].manifold_blocks = 0
-    work.tree_progress[world, root].torsion = 0
-    work.tree_progress[world, root].resting = wp.min(pair_rows.tree_rest[world, root], 1)
-    work.tree_progress[world, root].outcome = Int32(NOT_RESTING)
-    work.tree_progress[world, root].stage = Int32(UNWRITTEN)
+    progress = IslandProgress()
+    progress.rows = rows
+    progress.pair_row = pair_row
+    progress.block = block
+    progress.visits = visits
+    progress.resting = wp.min(pair_rows.tree_rest[world, root], 1)
+    progress.outcome = Int32(NOT_RESTING)
+    progress.stage = Int32(UNWRITTEN)
+    work.tree_progress[world, root] = progress
 
 
 @kernel
@@ -70,28 +71,11 @@ def island_impulses_kernel(
 ):
     """Store the impulses of each island, and its numbers of rows and sweeps and its residual."""
     root, world = wp.tid()
-    if is_called_off(state, world):
-        return
-    if state.tree_island[world, root] != root or work.tree_progress[world, root].stage != WRITTEN:
+    if not is_at_stage(state, work, world, root, WRITTEN):
         return
     own_scratch = scratch_of_island(scratch, work, world, root)
     own_pair_rows = pair_rows_of_island(pair_rows, work, world, root)
-    keep_row_results(
-        model,
-        settings,
-        state,
-        own_scratch,
-        world,
-        root,
-        work.tree_progress[world, root].rows,
-        work.tree_progress[world, root].sweeps,
-        work.tree_progress[world, root].residual,
-    )
-    keep_unit_impulses(
-        contacts,
-        own_pair_rows,
-        world,
-        work.tree_progress[world, root].units,
-        work.tree_progress[world, root].outcome,
-    )
+    done = work.tree_progress[world, root]
+    keep_row_results(model, settings, state, own_scratch, world, root, done.rows, done.sweeps, done.residual)
+    keep_unit_impulses(contacts, own_pair_rows, world, done.units, done.outcome)
     keep_constraint_impulses(model, state, users, own_pair_rows, world, root)

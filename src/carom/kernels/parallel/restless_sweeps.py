@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.parallel.sweeps import sweep
-from carom.kernels.parallel.workspace import WRITTEN, is_called_off
+from carom.kernels.parallel.workspace import WRITTEN, is_at_stage
 from carom.kernels.structs import IslandWork, PairRows, Scratch, Settings, State
 from carom.kernels.types import kernel
 
@@ -14,13 +14,7 @@ def restless_sweeps_kernel(
 ):
     """Solve each island that moves, or that did not converge as one at rest."""
     root, world = wp.tid()
-    if is_called_off(state, world):
-        return
-    if (
-        state.tree_island[world, root] == root
-        and work.tree_progress[world, root].stage == WRITTEN
-        and work.tree_progress[world, root].resting == 0
-    ):
+    if is_at_stage(state, work, world, root, WRITTEN) and work.tree_progress[world, root].resting == 0:
         rows = work.tree_progress[world, root].rows
         visits = work.tree_progress[world, root].visits
         sweep(settings, scratch, pair_rows, work, world, root, rows, visits, 0)

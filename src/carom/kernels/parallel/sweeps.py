@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.parallel.workspace import (
     UNWRITTEN,
     WRITTEN,
-    is_called_off,
+    is_at_stage,
     pair_rows_of_island,
     scratch_of_island,
 )
@@ -28,18 +28,12 @@ def sweep(
     resting: Int32,
 ) -> real:
     """Relax the rows of an island until they hardly change; returns the residual, see `sweep_island`."""
+    progress = work.tree_progress[world, root]
     residual, sweeps = sweep_island(
-        settings,
-        scratch_of_island(scratch, work, world, root),
-        pair_rows_of_island(pair_rows, work, world, root),
-        world,
-        rows,
-        visits,
-        work.tree_progress[world, root].units,
-        work.tree_progress[world, root].manifold_blocks,
-        work.tree_progress[world, root].torsion,
-        resting,
-    )
+        settings, scratch_of_island(scratch, work, world, root),
+        pair_rows_of_island(pair_rows, work, world, root), world, rows, visits,
+        progress.units, progress.manifold_blocks, progress.torsion, resting,
+    )  # fmt: skip
     work.tree_progress[world, root].residual = residual
     work.tree_progress[world, root].sweeps = sweeps
     return residual
@@ -51,13 +45,7 @@ def resting_sweeps_kernel(
 ):
     """Solve each island at rest; if it does not converge, its contacts are rewritten with zero impulses."""
     root, world = wp.tid()
-    if is_called_off(state, world):
-        return
-    if (
-        state.tree_island[world, root] != root
-        or work.tree_progress[world, root].stage != WRITTEN
-        or work.tree_progress[world, root].resting == 0
-    ):
+    if not is_at_stage(state, work, world, root, WRITTEN) or work.tree_progress[world, root].resting == 0:
         return
     # An island at rest has no motors, limits or user constraints to visit.
     residual = sweep(settings, scratch, pair_rows, work, world, root, 0, 0, 1)

@@ -30,6 +30,14 @@ def is_called_off(state: State, world: Int32) -> bool:
 
 
 @func
+def is_at_stage(state: State, work: IslandWork, world: Int32, root: Int32, stage: Int32) -> bool:
+    """Whether a tree is the root of an island at a stage, in a world that takes part in the step."""
+    if is_called_off(state, world) or state.tree_island[world, root] != root:
+        return False
+    return work.tree_progress[world, root].stage == stage
+
+
+@func
 def went_wrong(state: State, world: Int32) -> bool:
     """Whether a world has to return to the start of the step: values were not finite, or arrays too short."""
     status = state.status_entry[world, STATUS]

@@ -19,17 +19,7 @@ from carom.layouts.contacts import PLACED, READINESS
 def nearest_convex(
     shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, core_a: Core, max_distance: real
 ) -> Int32:
-    """Write the nearest candidate, as `nearest_in_order`, if neither shape is a mesh or height field.
-
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for intermediate results, and the poses of the shapes.
-        world: The world.
-        a: Row of one shape.
-        b: Row of the other shape.
-        core_a: Core of a.
-        max_distance: Largest distance of interest [m].
-    """
+    """Write the nearest candidate, as `nearest_in_order`, if neither shape is a mesh or height field."""
     if core_a.kind == BOX and shapes.shape_kind[b] == PLANE:
         # If a face is flat on the plane, Bullet takes a particular one of its corners.
         return collide_plane_deepest(
@@ -63,7 +53,6 @@ def nearest_in_order(
     if kind_a == PLANE or kind_a >= TRIANGLES:
         return 0
     core_a = core_of(shapes, pairs, world, a)
-    distance = max_distance + 1.0
     if kind_b >= TRIANGLES:
         distance, normal, point = nearest_on_surface(shapes, pairs, world, a, b, core_a, max_distance)
         if distance > max_distance:
@@ -76,13 +65,7 @@ def nearest_in_order(
 def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_distance: real) -> Int32:
     """Write the nearest candidate of two shapes to row 0; returns 1, or 0 if they are too far apart.
 
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for intermediate results, and the poses of the shapes.
-        world: The world.
-        a: Row of one shape.
-        b: Row of the other shape; the normal points from b towards a.
-        max_distance: Largest distance of interest [m].
+    The normal points from b towards a. `max_distance` is the largest distance of interest [m].
     """
     first, second = in_order(shapes, a, b)
     count = nearest_in_order(shapes, pairs, world, first, second, max_distance)
@@ -93,14 +76,9 @@ def nearest(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, max_
 
 @kernel
 def closest_points_kernel(shapes: Shapes, pairs: Pairs, searches: Searches, count: Int32, max_distance: real):
-    """Find the nearest points of given pairs of shapes, one pair after the other.
+    """Find the nearest points of given pairs of shapes up to `max_distance` [m], one pair after the other.
 
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for intermediate results, and the shapes' poses, from `place_shapes_kernel`.
-        searches: The pairs of shapes, and the output.
-        count: Number of pairs.
-        max_distance: Largest distance of interest [m].
+    `place_shapes_kernel` has computed the poses of the shapes.
     """
     world = wp.tid()
     found = Int32(0)

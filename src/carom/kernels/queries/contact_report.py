@@ -28,23 +28,14 @@ def report_contacts_kernel(
 ):
     """List the contacts between two bodies or two of their links; either side may be any body.
 
-    Args:
-        contacts: All contacts.
-        places: Body and link index of each link row.
-        report: Output, with room for all contacts.
-        world: The world.
-        count: Number of contacts.
-        body_a: Body a of every listed contact; negative for any body, and then no sides are exchanged.
-        link_a: Link of this body; see `fits`.
-        body_b: The other body.
-        link_b: Link of the other body.
-        time_step: Duration of a step, to convert impulses to forces [s].
+    If body a is negative it is any body, and no sides are exchanged; otherwise every contact listed is
+    between this body as a and the other as b. For links see `fits`. Impulses become forces by `time_step`
+    [s].
     """
     listed = Int32(0)
     for row in range(count):
         shapes = contacts.contact_shapes[world, row]
-        first = shapes[2]
-        second = shapes[3]
+        first, second = shapes[2], shapes[3]
         as_is = fits(places, first, body_a, link_a) and fits(places, second, body_b, link_b)
         swapped = body_a >= 0 and fits(places, second, body_a, link_a) and fits(places, first, body_b, link_b)
         if as_is or swapped:
@@ -52,8 +43,7 @@ def report_contacts_kernel(
             point_b = contacts.contact_point_b[world, row]
             normal = contacts.contact_normal[world, row]
             if not as_is:
-                first = shapes[3]
-                second = shapes[2]
+                first, second = shapes[3], shapes[2]
                 point_a = contacts.contact_point_b[world, row]
                 point_b = contacts.contact_point_a[world, row]
                 normal = -normal

@@ -42,7 +42,7 @@ def packet_of(rays: Rays, first: Int32, count: Int32):
     Rays that are missing or not finite get the limit `NOWHERE`, so they hit nothing.
     """
     packet = Packet()
-    limit = Vector4(NOWHERE, NOWHERE, NOWHERE, NOWHERE)
+    limit = Vector4(NOWHERE)
     packet.first = first
     packet.end = wp.min(first + LANES, count)
     for lane in range(LANES):
@@ -60,12 +60,6 @@ def packet_of(rays: Rays, first: Int32, count: Int32):
             packet.inverse_z[lane] = inverse[2]
             limit[lane] = 1.0
     return packet, limit
-
-
-@func
-def splat(number: real) -> Vector4:
-    """Vector with the same number in each lane."""
-    return Vector4(number, number, number, number)
 
 
 @func
@@ -93,14 +87,14 @@ def maximum(a: Vector4, b: Vector4) -> Vector4:
 @func
 def length_within(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> Vector4:
     """Fraction of each ray, up to its limit, that is inside a box; negative if the ray misses the box."""
-    one_x = wp.cw_mul(splat(lower[0]) - packet.start_x, packet.inverse_x)
-    one_y = wp.cw_mul(splat(lower[1]) - packet.start_y, packet.inverse_y)
-    one_z = wp.cw_mul(splat(lower[2]) - packet.start_z, packet.inverse_z)
-    other_x = wp.cw_mul(splat(upper[0]) - packet.start_x, packet.inverse_x)
-    other_y = wp.cw_mul(splat(upper[1]) - packet.start_y, packet.inverse_y)
-    other_z = wp.cw_mul(splat(upper[2]) - packet.start_z, packet.inverse_z)
+    one_x = wp.cw_mul(Vector4(lower[0]) - packet.start_x, packet.inverse_x)
+    one_y = wp.cw_mul(Vector4(lower[1]) - packet.start_y, packet.inverse_y)
+    one_z = wp.cw_mul(Vector4(lower[2]) - packet.start_z, packet.inverse_z)
+    other_x = wp.cw_mul(Vector4(upper[0]) - packet.start_x, packet.inverse_x)
+    other_y = wp.cw_mul(Vector4(upper[1]) - packet.start_y, packet.inverse_y)
+    other_z = wp.cw_mul(Vector4(upper[2]) - packet.start_z, packet.inverse_z)
     enter_xy = maximum(minimum(one_x, other_x), minimum(one_y, other_y))
-    enter = maximum(enter_xy, maximum(minimum(one_z, other_z), splat(0.0)))
+    enter = maximum(enter_xy, maximum(minimum(one_z, other_z), Vector4(0.0)))
     leave_xy = minimum(maximum(one_x, other_x), maximum(one_y, other_y))
     leave = minimum(leave_xy, minimum(maximum(one_z, other_z), limit))
     return leave - enter

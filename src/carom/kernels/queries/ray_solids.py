@@ -21,8 +21,7 @@ THICKNESS = real(MARGIN)
 @func
 def ray_from_margin(from_core: Vector3, way: Vector3):
     """Ray that starts in the margin; `from_core` is its start relative to the core's nearest point."""
-    fraction = real(MISS)
-    normal = Vector3(0.0, 0.0, 0.0)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     if wp.dot(from_core, way) < 0.0:
         fraction = real(0.0)
         normal = wp.normalize(from_core)
@@ -44,8 +43,7 @@ def ray_ball(start: Vector3, way: Vector3, center: Vector3, radius: real):
     b = wp.dot(offset, way)
     c = wp.length_sq(offset) - radius * radius
     root = b * b - a * c
-    fraction = real(MISS)
-    normal = Vector3(0.0, 0.0, 0.0)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     if a > TINY and c > 0.0 and b < 0.0 and root >= 0.0:
         at = c / (-b + wp.sqrt(root))
         if at <= 1.0:
@@ -61,8 +59,7 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
     """Ray against a box around the origin with half extents `size`."""
     enter = real(-1.0)
     leave = real(1.0)
-    normal = Vector3(0.0, 0.0, 0.0)
-    fraction = real(MISS)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     if wp.abs(start[0]) <= size[0] and wp.abs(start[1]) <= size[1] and wp.abs(start[2]) <= size[2]:
         from_core = Vector3(
             beyond(start[0], size[0] - THICKNESS),
@@ -95,8 +92,7 @@ def ray_box(start: Vector3, way: Vector3, size: Vector3):
 @func
 def ray_tube(start: Vector3, way: Vector3, radius: real, half_length: real):
     """Ray from outside against the lateral surface of a cylinder along z."""
-    fraction = real(MISS)
-    normal = Vector3(0.0, 0.0, 0.0)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     a = way[0] * way[0] + way[1] * way[1]
     b = start[0] * way[0] + start[1] * way[1]
     c = start[0] * start[0] + start[1] * start[1] - radius * radius
@@ -132,8 +128,7 @@ def ray_cylinder(start: Vector3, way: Vector3, radius: real, half_length: real):
 def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
     """Ray against a capsule along z: the first hit of its lateral surface and its two spheres."""
     nearest = start - Vector3(0.0, 0.0, wp.clamp(start[2], -half_length, half_length))
-    fraction = real(MISS)
-    normal = Vector3(0.0, 0.0, 0.0)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     if wp.length(nearest) > radius:
         fraction, normal = ray_tube(start, way, radius, half_length)
         for end in range(2):
@@ -200,7 +195,5 @@ def ray_plane(start: Vector3, way: Vector3, normal: Vector3):
     """Ray against a plane through the origin, from either side; the normal is that of the side hit."""
     height = wp.dot(start, normal)
     slope = wp.dot(way, normal)
-    fraction = real(MISS)
-    if height * slope < 0.0 and wp.abs(height) <= wp.abs(slope):
-        fraction = -height / slope
+    fraction = -height / slope if height * slope < 0.0 and wp.abs(height) <= wp.abs(slope) else real(MISS)
     return fraction, normal * wp.sign(height)

@@ -6,6 +6,7 @@ Rays hit triangles from both sides; the normal is that of the side hit.
 import warp as wp
 
 from carom.kernels.contact.hierarchy import next_node
+from carom.kernels.maths.rotation import column
 from carom.kernels.queries.ray_solids import MISS
 from carom.kernels.shapes.triangles import Region, cell_at, triangle_corners
 from carom.kernels.structs import Shapes
@@ -30,14 +31,11 @@ def inverse_way(way: Vector3) -> Vector3:
 @func
 def box_entry(start: Vector3, inverse: Vector3, lower: Vector3, upper: Vector3, last: real) -> real:
     """Fraction at which a ray enters a box, 0 if it starts inside; `MISS` if there is none up to `last`."""
-    one = wp.cw_mul(lower - start, inverse)
-    other = wp.cw_mul(upper - start, inverse)
+    one, other = wp.cw_mul(lower - start, inverse), wp.cw_mul(upper - start, inverse)
     enter = wp.max(wp.max(wp.min(one, other)), 0.0)
     leave = wp.min(wp.min(wp.max(one, other)), last)
     # Empty boxes have their lower corner above their upper one.
-    if enter <= leave and lower[0] <= upper[0]:
-        return enter
-    return MISS
+    return enter if enter <= leave and lower[0] <= upper[0] else MISS
 
 
 @func
@@ -49,9 +47,7 @@ def comes_after(fraction: real, after: real, inclusive: bool) -> bool:
 @func
 def ray_triangle(start: Vector3, way: Vector3, corners: Matrix3):
     """Ray against a triangle whose corners are columns."""
-    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
-    b = Vector3(corners[0, 1], corners[1, 1], corners[2, 1])
-    c = Vector3(corners[0, 2], corners[1, 2], corners[2, 2])
+    a, b, c = column(corners, 0), column(corners, 1), column(corners, 2)
     across = wp.cross(b - a, c - a)
     slope = wp.dot(across, way)
     height = wp.dot(across, start - a)
@@ -71,19 +67,12 @@ def ray_triangle(start: Vector3, way: Vector3, corners: Matrix3):
 
 @func
 def ray_mesh(
-    shapes: Shapes,
-    surface: Int32,
-    start: Vector3,
-    way: Vector3,
-    after: real,
-    inclusive: bool,
-    last: real,
+    shapes: Shapes, surface: Int32, start: Vector3, way: Vector3, after: real, inclusive: bool, last: real
 ):
     """Ray against a triangle mesh: first hit that comes after `after` (see `comes_after`), up to `last`."""
     region = Region()
     leaf_count = shapes.shape_leaf_count[surface]
-    best = real(MISS)
-    best_normal = Vector3(0.0, 0.0, 0.0)
+    best, best_normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     limit = last
     inverse = inverse_way(way)
     node = Int32(1)
@@ -107,26 +96,17 @@ def time_to_leave(place: real, speed: real, cell: Int32) -> real:
     """Time at which a point that moves along an axis leaves a unit cell."""
     if speed > 0.0:
         return (real(cell) + 1.0 - place) / speed
-    if speed < 0.0:
-        return (real(cell) - place) / speed
-    return HUGE
+    return (real(cell) - place) / speed if speed < 0.0 else HUGE
 
 
 @func
 def ray_field(
-    shapes: Shapes,
-    surface: Int32,
-    start: Vector3,
-    way: Vector3,
-    after: real,
-    inclusive: bool,
-    last: real,
+    shapes: Shapes, surface: Int32, start: Vector3, way: Vector3, after: real, inclusive: bool, last: real
 ):
     """Ray against a height field, as `ray_mesh`; goes from cell to cell under the ray."""
     center = shapes.shape_center[surface]
     size = shapes.shape_size[surface]
-    best = real(MISS)
-    best_normal = Vector3(0.0, 0.0, 0.0)
+    best, best_normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     now = box_entry(start, inverse_way(way), center - size, center + size, last)
     columns = shapes.shape_columns[surface] - 1
     rows = shapes.shape_vertex_count[surface] // shapes.shape_columns[surface] - 1

@@ -54,8 +54,7 @@ def ray_shape(
     position = pairs.shape_position[world, shape]
     kind = shapes.shape_kind[shape]
     size = shapes.shape_size[shape]
-    fraction = real(MISS)
-    normal = Vector3(0.0, 0.0, 0.0)
+    fraction, normal = real(MISS), Vector3(0.0, 0.0, 0.0)
     frame = pairs.shape_frame[world, shape]
     if kind == SPHERE:
         fraction, normal = ray_ball(start, way, position, size[0])
@@ -73,13 +72,9 @@ def ray_shape(
             fraction, normal = ray_cylinder(origin, along, size[0], size[1])
         elif kind == HULL:
             fraction, normal = ray_hull(
-                origin,
-                along,
-                shapes.face_plane,
-                shapes.shape_first_face[shape],
-                shapes.shape_face_count[shape],
-                shapes.shape_margin[shape],
-            )
+                origin, along, shapes.face_plane, shapes.shape_first_face[shape],
+                shapes.shape_face_count[shape], shapes.shape_margin[shape],
+            )  # fmt: skip
         elif kind == TRIANGLES:
             fraction, normal = ray_mesh(shapes, shape, origin, along, after, inclusive, last)
         else:
@@ -173,8 +168,7 @@ def first_hits(
     # Planes are tested first, because most rays that hit nothing else hit the ground.
     first = count
     end = count + pairs.count_pairs[world, PLANES]
-    node = Int32(1)
-    searching = Int32(1)
+    node, searching = Int32(1), Int32(1)
     while searching == 1:
         for place in range(first, end):
             shape = pairs.shape_order[world, place]
@@ -269,21 +263,12 @@ def rays_kernel(
     hit_number: Int32,
     separation: real,
 ):
-    """Cast the rays of several worlds; rays are in the order of the worlds.
+    """Cast the rays of several worlds, `count` in each; rays are in the order of the worlds.
 
     The kernel has `threads` threads for each world. `prepare_rays_kernel` must have run for these worlds.
-
-    Args:
-        shapes: All shapes.
-        pairs: Poses and hierarchy.
-        places: Body and link index of each link row.
-        rays: The rays, and their hits as output.
-        first_world: Row of the first world.
-        count: Number of rays in each world.
-        threads: Number of threads that share the rays of a world.
-        mask: Collision groups of the links that rays can hit.
-        hit_number: 0 for the first hit, n for the n-th after it, in the order along the ray.
-        separation: After a hit, further hits on the same link within this fraction of the ray are skipped.
+    Rays hit links of the collision groups in `mask`. Hit number 0 is the first, n the n-th after it, in the
+    order along the ray; after a hit, further hits on the same link within the fraction `separation` of the
+    ray are skipped.
     """
     world = first_world + wp.tid() // threads
     start = world * count

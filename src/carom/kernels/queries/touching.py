@@ -18,14 +18,9 @@ def is_between(touching: Touching, link: Int32, other: Int32, anything: Int32) -
 def touching_kernel(
     contacts: Contacts, touching: Touching, links: Int32, anything: Int32, first_world: Int32
 ):
-    """Sum up the contacts of each world.
+    """Sum up the contacts of the `links` selected links with the other links, in each world.
 
-    Args:
-        contacts: All contacts.
-        touching: The selected links, the other links, and the output.
-        links: Number of selected links.
-        anything: 1 to include contacts with any link, 0 to include contacts with the other links only.
-        first_world: Row of the first world.
+    If `anything` is 1, not 0, contacts with any link are included.
     """
     world = first_world + wp.tid()
     touching.world_number[world] = 0
@@ -39,8 +34,7 @@ def touching_kernel(
     for contact in range(contacts.count_contacts[world, THERE]):
         a = contacts.contact_shapes[world, contact][2]
         b = contacts.contact_shapes[world, contact][3]
-        is_a = is_between(touching, a, b, anything)
-        is_b = is_between(touching, b, a, anything)
+        is_a, is_b = is_between(touching, a, b, anything), is_between(touching, b, a, anything)
         if is_a:
             touching.place_touching[links * world + touching.link_place[a]] = wp.uint8(1)
         if is_b:

@@ -39,9 +39,7 @@ def nearest_in_box(point: Vector3, size: Vector3):
 def nearest_in_cylinder(point: Vector3, radius: real, half_length: real):
     """Nearest point of a cylinder's surface to a point, and normal and distance, as `nearest_in_box`."""
     radial = wp.sqrt(point[0] * point[0] + point[1] * point[1])
-    outward = Vector3(1.0, 0.0, 0.0)
-    if radial > TINY:
-        outward = Vector3(point[0] / radial, point[1] / radial, 0.0)
+    outward = Vector3(point[0] / radial, point[1] / radial, 0.0) if radial > TINY else Vector3(1.0, 0.0, 0.0)
     side = radial - radius
     cap = wp.abs(point[2]) - half_length
     axis = Vector3(0.0, 0.0, toward(point[2], 1.0))
@@ -51,11 +49,7 @@ def nearest_in_cylinder(point: Vector3, radius: real, half_length: real):
         return point - axis * cap, axis, cap
     offset = outward * wp.max(side, 0.0) + axis * wp.max(cap, 0.0)
     distance = wp.length(offset)
-    normal = axis
-    if side > cap:
-        normal = outward
-    if distance > TINY:
-        normal = offset / distance
+    normal = offset / distance if distance > TINY else outward if side > cap else axis
     return point - offset, normal, distance
 
 

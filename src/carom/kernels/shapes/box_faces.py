@@ -35,29 +35,17 @@ def incident_axis(direction: Vector3) -> Int32:
     """Axis of the component with the largest magnitude; of equal ones the last, or else the first."""
     size = wp.abs(direction)
     axis = Int32(wp.where(size[1] > size[0], 1, 0))
-    if size[axis] > size[2]:
-        return axis
-    return Int32(2)
+    return axis if size[axis] > size[2] else Int32(2)
 
 
 @func
 def clip_at(
     polygon: Vector3Rows, clipped: Vector3Rows, world: Int32, count: Int32, along: Int32, limit: real
 ) -> Int32:
-    """Clip a polygon at a coordinate, which also says on which side of 0 the limit is.
+    """Clip a polygon at a limit [m] of a coordinate, 0 or 1; an upper limit if positive, else a lower one.
 
-    Corners on the limit count as outside.
-
-    Args:
-        polygon: Corners; replaced by the corners of the clipped polygon.
-        clipped: Workspace for corners.
-        world: The world.
-        count: Number of corners.
-        along: The coordinate, 0 or 1.
-        limit: Its limit, an upper one if positive, else a lower one [m].
-
-    Returns:
-        Number of corners of the clipped polygon.
+    Corners on the limit count as outside. The polygon is replaced; `clipped` is workspace for corners.
+    Returns the number of corners left.
     """
     kept = Int32(0)
     way = toward(limit, 1.0)
@@ -90,9 +78,7 @@ def centroid(polygon: Vector3Rows, world: Int32, count: Int32) -> Vector3:
         part = here[0] * there[1] - here[1] * there[0]
         area += part
         moment += (here + there) * part
-    if wp.abs(area) < NO_AREA:
-        return first
-    return first + moment / (3.0 * area)
+    return first if wp.abs(area) < NO_AREA else first + moment / (3.0 * area)
 
 
 @func
@@ -111,13 +97,9 @@ def put_forward(polygon: Vector3Rows, angles: Vector3Rows, world: Int32, row: In
 
 @func
 def keep_four_around(polygon: Vector3Rows, angles: Vector3Rows, world: Int32, count: Int32):
-    """Put the deepest corner of a polygon first, then those nearest to quarter turns from it.
+    """Put the deepest of more than four corners first, then those nearest to quarter turns from it.
 
-    Args:
-        polygon: More than four corners.
-        angles: Workspace for the angles of the corners, as seen from the centroid.
-        world: The world.
-        count: Number of corners.
+    `angles` is workspace for the angles of the corners, as seen from the centroid.
     """
     middle = centroid(polygon, world, count)
     best = Int32(0)
@@ -162,34 +144,18 @@ def box_face_points(
     candidates: CandidateRows,
     world: Int32,
 ) -> Int32:
-    """Write the candidates of a box that touches another box with one of its faces.
+    """Write the candidates of a box that touches another box with one of its faces; returns their number.
 
-    Args:
-        frame: Rotation matrix of the box with the reference face.
-        half: Its half extents.
-        position: Its centre, in world axes.
-        outward: Outward normal of the reference face.
-        other_frame: Rotation matrix of the other box.
-        other_half: Its half extents.
-        other_position: Its centre, in world axes.
-        reference_is_a: 1 if the reference face belongs to shape a, 0 if it belongs to shape b.
-        max_distance: Largest distance of a contact [m].
-        polygon: Workspace for corners.
-        workspace: More of it.
-        candidates: Candidates to write.
-        world: The world.
-
-    Returns:
-        Number of candidates, at most four.
+    Boxes are rotation matrix, half extents and centre in world axes, first the box with the reference face,
+    whose outward normal is `outward`; `reference_is_a` is 1 if this is shape a, 0 if it is b. `max_distance`
+    is the largest distance of a contact [m]; `polygon` and `workspace` are for corners.
     """
     axis = main_axis(wp.transpose(frame) * outward)
-    across1 = Int32(wp.where(axis == 0, 1, 0))
-    across2 = Int32(wp.where(axis == 2, 1, 2))
+    across1, across2 = Int32(wp.where(axis == 0, 1, 0)), Int32(wp.where(axis == 2, 1, 2))
     to_face = wp.matrix_from_rows(column(frame, across1), column(frame, across2), outward)
     local = wp.transpose(other_frame) * outward
     facing = incident_axis(local)
-    side1 = Int32(wp.where(facing == 0, 1, 0))
-    side2 = Int32(wp.where(facing == 2, 1, 2))
+    side1, side2 = Int32(wp.where(facing == 0, 1, 0)), Int32(wp.where(facing == 2, 1, 2))
     inward = column(other_frame, facing) * toward(local[facing], other_half[facing])
     center = to_face * (other_position - position - inward)
     center[2] -= half[axis]
@@ -213,9 +179,7 @@ def box_face_points(
     if touching > MOST:
         keep_four_around(polygon, workspace, world, touching)
         touching = Int32(MOST)
-    normal = outward
-    if reference_is_a == 1:
-        normal = -outward
+    normal = -outward if reference_is_a == 1 else outward
     for row in range(touching):
         corner = polygon[world, row]
         height = half[axis]

@@ -4,6 +4,7 @@ import math
 
 import warp as wp
 
+from carom.kernels.contact.bounds import magnitudes
 from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import toward
@@ -43,15 +44,10 @@ def main_axis(direction: Vector3) -> Int32:
 def box_axis(
     frame_a: Matrix3, half_a: Vector3, frame_b: Matrix3, half_b: Vector3, offset: Vector3, max_distance: real
 ):
-    """Separating axis test of two boxes.
+    """Separating axis test of two boxes, given by rotation matrices and half extents.
 
-    Args:
-        frame_a: Rotation matrix of a.
-        half_a: Half extents of a.
-        frame_b: Rotation matrix of b.
-        half_b: Half extents of b.
-        offset: Vector from the centre of a to that of b, in world axes.
-        max_distance: The test ends at an axis along which the boxes are further apart than this.
+    `offset` is the vector from the centre of a to that of b, in world axes. The test ends at an axis along
+    which the boxes are further apart than `max_distance` [m].
 
     Returns:
         The kind of axis (see `FACE_A`), its unit vector from b towards a in world axes, and the distance of
@@ -60,11 +56,7 @@ def box_axis(
     """
     turn = wp.transpose(frame_a) * frame_b
     t = wp.transpose(frame_a) * offset
-    size = Matrix3(
-        wp.abs(turn[0, 0]), wp.abs(turn[0, 1]), wp.abs(turn[0, 2]),
-        wp.abs(turn[1, 0]), wp.abs(turn[1, 1]), wp.abs(turn[1, 2]),
-        wp.abs(turn[2, 0]), wp.abs(turn[2, 1]), wp.abs(turn[2, 2]),
-    )  # fmt: skip
+    size = magnitudes(turn)
     gaps_a = wp.abs(t) - half_a - size * half_b
     t_in_b = wp.transpose(turn) * t
     gaps_b = wp.abs(t_in_b) - half_b - wp.transpose(size) * half_a
@@ -91,10 +83,8 @@ def box_axis(
     while pair < 9:
         i = pair // 3
         j = pair % 3
-        j1 = (j + 1) % 3
-        j2 = (j + 2) % 3
-        i1 = (i + 1) % 3
-        i2 = (i + 2) % 3
+        j1, j2 = (j + 1) % 3, (j + 2) % 3
+        i1, i2 = (i + 1) % 3, (i + 2) % 3
         length_sq = turn[i1, j] * turn[i1, j] + turn[i2, j] * turn[i2, j]
         if length_sq > PARALLEL_SQ:
             # Offset and extents of the boxes along the cross product of axis i of a with axis j of b.
@@ -105,9 +95,7 @@ def box_axis(
             reach += EDGE_REACH * (half_a[i1] + half_a[i2] + half_b[j1] + half_b[j2])
             apart = wp.abs(along) - reach
             # Gaps are negative where boxes overlap.
-            needed = best * (1.0 + EDGE_SHARE)
-            if best <= 0.0:
-                needed = best / (1.0 + EDGE_SHARE)
+            needed = best / (1.0 + EDGE_SHARE) if best <= 0.0 else best * (1.0 + EDGE_SHARE)
             # The length is at most 1: a negative gap is at most `apart`.
             if apart > needed or apart > 0.0:
                 length = wp.sqrt(length_sq)
@@ -142,8 +130,7 @@ def box_edge_point(
     middle_a = center_a
     middle_b = center_b
     for k in range(3):
-        side_a = column(frame_a, k)
-        side_b = column(frame_b, k)
+        side_a, side_b = column(frame_a, k), column(frame_b, k)
         if k != i:
             middle_a += side_a * toward(-wp.dot(side_a, normal), half_a[k])
         if k != j:

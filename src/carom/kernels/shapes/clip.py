@@ -23,9 +23,7 @@ def clip_by_side(
     if inside == count:
         return count
     kept = Int32(0)
-    edges = count
-    if count == 2:
-        edges = Int32(1)
+    edges = Int32(1) if count == 2 else count
     room = clipped.shape[1]
     here = polygon[world, 0]
     height = wp.dot(here - point, outward)
@@ -93,25 +91,13 @@ def clip_faces(
 ) -> Int32:
     """Add candidates where the incident face lies over the reference face and near it.
 
-    Args:
-        core: Core that the reference face belongs to.
-        reference: Corners of the reference face, counter-clockwise as seen from outside.
-        reference_count: Number of these corners, at least three.
-        outward: Outward normal of the reference face.
-        incident: Corners of the incident face; they are clipped in place.
-        incident_count: Number of these corners, at least one.
-        clipped: Workspace for corners.
-        normal: Contact normal on b towards a.
-        reference_is_a: 1 if the reference face belongs to a.
-        radius_a: Radius by which the core of a is rounded [m].
-        radius_b: Radius by which the core of b is rounded [m].
-        max_distance: Largest distance of a contact [m].
-        candidates: Candidates to add to.
-        world: The world.
-        found: Number of candidates already there.
+    The reference face belongs to `core`, which is that of a if `reference_is_a` is 1. It has at least three
+    corners, counter-clockwise as seen from outside, and the outward normal `outward`. The incident face has
+    at least one; it is clipped in place, with `clipped` as workspace. `normal` is the contact's, on b towards
+    a; the cores of a and b are rounded by their radii [m].
 
     Returns:
-        Number of candidates, including those already there.
+        Number of candidates, including those already there, `found`.
     """
     count = incident_count
     p = reference[world, reference_count - 1]
@@ -132,8 +118,6 @@ def clip_faces(
         distance = core_distance - radius_a - radius_b
         if distance <= max_distance:
             # The corner is on the core of the incident shape.
-            point = v + normal * radius_b
-            if reference_is_a == 0:
-                point = v - normal * (core_distance - radius_b)
+            point = v - normal * (core_distance - radius_b) if reference_is_a == 0 else v + normal * radius_b
             total = add_candidate(candidates, world, total, point, normal, distance)
     return total

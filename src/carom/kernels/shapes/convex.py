@@ -71,18 +71,9 @@ def nearest_or_deepest(
         normal = (point_a - point_b) / wp.length(point_a - point_b)
     else:
         depth, normal, point_a, point_b = overlap(
-            core_a,
-            core_b,
-            shapes.vertex_position,
-            pairs.polytope_point,
-            pairs.polytope_point_a,
-            pairs.polytope_plane,
-            pairs.polytope_face,
-            pairs.polytope_edge,
-            world,
-            start,
-            point_a,
-        )
+            core_a, core_b, shapes.vertex_position, pairs.polytope_point, pairs.polytope_point_a,
+            pairs.polytope_plane, pairs.polytope_face, pairs.polytope_edge, world, start, point_a,
+        )  # fmt: skip
         distance = -depth
     return distance, normal, point_a, point_b
 
@@ -95,18 +86,10 @@ def face_towards(
     if core.kind == BOX:
         return box_face(core, direction, polygon, world), Int32(4)
     normal, count = supporting_face(
-        core,
-        shapes.shape_first_face[shape],
-        shapes.shape_face_count[shape],
-        shapes.vertex_position,
-        shapes.face_plane,
-        shapes.face_first_corner,
-        shapes.face_corner_count,
-        shapes.corner_vertex,
-        direction,
-        polygon,
-        world,
-    )
+        core, shapes.shape_first_face[shape], shapes.shape_face_count[shape], shapes.vertex_position,
+        shapes.face_plane, shapes.face_first_corner, shapes.face_corner_count, shapes.corner_vertex,
+        direction, polygon, world,
+    )  # fmt: skip
     return normal, count
 
 
@@ -126,12 +109,8 @@ def collide_faces(
     """Add the candidates of two faces lying on each other; none if neither is perpendicular to the normal."""
     normal_a, count_a = face_towards(shapes, core_a, a, -normal, pairs.polygon_a, world)
     normal_b, count_b = face_towards(shapes, core_b, b, normal, pairs.polygon_b, world)
-    flat_a = -wp.dot(normal_a, normal)
-    flat_b = wp.dot(normal_b, normal)
-    if count_a < 3:
-        flat_a = real(0.0)
-    if count_b < 3:
-        flat_b = real(0.0)
+    flat_a = 0.0 if count_a < 3 else -wp.dot(normal_a, normal)
+    flat_b = 0.0 if count_b < 3 else wp.dot(normal_b, normal)
     count = found
     if flat_a >= flat_b and flat_a > FLAT_ON:
         if core_b.kind == BOX:

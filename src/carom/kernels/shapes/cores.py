@@ -58,9 +58,7 @@ def core_of(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32) -> Core:
 @func
 def segment_half(core: Core) -> Vector3:
     """Vector from the middle of a capsule's segment to one end; zero for a sphere."""
-    if core.kind == CAPSULE:
-        return core.frame * Vector3(0.0, 0.0, core.size[1])
-    return Vector3(0.0, 0.0, 0.0)
+    return core.frame * Vector3(0.0, 0.0, core.size[1]) if core.kind == CAPSULE else Vector3(0.0, 0.0, 0.0)
 
 
 @func
@@ -90,9 +88,7 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
         return vertex_position[best]
     if core.kind == CYLINDER:
         radial = wp.sqrt(direction[0] * direction[0] + direction[1] * direction[1])
-        scale = real(0.0)
-        if radial > 0.0:
-            scale = size[0] / radial
+        scale = size[0] / radial if radial > 0.0 else 0.0
         return Vector3(direction[0] * scale, direction[1] * scale, toward(direction[2], size[1]))
     if core.kind == CAPSULE:
         return Vector3(0.0, 0.0, toward(direction[2], size[1]))
@@ -100,9 +96,7 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
         # `frame` has the corners as columns, so `direction` holds the corners' heights along the direction.
         if direction[0] >= direction[1] and direction[0] >= direction[2]:
             return Vector3(1.0, 0.0, 0.0)
-        if direction[1] >= direction[2]:
-            return Vector3(0.0, 1.0, 0.0)
-        return Vector3(0.0, 0.0, 1.0)
+        return Vector3(0.0, 1.0, 0.0) if direction[1] >= direction[2] else Vector3(0.0, 0.0, 1.0)
     return Vector3(0.0, 0.0, 0.0)
 
 

@@ -18,8 +18,7 @@ def box_face(core: Core, direction: Vector3, polygon: Vector3Rows, world: Int32)
     """Write the corners of a box's face most aligned with `direction`; returns its outward normal."""
     local = wp.transpose(core.frame) * direction
     axis = main_axis(local)
-    u = (axis + 1) % 3
-    v = (axis + 2) % 3
+    u, v = (axis + 1) % 3, (axis + 2) % 3
     sign = toward(local[axis], 1.0)
     normal = column(core.frame, axis) * sign
     # With this sign of the second edge the corners are counter-clockwise as seen from outside.
@@ -41,14 +40,8 @@ def arrange_box_corners(core: Core, outward: Vector3, polygon: Vector3Rows, worl
     carry more of it.
     """
     axis = main_axis(wp.transpose(core.frame) * outward)
-    u = Int32(0)
-    v = Int32(2)
-    if axis == 0:
-        u = Int32(1)
-    if axis == 2:
-        v = Int32(1)
-    edge_u = column(core.frame, u) * core.size[u]
-    edge_v = column(core.frame, v) * core.size[v]
+    u, v = Int32(1) if axis == 0 else Int32(0), Int32(1) if axis == 2 else Int32(2)
+    edge_u, edge_v = column(core.frame, u) * core.size[u], column(core.frame, v) * core.size[v]
     center = core.position + outward * core.size[axis]
     polygon[world, 0] = center - edge_u - edge_v
     polygon[world, 1] = center - edge_u + edge_v
@@ -87,43 +80,6 @@ def cylinder_feature(core: Core, direction: Vector3, polygon: Vector3Rows, world
         y = (y - x) * COS_45
         x = turned
     return normal, Int32(RIM)
-
-
-@func
-def hull_face(
-    core: Core,
-    first_face: Int32,
-    face_count: Int32,
-    vertex_position: Vectors3,
-    face_plane: Vectors4,
-    face_first_corner: Ints,
-    face_corner_count: Ints,
-    corner_vertex: Ints,
-    direction: Vector3,
-    polygon: Vector3Rows,
-    world: Int32,
-):
-    """Write the corners of a hull's face most aligned with `direction`; returns its normal and their number.
-
-    If a face has more corners than fit, corners are left out at even intervals.
-    """
-    local = wp.transpose(core.frame) * direction
-    best = first_face
-    most = real(-2.0)
-    for face in range(first_face, first_face + face_count):
-        plane = face_plane[face]
-        along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
-        if along > most:
-            most = along
-            best = face
-    plane = face_plane[best]
-    corners = face_corner_count[best]
-    kept = wp.min(corners, polygon.shape[1] // 2)
-    first = face_first_corner[best]
-    for i in range(kept):
-        vertex = corner_vertex[first + (i * corners) // kept]
-        polygon[world, i] = core.position + core.frame * vertex_position[vertex]
-    return core.frame * Vector3(plane[0], plane[1], plane[2]), kept
 
 
 @func
@@ -176,11 +132,24 @@ def supporting_face(
         normal, count = cylinder_feature(core, direction, polygon, world)
         return normal, count
     if core.kind == HULL:
-        normal, count = hull_face(
-            core, first_face, face_count, vertex_position, face_plane, face_first_corner,
-            face_corner_count, corner_vertex, direction, polygon, world,
-        )  # fmt: skip
-        return normal, count
+        local = wp.transpose(core.frame) * direction
+        best = first_face
+        most = real(-2.0)
+        for face in range(first_face, first_face + face_count):
+            plane = face_plane[face]
+            along = plane[0] * local[0] + plane[1] * local[1] + plane[2] * local[2]
+            if along > most:
+                most = along
+                best = face
+        plane = face_plane[best]
+        corners = face_corner_count[best]
+        # If there are more corners than fit, some are left out at even intervals.
+        kept = wp.min(corners, polygon.shape[1] // 2)
+        first = face_first_corner[best]
+        for i in range(kept):
+            vertex = corner_vertex[first + (i * corners) // kept]
+            polygon[world, i] = core.position + core.frame * vertex_position[vertex]
+        return core.frame * Vector3(plane[0], plane[1], plane[2]), kept
     if core.kind == TRIANGLES:
         normal = triangle_face(core, direction, polygon, world)
         return normal, Int32(3)

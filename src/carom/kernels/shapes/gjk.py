@@ -44,9 +44,7 @@ def segment_weights(a: Vector3, b: Vector3):
     """Weights of a and b in the point of their segment nearest to the origin."""
     edge = b - a
     length_sq = wp.length_sq(edge)
-    share = real(0.0)
-    if length_sq > 0.0:
-        share = within_bounds(-wp.dot(a, edge) / length_sq, 0.0, 1.0)
+    share = within_bounds(-wp.dot(a, edge) / length_sq, 0.0, 1.0) if length_sq > 0.0 else 0.0
     return 1.0 - share, share
 
 
@@ -70,9 +68,7 @@ def triangle_weights(a: Vector3, b: Vector3, c: Vector3) -> Vector3:
     on_ca = wp.length_sq(c * c3 + a * a3)
     if on_ab <= on_bc and on_ab <= on_ca:
         return Vector3(a1, b1, 0.0)
-    if on_bc <= on_ca:
-        return Vector3(0.0, b2, c2)
-    return Vector3(a3, 0.0, c3)
+    return Vector3(0.0, b2, c2) if on_bc <= on_ca else Vector3(a3, 0.0, c3)
 
 
 @func
@@ -129,12 +125,8 @@ def nearest_weights(simplex: Matrix43, count: Int32) -> Vector4:
 def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start: Vector3, max_distance: real):
     """Nearest points of two cores.
 
-    Args:
-        core_a: One core.
-        core_b: The other core.
-        vertex_position: Vertices of hulls.
-        start: Approximate direction from b to a.
-        max_distance: The search ends as soon as the distance is known to exceed this [m].
+    `start` is an approximate direction from b to a. The search ends as soon as the distance is known to
+    exceed `max_distance` [m].
 
     Returns:
         The distance [m] and the nearest points on a and on b. If the cores overlap, the distance is 0 and
@@ -143,9 +135,7 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
     """
     differences = Matrix43()
     points = Matrix43()
-    direction = start
-    if wp.length_sq(start) == 0.0:
-        direction = Vector3(1.0, 0.0, 0.0)
+    direction = Vector3(1.0, 0.0, 0.0) if wp.length_sq(start) == 0.0 else start
     count = Int32(0)
     weights = Vector4(1.0, 0.0, 0.0, 0.0)
     v = direction

@@ -64,21 +64,10 @@ def collide_plane(
     candidates: CandidateRows,
     world: Int32,
 ) -> Int32:
-    """Write the candidates of shape a, a core, on shape b, a plane.
+    """Write the candidates of shape a, a core, on shape b, a plane; returns their number.
 
-    Args:
-        core: The core; boxes with sharp edges.
-        polygon: Corners of its face towards the plane; not used for hulls, whose vertices are all tested.
-        corners: Number of these corners.
-        vertex_position: Vertices of hulls.
-        origin: A point of the plane.
-        normal: Unit normal of the plane.
-        max_distance: Largest distance of a contact [m].
-        candidates: Candidates to write.
-        world: The world.
-
-    Returns:
-        Number of candidates.
+    Boxes have sharp edges. `polygon` has the corners of the core's face towards the plane; it is not used for
+    hulls, whose vertices are all tested. The plane is given by a point and its unit normal.
     """
     count = Int32(0)
     if core.kind != HULL:

@@ -60,14 +60,8 @@ def add_corner(
 @func
 def axis_direction(side: Int32, x: Vector3, y: Vector3, z: Vector3) -> Vector3:
     """Direction number `side` of x, -x, y, -y, z, -z, counted from 0."""
-    direction = x
-    if side // 2 == 1:
-        direction = y
-    elif side // 2 == 2:
-        direction = z
-    if side % 2 == 1:
-        return -direction
-    return direction
+    direction = x if side < 2 else y if side < 4 else z
+    return -direction if side % 2 == 1 else direction
 
 
 @func
@@ -135,55 +129,36 @@ def first_tetrahedron(
     x = Vector3(1.0, 0.0, 0.0)
     y = Vector3(0.0, 1.0, 0.0)
     z = Vector3(0.0, 0.0, 1.0)
+    line = x
     first = add_corner(core_a, core_b, vertex_position, points, points_a, world, 0, start)
-    most = THIN
-    best = Int32(-1)
-    for side in range(6):
-        w = add_corner(
-            core_a, core_b, vertex_position, points, points_a, world, 1, axis_direction(Int32(side), x, y, z)
-        )
-        if wp.length(w - first) > most:
-            most = wp.length(w - first)
-            best = Int32(side)
-    if best < 0:
-        return Int32(1), start
-    second = add_corner(
-        core_a, core_b, vertex_position, points, points_a, world, 1, axis_direction(best, x, y, z)
-    )
-
-    line = wp.normalize(second - first)
-    x = any_perpendicular(line)
-    y = wp.cross(line, x)
-    most = THIN
-    best = Int32(-1)
-    for side in range(4):
-        w = add_corner(
-            core_a, core_b, vertex_position, points, points_a, world, 2, axis_direction(Int32(side), x, y, z)
-        )
-        away = wp.length(wp.cross(w - first, line))
-        if away > most:
-            most = away
-            best = Int32(side)
-    if best < 0:
-        return Int32(2), x
-    third = add_corner(
-        core_a, core_b, vertex_position, points, points_a, world, 2, axis_direction(best, x, y, z)
-    )
-
-    x = wp.normalize(wp.cross(line, third - first))
-    most = THIN
-    best = Int32(-1)
-    for side in range(2):
-        w = add_corner(
-            core_a, core_b, vertex_position, points, points_a, world, 3, axis_direction(Int32(side), x, y, z)
-        )
-        if wp.abs(wp.dot(w - first, x)) > most:
-            most = wp.abs(wp.dot(w - first, x))
-            best = Int32(side)
-    if best < 0:
-        return Int32(3), x
-    add_corner(core_a, core_b, vertex_position, points, points_a, world, 3, axis_direction(best, x, y, z))
-    return Int32(4), x
+    row = Int32(1)
+    while row < 4:
+        # Of 6, 4 and 2 directions, the one with the corner farthest from the corners so far.
+        most = THIN
+        best = Int32(-1)
+        for side in range(8 - 2 * row):
+            direction = axis_direction(side, x, y, z)
+            w = add_corner(core_a, core_b, vertex_position, points, points_a, world, row, direction) - first
+            away = wp.abs(wp.dot(w, x))
+            if row == 1:
+                away = wp.length(w)
+            elif row == 2:
+                away = wp.length(wp.cross(w, line))
+            if away > most:
+                most = away
+                best = side
+        if best < 0:
+            return row, start if row == 1 else x
+        direction = axis_direction(best, x, y, z)
+        w = add_corner(core_a, core_b, vertex_position, points, points_a, world, row, direction) - first
+        if row == 1:
+            line = wp.normalize(w)
+            x = any_perpendicular(line)
+            y = wp.cross(line, x)
+        elif row == 2:
+            x = wp.normalize(wp.cross(line, w))
+        row += 1
+    return row, x
 
 
 @func
@@ -254,25 +229,13 @@ def overlap(
 ):
     """Penetration depth: the smallest translation that separates two overlapping cores.
 
-    Args:
-        core_a: One core.
-        core_b: The other core.
-        vertex_position: Vertices of hulls.
-        points: Workspace for the polytope (see `Pairs`).
-        points_a: Likewise.
-        planes: Likewise.
-        faces: Likewise.
-        edges: Likewise.
-        world: The world.
-        start: Approximate direction from b to a.
-        common: A point that is in both cores.
+    The arrays of the polytope are workspace, see `Pairs`. `start` is an approximate direction from b to a,
+    `common` a point that is in both cores.
 
     Returns:
         The depth [m], the unit normal from b towards a, and the deepest points of a and of b.
     """
-    direction = start
-    if wp.length_sq(start) == 0.0:
-        direction = Vector3(0.0, 0.0, 1.0)
+    direction = Vector3(0.0, 0.0, 1.0) if wp.length_sq(start) == 0.0 else start
     count, flat = first_tetrahedron(core_a, core_b, vertex_position, points, points_a, world, direction)
     if count < 4:
         normal = wp.normalize(flat)
@@ -311,8 +274,7 @@ def overlap(
         if plane_height(plane, w) <= PRECISION:
             growing = Int32(0)
         else:
-            edge_count = Int32(0)
-            kept = Int32(0)
+            edge_count, kept = Int32(0), Int32(0)
             for face in range(face_count):
                 seen = faces[world, face]
                 if plane_height(planes[world, face], w) > VISIBLE:

@@ -29,23 +29,18 @@ def any_perpendicular(direction: Vector3) -> Vector3:
 def nearest_places(offset: Vector3, half_a: Vector3, half_b: Vector3):
     """Nearest points of two segments, as coordinates between -1 and 1 along their half vectors.
 
-    Args:
-        offset: Vector from the middle of b to the middle of a.
-        half_a: Vector from the middle of a to one of its ends; may be zero.
-        half_b: The same for b.
+    `offset` is the vector from the middle of b to that of a. Half vectors go from the middle to one end; they
+    may be zero.
     """
     aa = wp.length_sq(half_a)
     bb = wp.length_sq(half_b)
     ab = wp.dot(half_a, half_b)
-    a_offset = wp.dot(half_a, offset)
-    b_offset = wp.dot(half_b, offset)
+    a_offset, b_offset = wp.dot(half_a, offset), wp.dot(half_b, offset)
     determinant = aa * bb - ab * ab
     place_a = real(0.0)
     if determinant > PARALLEL * aa * bb:
         place_a = wp.clamp((ab * b_offset - bb * a_offset) / determinant, -1.0, 1.0)
-    place_b = real(0.0)
-    if bb > TINY:
-        place_b = wp.clamp((ab * place_a + b_offset) / bb, -1.0, 1.0)
+    place_b = wp.clamp((ab * place_a + b_offset) / bb, -1.0, 1.0) if bb > TINY else 0.0
     if aa > TINY:
         place_a = wp.clamp((ab * place_b - a_offset) / aa, -1.0, 1.0)
     if bb > TINY:
@@ -71,9 +66,7 @@ def add_round_contact(
     distance = length - radius_a - radius_b
     if distance > max_distance:
         return count
-    normal = fallback
-    if length * length > TINY:
-        normal = offset / length
+    normal = offset / length if length * length > TINY else fallback
     return add_candidate(candidates, world, count, point_b + normal * radius_b, normal, distance)
 
 
@@ -106,9 +99,7 @@ def collide_segments(
         if start < end:
             count = Int32(0)
             for side in range(2):
-                place = start
-                if side == 1:
-                    place = end
+                place = end if side == 1 else start
                 point_a = middle_a + half_a * place
                 place_b = wp.dot(point_a - middle_b, half_b) / wp.length_sq(half_b)
                 point_b = middle_b + half_b * wp.clamp(place_b, -1.0, 1.0)
@@ -118,13 +109,6 @@ def collide_segments(
             return count
     place_a, place_b = nearest_places(offset, half_a, half_b)
     return add_round_contact(
-        candidates,
-        world,
-        0,
-        middle_a + half_a * place_a,
-        radius_a,
-        middle_b + half_b * place_b,
-        radius_b,
-        fallback,
-        max_distance,
-    )
+        candidates, world, 0, middle_a + half_a * place_a, radius_a, middle_b + half_b * place_b, radius_b,
+        fallback, max_distance,
+    )  # fmt: skip

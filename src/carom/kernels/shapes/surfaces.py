@@ -31,9 +31,7 @@ ROOM = 16
 @func
 def surface_radius(shapes: Shapes, core: Core, surface: Int32) -> real:
     """Radius by which a surface's triangles are rounded [m]: its margin; 0 against spheres, as in Bullet."""
-    if core.kind == SPHERE:
-        return 0.0
-    return shapes.shape_margin[surface]
+    return 0.0 if core.kind == SPHERE else shapes.shape_margin[surface]
 
 
 @func
@@ -110,15 +108,8 @@ def collide_surface(
 ) -> Int32:
     """Write the candidates of shape a, convex, on shape b, a mesh or height field; returns their number.
 
-    Args:
-        shapes: All shapes.
-        pairs: Workspace for candidates, and the poses of the shapes.
-        world: The world.
-        a: Row of the convex shape.
-        b: Row of the surface.
-        core: Core of a.
-        max_distance: Largest distance of a contact [m].
-        around: Distance from the bounds of a within which triangles are tested [m].
+    `max_distance` is the largest distance of a contact [m]; triangles are tested within the distance `around`
+    [m] from the bounds of a.
     """
     region = region_around(shapes, pairs, world, a, b, around)
     radius = surface_radius(shapes, core, b)

@@ -67,9 +67,7 @@ def region_box(shapes: Shapes, region: Region, surface: Int32, node: Int32) -> b
 @func
 def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int32) -> Matrix3:
     """Corners of a triangle as columns, counter-clockwise from outside, in the frame of the surface."""
-    a = Int32(0)
-    b = Int32(0)
-    c = Int32(0)
+    a, b, c = Int32(0), Int32(0), Int32(0)
     if shapes.shape_kind[surface] == TRIANGLES:
         face = shapes.shape_first_face[surface] + cursor - shapes.shape_leaf_count[surface]
         first = shapes.face_first_corner[face]
@@ -94,7 +92,7 @@ def triangle_corners(shapes: Shapes, region: Region, surface: Int32, cursor: Int
     p = shapes.vertex_position[a]
     q = shapes.vertex_position[b]
     r = shapes.vertex_position[c]
-    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    return wp.matrix_from_cols(p, q, r)
 
 
 @func
@@ -137,17 +135,13 @@ def triangle_from(shapes: Shapes, region: Region, surface: Int32, start: Int32) 
 @func
 def first_cursor(shapes: Shapes, surface: Int32) -> Int32:
     """Cursor at which a traversal of the triangles of a surface starts."""
-    if shapes.shape_kind[surface] == TRIANGLES:
-        return 1
-    return 0
+    return 1 if shapes.shape_kind[surface] == TRIANGLES else 0
 
 
 @func
 def following_cursor(shapes: Shapes, surface: Int32, cursor: Int32) -> Int32:
     """Cursor at which a traversal continues after a triangle."""
-    if shapes.shape_kind[surface] == TRIANGLES:
-        return next_node(cursor)
-    return cursor + 1
+    return next_node(cursor) if shapes.shape_kind[surface] == TRIANGLES else cursor + 1
 
 
 @func

@@ -27,9 +27,7 @@ _SINGULAR = real(1.0e-9)
 @func
 def other_row(row: Int32, axis: Int32) -> Int32:
     """The row of a touch or anchor along an axis, 0 to 2, given its first row; -1 if it has no rows."""
-    if row < 0:
-        return row
-    return row + axis
+    return row if row < 0 else row + axis
 
 
 @func
@@ -154,10 +152,8 @@ def relax_friction(
     """Stop the slip of a node on a shape, as far as an impulse within `bound` [N s] can."""
     normal = work.touch_normal[world, touch]
     axes = tangents(normal)
-    first = column(axes, 1)
-    second = column(axes, 2)
-    row1 = other_row(row, 1)
-    row2 = other_row(row, 2)
+    first, second = column(axes, 1), column(axes, 2)
+    row1, row2 = other_row(row, 1), other_row(row, 2)
     moved = state.node_position[world, node] - work.node_before[world, node]
     slip = moved - work.touch_velocity[world, touch] * h
     slip1 = wp.dot(slip, first) - h * row_velocity(scratch, pair_rows, world, row1)
@@ -166,8 +162,7 @@ def relax_friction(
     push2 = -slip2 / (h * (mass + row_mass(pair_rows, world, row2)))
     size = wp.sqrt(push1 * push1 + push2 * push2)
     if size > bound:
-        push1 = push1 * bound / size
-        push2 = push2 * bound / size
+        push1, push2 = push1 * bound / size, push2 * bound / size
     along = first * push1 + second * push2
     state.node_position[world, node] += along * (mass * h)
     work.touch_impulse[world, touch] += along
@@ -189,8 +184,7 @@ def facing(work: SoftWork, world: Int32, first: Int32, count: Int32) -> Int32:
     least = real(_FACING)
     if count == 3:
         for other in range(3):
-            a = first + (other + 1) % 3
-            b = first + (other + 2) % 3
+            a, b = first + (other + 1) % 3, first + (other + 2) % 3
             along = wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
             if along < least:
                 least = along
@@ -260,13 +254,7 @@ def relax_anchors(
 
 @func
 def moved_on(
-    scratch: Scratch,
-    pair_rows: PairRows,
-    world: Int32,
-    row: Int32,
-    velocity: Vector3,
-    axes: Matrix3,
-    h: real,
+    scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, velocity: Vector3, axes: Matrix3, h: real
 ) -> Vector3:
     """Displacement of a point of a link in a small step [m]; its rows act along the columns of `axes`."""
     motion = velocity + Vector3(0.0, 0.0, 0.0)
@@ -278,13 +266,7 @@ def moved_on(
 
 @func
 def move_touches(
-    scratch: Scratch,
-    pair_rows: PairRows,
-    soft: SoftModel,
-    work: SoftWork,
-    world: Int32,
-    body: Int32,
-    h: real,
+    scratch: Scratch, pair_rows: PairRows, soft: SoftModel, work: SoftWork, world: Int32, body: Int32, h: real
 ):
     """Move the points of touches with their links for a small step."""
     first = soft.soft[body].first_node

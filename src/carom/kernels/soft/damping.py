@@ -42,8 +42,7 @@ def damp_tetras(soft: SoftModel, state: State, world: Int32, body: Int32, h: rea
     strain (FᵀF - 1) / 2. Rotation as a whole is no strain and is not damped.
     """
     share = soft.soft[body].damping
-    mu = soft.soft[body].mu * share
-    lam = soft.soft[body].lam * share
+    mu, lam = soft.soft[body].mu * share, soft.soft[body].lam * share
     first = soft.soft[body].first_tetra
     if share > 0.0:
         for tetra in range(first, first + soft.soft[body].tetra_count):

@@ -54,19 +54,15 @@ def edges(places: Vector3Rows, world: Int32, four: Index4) -> Matrix3:
     p = places[world, four[1]] - origin
     q = places[world, four[2]] - origin
     r = places[world, four[3]] - origin
-    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    return wp.matrix_from_cols(p, q, r)
 
 
 @func
 def cofactors(f: Matrix3) -> Matrix3:
     """Cofactors of a matrix: the derivative of its determinant with respect to its entries."""
-    first = column(f, 0)
-    second = column(f, 1)
-    third = column(f, 2)
-    a = wp.cross(second, third)
-    b = wp.cross(third, first)
-    c = wp.cross(first, second)
-    return Matrix3(a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2])
+    first, second, third = column(f, 0), column(f, 1), column(f, 2)
+    a, b, c = wp.cross(second, third), wp.cross(third, first), wp.cross(first, second)
+    return wp.matrix_from_cols(a, b, c)
 
 
 @func
@@ -82,18 +78,9 @@ def relax_tetra(
 ) -> bool:
     """Move the corners of a tetrahedron by the effect of its stress in a small step.
 
-    Args:
-        soft: The soft bodies.
-        state: The positions of their nodes, which are changed.
-        places: Positions of the nodes from which the stress is computed.
-        world: The world.
-        tetra: The tetrahedron.
-        shear_gain: mu, times its volume and the square of the small step.
-        bulk_gain: lam, likewise.
-        implicit: Whether the stress is that at the end of the small step.
-
-    Returns:
-        False if it is too stiff for explicit stress; nothing has moved then.
+    The stress is computed from the positions `places`, and that at the end of the small step if `implicit`.
+    The gains are mu and lam, times the tetrahedron's volume and the square of the small step. Returns false
+    if it is too stiff for explicit stress; nothing has moved then.
     """
     four = soft.tetra[tetra].nodes
     inverse = soft.tetra[tetra].inverse
@@ -115,8 +102,7 @@ def relax_tetra(
     both_mass = inverse_mass * wp.dot(shear_first, bulk_first)
     for i in range(3):
         inverse_mass = soft.node_inverse_mass[four[i + 1]]
-        shear_column = column(shear_gradient, i)
-        bulk_column = column(bulk_gradient, i)
+        shear_column, bulk_column = column(shear_gradient, i), column(bulk_gradient, i)
         shear_mass += inverse_mass * wp.dot(shear_column, shear_column)
         bulk_mass += inverse_mass * wp.dot(bulk_column, bulk_column)
         both_mass += inverse_mass * wp.dot(shear_column, bulk_column)
@@ -125,8 +111,7 @@ def relax_tetra(
     if implicit:
         # (1 + K h² W) displacement = -K h² C, with K = volume (mu, lam).
         a = 1.0 + shear_gain * shear_mass
-        b = shear_gain * both_mass
-        c = bulk_gain * both_mass
+        b, c = shear_gain * both_mass, bulk_gain * both_mass
         d = 1.0 + bulk_gain * bulk_mass
         scale = 1.0 / (a * d - b * c)
         wanted = along_shear
@@ -166,8 +151,7 @@ def relax_tetras(soft: SoftModel, state: State, work: SoftWork, world: Int32, bo
         volume = soft.tetra[tetra].volume * (h * h)
         if phase > _LONGEST_PHASE:
             volume = volume * (_LONGEST_PHASE * _LONGEST_PHASE / (phase * phase))
-        shear_gain = soft.soft[body].mu * volume
-        bulk_gain = soft.soft[body].lam * volume
+        shear_gain, bulk_gain = soft.soft[body].mu * volume, soft.soft[body].lam * volume
         done = relax_tetra(soft, state, work.node_before, world, tetra, shear_gain, bulk_gain, False)
         if not done:
             done = relax_tetra(soft, state, state.node_position, world, tetra, shear_gain, bulk_gain, True)

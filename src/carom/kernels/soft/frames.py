@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.maths.rotation import column
 from carom.kernels.structs import Model, SoftModel, State
@@ -24,9 +25,8 @@ def counts(soft: SoftModel, node: Int32) -> real:
 def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
     """The rotation nearest to a matrix of moments (Müller, Bender, Chentanez, Macklin, 2016).
 
-    Args:
-        start: A rotation near it.
-        matrix: Sum of the outer products of positions and positions at rest.
+    The matrix is the sum of the outer products of positions and positions at rest; `start` is a rotation near
+    it.
     """
     q = wp.normalize(start)
     turning = Int32(0)
@@ -92,15 +92,7 @@ def follow_nodes(model: Model, state: State, soft: SoftModel, world: Int32, body
         spin += wp.cross(arm, state.node_velocity[world, node] - velocity) * share
     tree = soft.soft[body].tree
     place = model.tree[tree].first_position
-    turn = turned(
-        Quaternion(
-            state.position[world, place + 3],
-            state.position[world, place + 4],
-            state.position[world, place + 5],
-            state.position[world, place + 6],
-        ),
-        moments,
-    )
+    turn = turned(load_quaternion(state, world, place + 3), moments)
     rate = wp.inverse(inertia) * spin
     rates = model.tree[tree].first_velocity
     for axis in range(3):

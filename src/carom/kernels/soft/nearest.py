@@ -24,9 +24,7 @@ _SAME = real(1.0e-9)
 def away_from(offset: Vector3, otherwise: Vector3) -> Vector3:
     """Unit vector along an offset; `otherwise` if the offset has no length."""
     length = wp.length(offset)
-    if length > _TINY:
-        return offset / length
-    return otherwise
+    return offset / length if length > _TINY else otherwise
 
 
 @func
@@ -153,6 +151,13 @@ def on_hull(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real):
 
 
 @func
+def face_normal(corners: Matrix3) -> Vector3:
+    """The unit normal of a triangle, its corners as columns."""
+    a = column(corners, 0)
+    return away_from(wp.cross(column(corners, 1) - a, column(corners, 2) - a), Vector3(0.0, 0.0, 1.0))
+
+
+@func
 def on_triangle(corners: Matrix3, point: Vector3, normal: Vector3) -> Vector3:
     """The point of a triangle, its corners as columns, nearest to a point."""
     best = point - normal * wp.dot(point - column(corners, 0), normal)
@@ -179,10 +184,7 @@ def on_surface(shapes: Shapes, shape: Int32, point: Vector3, max_distance: real)
     cursor = triangle_from(shapes, region, shape, first_cursor(shapes, shape))
     while cursor >= 0:
         corners = triangle_corners(shapes, region, shape, cursor)
-        outward = away_from(
-            wp.cross(column(corners, 1) - column(corners, 0), column(corners, 2) - column(corners, 0)),
-            Vector3(0.0, 0.0, 1.0),
-        )
+        outward = face_normal(corners)
         offset = point - on_triangle(corners, point, outward)
         apart = wp.length(offset)
         side = wp.dot(offset, outward)
@@ -203,13 +205,7 @@ def nearest_on_shape(
 ):
     """Signed distance of a point from a shape, negative inside, and the outward unit normal, in world axes.
 
-    Args:
-        shapes: All shapes.
-        pairs: Their poses.
-        world: The world.
-        shape: The shape.
-        point: The point in world axes [m].
-        max_distance: A result beyond this distance is not exact, only larger than this [m].
+    A result beyond `max_distance` [m] is not exact, only larger than this.
     """
     frame = pairs.shape_frame[world, shape]
     local = wp.transpose(frame) * (point - pairs.shape_position[world, shape])

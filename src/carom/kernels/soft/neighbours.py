@@ -7,9 +7,10 @@ kept on that side, at a distance from the face.
 
 import warp as wp
 
-from carom.kernels.contact.filters import masks_match, pair_filter
+from carom.kernels.contact.filters import links_may_collide
 from carom.kernels.maths.min_max import greatest_entry, lower_corner, maximum, minimum, upper_corner
-from carom.kernels.soft.nearest import away_from, on_triangle, sign_of
+from carom.kernels.maths.rotation import column
+from carom.kernels.soft.nearest import face_normal, on_triangle, sign_of
 from carom.kernels.structs import Model, Settings, Shapes, SoftModel, SoftWork, State
 from carom.kernels.types import Index4, Int32, Matrix3, Vector3, func, real
 from carom.layouts.soft import BODIES, BUCKETS, FACES_PER_NODE
@@ -62,9 +63,7 @@ def list_nodes(soft: SoftModel, state: State, work: SoftWork, world: Int32, size
 @func
 def grid_size(soft: SoftModel, state: State, world: Int32) -> real:
     """Size of the cells [m]: mean length of the faces' first edges, plus four times the largest thickness."""
-    total = real(0.0)
-    count = real(0.0)
-    thickness = real(0.0)
+    total, count, thickness = real(0.0), real(0.0), real(0.0)
     for body in range(soft.count_soft[BODIES]):
         first = soft.soft[body].first_face
         thickness = maximum(thickness, soft.soft[body].thickness)
@@ -85,28 +84,17 @@ def may_near(
         return soft.soft[body].self_collision != 0
     a = model.tree[soft.soft[body].tree].first_link
     b = model.tree[soft.soft[other].tree].first_link
-    wanted = pair_filter(shapes, settings, a, b)
-    if wanted >= 0:
-        return wanted == 1
-    return masks_match(shapes, settings, a, b)
+    return links_may_collide(shapes, settings, a, b)
 
 
 @func
 def face_frame(state: State, world: Int32, corners: Index4) -> Matrix3:
     """The corners of a face, as columns."""
-    p = state.node_position[world, corners[0]]
-    q = state.node_position[world, corners[1]]
-    r = state.node_position[world, corners[2]]
-    return Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
-
-
-@func
-def face_normal(corners: Matrix3) -> Vector3:
-    """The unit normal of a triangle, its corners as columns."""
-    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
-    b = Vector3(corners[0, 1], corners[1, 1], corners[2, 1])
-    c = Vector3(corners[0, 2], corners[1, 2], corners[2, 2])
-    return away_from(wp.cross(b - a, c - a), Vector3(0.0, 0.0, 1.0))
+    return wp.matrix_from_cols(
+        state.node_position[world, corners[0]],
+        state.node_position[world, corners[1]],
+        state.node_position[world, corners[2]],
+    )
 
 
 @func
@@ -138,7 +126,7 @@ def near_at_rest(soft: SoftModel, node: Int32, face: Int32, reach: real) -> bool
     p = soft.node_rest[nodes[0]]
     q = soft.node_rest[nodes[1]]
     r = soft.node_rest[nodes[2]]
-    corners = Matrix3(p[0], q[0], r[0], p[1], q[1], r[1], p[2], q[2], r[2])
+    corners = wp.matrix_from_cols(p, q, r)
     point = soft.node_rest[node]
     return wp.length(point - on_triangle(corners, point, face_normal(corners))) < reach
 
@@ -169,9 +157,7 @@ def look_at_node(
     if usual and distance <= max_distance:
         usual = near_at_rest(soft, node, face, soft.soft[body].thickness)
     if distance <= max_distance and not usual:
-        side = sign_of(wp.dot(offset, normal))
-        if closed:
-            side = real(1.0)
+        side = 1.0 if closed else sign_of(wp.dot(offset, normal))
         note_face(work, world, node, face, side, distance)
 
 
@@ -237,9 +223,9 @@ def find_neighbours(
 @func
 def weights_at(corners: Matrix3, point: Vector3) -> Vector3:
     """Barycentric coordinates of a point's projection onto a triangle's plane; some are negative outside."""
-    a = Vector3(corners[0, 0], corners[1, 0], corners[2, 0])
-    ab = Vector3(corners[0, 1], corners[1, 1], corners[2, 1]) - a
-    ac = Vector3(corners[0, 2], corners[1, 2], corners[2, 2]) - a
+    a = column(corners, 0)
+    ab = column(corners, 1) - a
+    ac = column(corners, 2) - a
     ap = point - a
     normal = wp.cross(ab, ac)
     square = wp.dot(normal, normal) + _TINY * _TINY

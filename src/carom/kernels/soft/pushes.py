@@ -11,7 +11,7 @@ import warp as wp
 from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.kinematics import base_subspace
 from carom.kernels.dynamics.mass_matrix import invert
-from carom.kernels.dynamics.rows import inverse_or_off
+from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.dynamics.single_body import is_single_body, write_inverse_mass
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import is_asleep
@@ -67,10 +67,7 @@ def make_ready(
         if not may_be_pushed(model, pair_rows, world, tree):
             if is_single_body(model, tree):
                 link = model.tree[tree].first_link
-                moments = model.link_inertia[world, link]
-                inverse = Vector3(
-                    inverse_or_off(moments[0]), inverse_or_off(moments[1]), inverse_or_off(moments[2])
-                )
+                inverse = inverses_or_off(model.link_inertia[world, link])
                 rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
                 base_subspace(model, scratch, world, tree)
                 write_inverse_mass(
@@ -95,20 +92,7 @@ def add_push_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add three rows that push a link at a point along the columns of `axes`.
-
-    Args:
-        model: The trees.
-        state: Their state.
-        scratch: Their inverse mass matrices.
-        pair_rows: Room for rows.
-        world: The world.
-        tree: The tree.
-        link: Its link.
-        point: The point in world axes [m].
-        axes: Directions, as columns.
-        row: Next free row.
-        block: Next free block.
+    """Add three rows that push a link at a point [m] in world axes along the columns of `axes`.
 
     Returns:
         Next free row and block; if there was no room, the given ones, and an overflow in the world's status.
@@ -133,9 +117,7 @@ def add_push_rows(
 @func
 def row_mass(pair_rows: PairRows, world: Int32, row: Int32) -> real:
     """Effective inverse mass along a row [1/kg]; 0 for row -1, that of an immovable link."""
-    if row < 0:
-        return 0.0
-    return pair_rows.row_terms[world, row].inverse_mass
+    return 0.0 if row < 0 else pair_rows.row_terms[world, row].inverse_mass
 
 
 @func

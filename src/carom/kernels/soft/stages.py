@@ -176,8 +176,7 @@ def write_rows(
     world: Int32,
 ):
     """Write the rows of all touches and anchors; the status of the world tells if they do not fit."""
-    row = Int32(0)
-    block = Int32(0)
+    row, block = Int32(0), Int32(0)
     for body in range(soft.count_soft[BODIES]):
         row, block = write_touches(
             settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, row, block

@@ -8,13 +8,7 @@ from carom.kernels.types import Matrix3, Vector3, func
 @func
 def tangents(normal: Vector3) -> Matrix3:
     """A unit normal and two unit tangents, as columns; all three are orthogonal."""
-    aside = Vector3(1.0, 0.0, 0.0)
-    if wp.abs(normal[0]) > 0.7:
-        aside = Vector3(0.0, 1.0, 0.0)
+    aside = Vector3(0.0, 1.0, 0.0) if wp.abs(normal[0]) > 0.7 else Vector3(1.0, 0.0, 0.0)
     first = wp.normalize(wp.cross(aside, normal))
     second = wp.cross(normal, first)
-    return Matrix3(
-        normal[0], first[0], second[0],
-        normal[1], first[1], second[1],
-        normal[2], first[2], second[2],
-    )  # fmt: skip
+    return wp.matrix_from_cols(normal, first, second)

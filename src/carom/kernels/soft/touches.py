@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.contact.bounds import local_extents
-from carom.kernels.contact.filters import masks_match, pair_filter
+from carom.kernels.contact.filters import links_may_collide
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.min_max import lower_corner, upper_corner
@@ -45,19 +45,6 @@ def point_velocity(
         velocity += (scratch.dof[world, dof].linear + turn) * state.dof_velocity[world, dof]
         dof = model.dof[dof].parent
     return velocity
-
-
-@func
-def may_meet(
-    shapes: Shapes, model: Model, settings: Settings, soft: SoftModel, body: Int32, shape: Int32
-) -> bool:
-    """Whether collision filters let the nodes of a soft body touch a shape."""
-    own = model.tree[soft.soft[body].tree].first_link
-    link = shapes.shape_link[shape]
-    wanted = pair_filter(shapes, settings, own, link)
-    if wanted >= 0:
-        return wanted == 1
-    return masks_match(shapes, settings, own, link)
 
 
 @func
@@ -174,6 +161,7 @@ def find_touches(
 ):
     """Find the shapes that the nodes of a body may touch within a substep."""
     dt = settings.time_step
+    own = model.tree[soft.soft[body].tree].first_link
     margin = soft.soft[body].margin
     first = soft.soft[body].first_node
     for node in range(first, first + soft.soft[body].node_count):
@@ -190,7 +178,7 @@ def find_touches(
                 or upper[axis] + max_distance < pairs.shape_lower[world, shape][axis]
             ):
                 near = Int32(0)
-        if near == 1 and may_meet(shapes, model, settings, soft, body, shape):
+        if near == 1 and links_may_collide(shapes, settings, own, shapes.shape_link[shape]):
             find_node_touches(shapes, state, pairs, soft, work, world, body, shape, dt, closing)
 
 
@@ -233,9 +221,8 @@ def write_touches(
             work.touch_offset[world, touch] = soft.soft[body].margin
             if can_be_pushed(model, state, world, tree, link):
                 make_ready(model, state, scratch, pair_rows, work, world, tree)
-                work.touch_velocity[world, touch] = point_velocity(
-                    model, state, scratch, world, tree, link, point
-                )
+                velocity = point_velocity(model, state, scratch, world, tree, link, point)
+                work.touch_velocity[world, touch] = velocity
                 work.touch_row[world, touch] = row
                 row, block = add_push_rows(
                     model, state, scratch, pair_rows, world, tree, link, point, tangents(normal), row, block
@@ -266,9 +253,8 @@ def write_anchors(
         work.anchor_row[world, anchor] = Int32(-1)
         if can_be_pushed(model, state, world, tree, link):
             make_ready(model, state, scratch, pair_rows, work, world, tree)
-            work.anchor_velocity[world, anchor] = point_velocity(
-                model, state, scratch, world, tree, link, point
-            )
+            velocity = point_velocity(model, state, scratch, world, tree, link, point)
+            work.anchor_velocity[world, anchor] = velocity
             work.anchor_row[world, anchor] = row
             row, block = add_push_rows(
                 model, state, scratch, pair_rows, world, tree, link, point, wp.identity(3, real), row, block

@@ -27,9 +27,7 @@ def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
     """
     if link_moves(model, pair[2]):
         return shapes.shape_tree[pair[0]]
-    if link_moves(model, pair[3]):
-        return shapes.shape_tree[pair[1]]
-    return -1
+    return shapes.shape_tree[pair[1]] if link_moves(model, pair[3]) else -1
 
 
 @func

@@ -65,9 +65,8 @@ def write_normal_delassus(
             )  # fmt: skip
     for i in range(4):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[i]
-        pair_rows.manifold_block[world, manifold_block].normal_delassus[i, contact] = (
-            lowered[i] * inverse_mass * mass
-        )
+        entry = lowered[i] * inverse_mass * mass
+        pair_rows.manifold_block[world, manifold_block].normal_delassus[i, contact] = entry
 
 
 @func
@@ -86,9 +85,8 @@ def write_friction_delassus(
             )  # fmt: skip
     for i in range(8):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i]
-        pair_rows.manifold_block[world, manifold_block].friction_delassus[i, row] = (
-            lowered[i] * inverse_mass * mass
-        )
+        entry = lowered[i] * inverse_mass * mass
+        pair_rows.manifold_block[world, manifold_block].friction_delassus[i, row] = entry
 
 
 @func

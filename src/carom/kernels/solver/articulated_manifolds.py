@@ -8,14 +8,13 @@ Functions exist in two versions for speed: for rigid and articulated bodies, sin
 in registers; for normals and friction, since compilers have to know the width of vectors.
 """
 
-import warp as wp
-
 from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
 from carom.kernels.solver.rigid_manifolds import (
     bounded_friction,
     bounded_normals,
     friction_residual,
     normal_residual,
+    normals_alone,
 )
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Index4, Int32, func, real
@@ -38,10 +37,7 @@ def relax_articulated_normals(
     """Relax the normal rows of a manifold block; returns the maximum change of velocity squared."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
-    wanted = pair_rows.manifold_block[world, manifold_block].normal_share - wp.cw_mul(
-        pair_rows.manifold_block[world, manifold_block].normal_softness,
-        pair_rows.manifold_block[world, manifold_block].normal_impulse,
-    )
+    wanted = normals_alone(pair_rows, world, manifold_block)
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[0] + 4 * place[1] * side

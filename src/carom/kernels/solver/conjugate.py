@@ -16,34 +16,22 @@ from carom.kernels.types import Int32, Vector4, Vector8, func, real
 @func
 def remember_impulses(pair_rows: PairRows, world: Int32, manifold_blocks: Int32):
     """Save the impulses before a sweep."""
-    manifold_block = Int32(0)
-    while manifold_block < manifold_blocks:
-        pair_rows.manifold_block[world, manifold_block].normal_before = pair_rows.manifold_block[
-            world, manifold_block
-        ].normal_impulse
-        pair_rows.manifold_block[world, manifold_block].friction_before = pair_rows.manifold_block[
-            world, manifold_block
-        ].friction_impulse
-        manifold_block += 1
+    for manifold_block in range(manifold_blocks):
+        normal = pair_rows.manifold_block[world, manifold_block].normal_impulse
+        friction = pair_rows.manifold_block[world, manifold_block].friction_impulse
+        pair_rows.manifold_block[world, manifold_block].normal_before = normal
+        pair_rows.manifold_block[world, manifold_block].friction_before = friction
 
 
 @func
-def squared_change(pair_rows: PairRows, world: Int32, manifold_blocks: Int32) -> real:
-    """Squared norm of the change of impulses by the last sweep."""
-    square = real(0.0)
-    manifold_block = Int32(0)
-    while manifold_block < manifold_blocks:
-        normal = (
-            pair_rows.manifold_block[world, manifold_block].normal_impulse
-            - pair_rows.manifold_block[world, manifold_block].normal_before
-        )
-        friction = (
-            pair_rows.manifold_block[world, manifold_block].friction_impulse
-            - pair_rows.manifold_block[world, manifold_block].friction_before
-        )
-        square += wp.dot(normal, normal) + wp.dot(friction, friction)
-        manifold_block += 1
-    return square
+def impulse_changes(pair_rows: PairRows, world: Int32, manifold_block: Int32):
+    """Changes of the impulses of a manifold block by the last sweep: normal, friction."""
+    normal = pair_rows.manifold_block[world, manifold_block].normal_impulse
+    friction = pair_rows.manifold_block[world, manifold_block].friction_impulse
+    return (
+        normal - pair_rows.manifold_block[world, manifold_block].normal_before,
+        friction - pair_rows.manifold_block[world, manifold_block].friction_before,
+    )
 
 
 @func
@@ -52,39 +40,21 @@ def go_on(
 ) -> real:
     """Move the impulses further, so that their total change is conjugate to the last search direction.
 
-    Args:
-        scratch: Has the delta velocities.
-        pair_rows: The manifold blocks; `remember_impulses` was called before the sweep.
-        world: The world.
-        manifold_blocks: Their number.
-        last_square: Returned by this function after the sweep before; 0 after the first sweep.
-
-    Returns:
-        Squared norm of the change of impulses by the sweep.
+    `remember_impulses` was called before the sweep. Returns the squared norm of the change of impulses by the
+    sweep; `last_square` is the same of the sweep before, 0 after the first one.
     """
-    square = squared_change(pair_rows, world, manifold_blocks)
-    share = real(0.0)
-    if square < last_square:
-        share = square / last_square
-    manifold_block = Int32(0)
-    while manifold_block < manifold_blocks:
-        normal = (
-            pair_rows.manifold_block[world, manifold_block].normal_impulse
-            - pair_rows.manifold_block[world, manifold_block].normal_before
-        )
-        friction = (
-            pair_rows.manifold_block[world, manifold_block].friction_impulse
-            - pair_rows.manifold_block[world, manifold_block].friction_before
-        )
+    square = real(0.0)
+    for manifold_block in range(manifold_blocks):
+        normal, friction = impulse_changes(pair_rows, world, manifold_block)
+        square += wp.dot(normal, normal) + wp.dot(friction, friction)
+    share = square / last_square if square < last_square else 0.0
+    for manifold_block in range(manifold_blocks):
+        normal, friction = impulse_changes(pair_rows, world, manifold_block)
         if share > 0.0:
             further = share * pair_rows.manifold_block[world, manifold_block].normal_search
             aside = share * pair_rows.manifold_block[world, manifold_block].friction_search
-            pair_rows.manifold_block[world, manifold_block].normal_impulse = (
-                pair_rows.manifold_block[world, manifold_block].normal_impulse + further
-            )
-            pair_rows.manifold_block[world, manifold_block].friction_impulse = (
-                pair_rows.manifold_block[world, manifold_block].friction_impulse + aside
-            )
+            pair_rows.manifold_block[world, manifold_block].normal_impulse += further
+            pair_rows.manifold_block[world, manifold_block].friction_impulse += aside
             push_manifold_block(scratch, pair_rows, world, manifold_block, further, aside)
             normal += further
             friction += aside
@@ -93,5 +63,4 @@ def go_on(
             friction = Vector8(0.0)
         pair_rows.manifold_block[world, manifold_block].normal_search = normal
         pair_rows.manifold_block[world, manifold_block].friction_search = friction
-        manifold_block += 1
     return square

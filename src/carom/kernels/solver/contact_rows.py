@@ -56,10 +56,8 @@ def add_contact_rows(
             angular = terms.normal
             coefficient = terms.friction[2]
         else:
-            angular = terms.rolling1
             coefficient = terms.friction[1]
-            if place > rows[ROLLING_ROW]:
-                angular = terms.rolling2
+            angular = terms.rolling2 if place > rows[ROLLING_ROW] else terms.rolling1
 
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, place, block, terms.ends, terms.point_a, terms.point_b,
@@ -87,12 +85,8 @@ def keep_contact_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32,
     """Store the impulses of a contact's rows."""
     rows = pair_rows.contact_rows[world, contact]
     keep_contact_impulse(
-        contacts,
-        world,
-        contact,
-        pair_rows.row_terms[world, rows[NORMAL_ROW]].impulse,
+        contacts, world, contact, pair_rows.row_terms[world, rows[NORMAL_ROW]].impulse,
         pair_rows.row_terms[world, rows[LATERAL_ROW]].impulse,
         pair_rows.row_terms[world, rows[LATERAL_ROW] + 1].impulse,
-        pair_rows.row_terms[world, rows[LATERAL_ROW]].friction,
-        Int32(NOT_RESTING),
-    )
+        pair_rows.row_terms[world, rows[LATERAL_ROW]].friction, Int32(NOT_RESTING),
+    )  # fmt: skip

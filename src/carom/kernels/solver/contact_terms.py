@@ -133,9 +133,7 @@ def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, poin
 @func
 def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
     """Angular velocity of a fixed base; 0 for free bases."""
-    if model.tree[tree].fixed == 0:
-        return Vector3(0.0, 0.0, 0.0)
-    return base_omega(model, state, world, tree)
+    return Vector3(0.0, 0.0, 0.0) if model.tree[tree].fixed == 0 else base_omega(model, state, world, tree)
 
 
 @func
@@ -155,36 +153,29 @@ def contact_terms(
     Initial impulses are the last impulses times `share`.
     """
     pair = contacts.contact_shapes[world, contact]
-    a = pair[2]
-    b = pair[3]
-    direction1 = contacts.contact_direction1[world, contact]
-    direction2 = contacts.contact_direction2[world, contact]
-    lateral1 = scaled_direction(state, shapes, world, a, b, direction1)
-    lateral2 = scaled_direction(state, shapes, world, a, b, direction2)
-    contacts.contact_direction1[world, contact] = lateral1
-    contacts.contact_direction2[world, contact] = lateral2
+    a, b = pair[2], pair[3]
     softness, erp = contact_stiffness(settings, shapes, world, a, b)
     terms = ContactTerms()
     terms.ends = Index4(shapes.shape_tree[pair[0]], a, shapes.shape_tree[pair[1]], b)
     terms.point_a = contacts.contact_point_a[world, contact]
     terms.point_b = contacts.contact_point_b[world, contact]
     terms.normal = contacts.contact_normal[world, contact]
-    terms.lateral1 = lateral1
-    terms.lateral2 = lateral2
-    terms.rolling1 = direction1
-    terms.rolling2 = direction2
+    terms.rolling1 = contacts.contact_direction1[world, contact]
+    terms.rolling2 = contacts.contact_direction2[world, contact]
+    terms.lateral1 = scaled_direction(state, shapes, world, a, b, terms.rolling1)
+    terms.lateral2 = scaled_direction(state, shapes, world, a, b, terms.rolling2)
+    contacts.contact_direction1[world, contact] = terms.lateral1
+    contacts.contact_direction2[world, contact] = terms.lateral2
     terms.drift = anchor_drift(state, shapes, contacts, world, contact)
     terms.distance = contacts.contact_distance[world, contact]
     terms.friction = contact_friction(shapes, world, a, b)
     terms.softness = softness
     terms.erp = erp
     terms.start = share * contacts.contact_impulse[world, contact]
-    terms.ignored = Int32(0)
     solved_up_to = minimum(
         shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
     )
-    if terms.distance > solved_up_to:
-        terms.ignored = Int32(1)
+    terms.ignored = Int32(terms.distance > solved_up_to)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b
     )
@@ -254,15 +245,8 @@ def keep_contact_impulse(
 ):
     """Store the impulses of a contact; if it slides, its friction anchor moves to its present point.
 
-    Args:
-        contacts: The contacts.
-        world: The world.
-        contact: The contact.
-        normal: Impulse along the normal.
-        first: Impulse along the first friction direction.
-        second: Impulse along the second.
-        friction: Coefficient of lateral friction.
-        outcome: Outcome of solving it, see `warm_starting.next_warm_start`.
+    The impulses are along the normal and the two friction directions, `friction` is the coefficient of
+    lateral friction, and `outcome` that of solving the contact, see `warm_starting.next_warm_start`.
     """
     contacts.contact_impulse[world, contact] = Vector3(normal, first, second)
     contacts.contact_warm_start[world, contact] = next_warm_start(

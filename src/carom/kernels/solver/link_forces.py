@@ -123,8 +123,7 @@ def user_wrench(
     user: Int32,
 ):
     """Force [N] and torque [N m] of a user constraint on link a in the last substep, in world axes."""
-    force = Vector3(0.0, 0.0, 0.0)
-    torque = Vector3(0.0, 0.0, 0.0)
+    force, torque = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     impulse = state.user_impulse[world, user] / settings.time_step
     if users.user_kind[user] == USER_GEAR:
         # As in PyBullet, the torques or forces on both links are along the axis of joint a.

@@ -22,9 +22,7 @@ from carom.kernels.types import Index4, Int32, func
 @func
 def tree_place(model: Model, tree: Int32) -> Int32:
     """First block of a tree in `delta_velocity`; 0 for the world, -1."""
-    if tree < 0:
-        return Int32(0)
-    return model.tree[tree].first_delta
+    return Int32(0) if tree < 0 else model.tree[tree].first_delta
 
 
 @func
@@ -65,9 +63,8 @@ def write_manifold_block(
     contact = Int32(0)
     while contact < count:
         write_articulated_contact(
-            settings, model, state, scratch, shapes, pair_rows,
-            pair_rows.terms[world, contact], world, manifold_block,
-            contact, temporary,
+            settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, contact], world,
+            manifold_block, contact, temporary,
         )  # fmt: skip
         contact += 1
 

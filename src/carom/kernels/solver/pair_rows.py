@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
+from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.contacts import ROWS_PER_PAIR
@@ -12,9 +13,7 @@ from carom.layouts.contacts import ROWS_PER_PAIR
 @func
 def tree_blocks(model: Model, tree: Int32) -> Int32:
     """Number of blocks of four in a vector over a tree's active dofs; 0 for the world, -1."""
-    if tree < 0:
-        return Int32(0)
-    return (model.tree[tree].dof_count + 3) // 4
+    return Int32(0) if tree < 0 else (model.tree[tree].dof_count + 3) // 4
 
 
 @func
@@ -49,8 +48,7 @@ def write_jacobian(
     Returns:
         Inverse mass of the row for this tree, and its present velocity.
     """
-    inverse_mass = real(0.0)
-    velocity = real(0.0)
+    inverse_mass, velocity = real(0.0), real(0.0)
     blocks = tree_blocks(model, tree)
     if blocks > 0:
         fill_zero(pair_rows.jacobian_row, start, world, blocks)
@@ -82,14 +80,9 @@ def place_row(
     model: Model, pair_rows: PairRows, world: Int32, row: Int32, tree_a: Int32, tree_b: Int32, start: Int32
 ) -> Int32:
     """Store the trees of a row and the first block of its Jacobian; returns the next free block."""
-    blocks_a = tree_blocks(model, tree_a)
-    blocks_b = tree_blocks(model, tree_b)
-    delta_a = Int32(0)
-    delta_b = Int32(0)
-    if tree_a >= 0:
-        delta_a = model.tree[tree_a].first_delta
-    if tree_b >= 0:
-        delta_b = model.tree[tree_b].first_delta
+    blocks_a, blocks_b = tree_blocks(model, tree_a), tree_blocks(model, tree_b)
+    delta_a = model.tree[tree_a].first_delta if tree_a >= 0 else Int32(0)
+    delta_b = model.tree[tree_b].first_delta if tree_b >= 0 else Int32(0)
     pair_rows.row_place[world, row] = Index4(delta_a, blocks_a, delta_b, blocks_b)
     pair_rows.row_start[world, row] = start
     pair_rows.row_bound[world, row] = Int32(-1)
@@ -113,9 +106,7 @@ def write_row(
     `softness` (constraint force mixing) is the velocity by which the row yields per unit of impulse.
     """
     effective_mass = inverse_or_off(inverse_mass + softness)
-    diagonal = real(0.0)
-    if effective_mass > 0.0:
-        diagonal = 1.0 / effective_mass
+    diagonal = 1.0 / effective_mass if effective_mass > 0.0 else 0.0
     terms = RowTerms()
     terms.share = change * effective_mass
     terms.effective_mass = effective_mass
@@ -177,11 +168,8 @@ def relax_within(
     terms = pair_rows.row_terms[world, row]
     place = pair_rows.row_place[world, row]
     start = pair_rows.row_start[world, row]
-    impulse = wanted_impulse(scratch, pair_rows, world, place, start, terms)
-    if impulse < lower:
-        impulse = lower
-    if impulse > upper:
-        impulse = upper
+    wanted = wanted_impulse(scratch, pair_rows, world, place, start, terms)
+    impulse = within_bounds(wanted, lower, upper)
     change = impulse - terms.impulse
     pair_rows.row_terms[world, row].impulse = impulse
     push_row(scratch, pair_rows, world, place, start, change)
@@ -207,13 +195,9 @@ def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: In
     second = wanted_impulse(scratch, pair_rows, world, place, start2, terms2)
     square = first * first + second * second
     if square >= bound * bound:
-        scale = real(0.0)
-        if square > 0.0:
-            scale = bound / wp.sqrt(square)
-        first = first * scale
-        second = second * scale
-    change1 = first - terms1.impulse
-    change2 = second - terms2.impulse
+        scale = bound / wp.sqrt(square) if square > 0.0 else 0.0
+        first, second = first * scale, second * scale
+    change1, change2 = first - terms1.impulse, second - terms2.impulse
     pair_rows.row_terms[world, row].impulse = first
     pair_rows.row_terms[world, row + 1].impulse = second
     push_row(scratch, pair_rows, world, place, start1, change1)
@@ -242,8 +226,7 @@ def write_jacobians(
     Returns:
         Inverse mass and relative velocity.
     """
-    inverse_mass = real(0.0)
-    velocity = real(0.0)
+    inverse_mass, velocity = real(0.0), real(0.0)
     side = Int32(0)
     while side < 2:
         point = point_a

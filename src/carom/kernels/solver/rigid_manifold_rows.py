@@ -40,12 +40,7 @@ def rigid_body(model: Model, state: State, scratch: Scratch, world: Int32, tree:
 @func
 def row_direction(terms: ContactTerms, row: Int32) -> Vector3:
     """Direction of a row of a contact: row 0 is the normal, rows 1 and 2 are friction."""
-    direction = terms.normal
-    if row == 1:
-        direction = terms.lateral1
-    elif row == 2:
-        direction = terms.lateral2
-    return direction
+    return terms.normal if row == 0 else terms.lateral1 if row == 1 else terms.lateral2
 
 
 @func
@@ -61,22 +56,11 @@ def write_row_numbers(
     velocity: real,
     inverse_mass: real,
 ) -> real:
-    """Write all data of a row of a contact except its matrices.
+    """Write all data of a row of a contact except its matrices; returns the row's effective mass.
 
-    Args:
-        settings: Time step, error reduction of friction, and more.
-        shapes: Has the restitution of the links.
-        pair_rows: The manifold block.
-        terms: The contact.
-        world: The world.
-        manifold_block: The manifold block.
-        contact: Index of the contact in the block.
-        row: Row of the contact: 0 is the normal, 1 and 2 are friction.
-        velocity: Present velocity of the row, without set velocities of fixed bases.
-        inverse_mass: Change of this velocity by a unit impulse.
-
-    Returns:
-        Effective mass of the row.
+    Row 0 is the normal, 1 and 2 are friction. `contact` is the contact's index in the block, `velocity` the
+    present velocity of the row, without set velocities of fixed bases, and `inverse_mass` the change of this
+    velocity by a unit impulse.
     """
     if terms.ignored != 0:
         inverse_mass = real(0.0)
@@ -89,9 +73,7 @@ def write_row_numbers(
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
-    impulse = real(0.0)
-    if mass > 0.0 and terms.start[0] > 0.0:
-        impulse = terms.start[row]
+    impulse = terms.start[row] if mass > 0.0 and terms.start[0] > 0.0 else 0.0
     if row == 0:
         pair_rows.manifold_block[world, manifold_block].friction[contact] = terms.friction[0]
         pair_rows.manifold_block[world, manifold_block].normal_share[contact] = change * mass
@@ -161,12 +143,8 @@ def write_responses(pair_rows: PairRows, world: Int32, manifold_block: Int32, si
     pair_rows.side[world, side].friction_response = friction_response
     pair_rows.manifold_block[world, manifold_block].normal_delassus += normal_response * normal
     pair_rows.manifold_block[world, manifold_block].friction_delassus += friction_response * friction
-    pair_rows.manifold_block[world, manifold_block].normal_share = pair_rows.manifold_block[
-        world, manifold_block
-    ].normal_share + combination(normal, body.velocity)
-    pair_rows.manifold_block[world, manifold_block].friction_share = pair_rows.manifold_block[
-        world, manifold_block
-    ].friction_share + combination(friction, body.velocity)
+    pair_rows.manifold_block[world, manifold_block].normal_share += combination(normal, body.velocity)
+    pair_rows.manifold_block[world, manifold_block].friction_share += combination(friction, body.velocity)
 
 
 @func

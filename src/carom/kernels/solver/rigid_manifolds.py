@@ -77,6 +77,14 @@ def greatest_square(change: Vector4) -> real:
 
 
 @func
+def normals_alone(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector4:
+    """Changes of the normal impulses of a block without bounds, if nothing else had moved its bodies."""
+    softness = pair_rows.manifold_block[world, manifold_block].normal_softness
+    impulse = pair_rows.manifold_block[world, manifold_block].normal_impulse
+    return pair_rows.manifold_block[world, manifold_block].normal_share - wp.cw_mul(softness, impulse)
+
+
+@func
 def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector4:
     """Update the normal impulses of a block by the wanted changes, clamped to >= 0; returns the changes."""
     before = pair_rows.manifold_block[world, manifold_block].normal_impulse
@@ -107,9 +115,7 @@ def scale_to_circle(square: real, bound: real) -> real:
     It is not inlined, so that square root and quotient are not computed for impulses within the circle, as
     most are.
     """
-    if bound == 0.0:
-        return 0.0
-    return bound / wp.sqrt(square)
+    return 0.0 if bound == 0.0 else bound / wp.sqrt(square)
 
 
 @func
@@ -140,8 +146,7 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
             second -= change1 * delassus[2 * i, 2 * i + 1]
             change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
         else:
-            change1 = real(0.0)
-            change2 = real(0.0)
+            change1, change2 = real(0.0), real(0.0)
         change[2 * i] = change1
         change[2 * i + 1] = change2
         wanted -= change1 * delassus[2 * i] + change2 * delassus[2 * i + 1]
@@ -167,20 +172,14 @@ def friction_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, 
 def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
     """Relax the normal rows of a rigid manifold block; returns the maximum change of velocity squared."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
-        world, manifold_block
-    ].normal_share - wp.cw_mul(
-        pair_rows.manifold_block[world, manifold_block].normal_softness,
-        pair_rows.manifold_block[world, manifold_block].normal_impulse,
+    pair_rows.manifold_block[world, manifold_block].normal_wanted = normals_alone(
+        pair_rows, world, manifold_block
     )
     for body in range(2):
         if place[2 * body + 1] > 0:
-            pair_rows.manifold_block[world, manifold_block].normal_wanted = pair_rows.manifold_block[
-                world, manifold_block
-            ].normal_wanted - combination(
-                pair_rows.side[world, 2 * manifold_block + body].normal_weighted,
-                body_change(scratch, world, place[2 * body]),
-            )
+            weighted = pair_rows.side[world, 2 * manifold_block + body].normal_weighted
+            moved = combination(weighted, body_change(scratch, world, place[2 * body]))
+            pair_rows.manifold_block[world, manifold_block].normal_wanted -= moved
     change = bounded_normals(pair_rows, world, manifold_block)
     for body in range(2):
         if place[2 * body + 1] > 0:
@@ -195,17 +194,13 @@ def relax_rigid_friction(
 ) -> real:
     """Relax the friction rows of a manifold block of rigid bodies; returns as `relax_rigid_normals`."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
-        world, manifold_block
-    ].friction_share
+    share = pair_rows.manifold_block[world, manifold_block].friction_share
+    pair_rows.manifold_block[world, manifold_block].friction_wanted = share
     for body in range(2):
         if place[2 * body + 1] > 0:
-            pair_rows.manifold_block[world, manifold_block].friction_wanted = pair_rows.manifold_block[
-                world, manifold_block
-            ].friction_wanted - combination(
-                pair_rows.side[world, 2 * manifold_block + body].friction_weighted,
-                body_change(scratch, world, place[2 * body]),
-            )
+            weighted = pair_rows.side[world, 2 * manifold_block + body].friction_weighted
+            moved = combination(weighted, body_change(scratch, world, place[2 * body]))
+            pair_rows.manifold_block[world, manifold_block].friction_wanted -= moved
     change = bounded_friction(settings, pair_rows, world, manifold_block)
     for body in range(2):
         if place[2 * body + 1] > 0:

@@ -43,10 +43,7 @@ def island_rows(
         Next free row over one tree; next free row and block over two trees; number of rows in `visit_row`,
         negative if some did not fit.
     """
-    row = Int32(0)
-    pair_row = Int32(0)
-    block = Int32(0)
-    visits = Int32(0)
+    row, pair_row, block, visits = Int32(0), Int32(0), Int32(0), Int32(0)
     fits = Int32(1)
     constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
@@ -104,17 +101,9 @@ def sweep_island(
 ):
     """Sweep over the rows of an island until it converges; with conjugate directions if it is at rest.
 
-    Args:
-        settings: Has the maximum number of sweeps, and the residual threshold.
-        scratch: Rows over one tree.
-        pair_rows: Rows over two trees.
-        world: The world.
-        rows: Number of rows of motors and limits.
-        visits: Number of rows of motors, limits and user constraints.
-        units: Number of units of contacts.
-        manifold_blocks: Number of manifold blocks among the units.
-        torsion: 1 if there is rolling or spinning friction.
-        resting: 1 if the island is warm started; then all units are manifold blocks of rigid bodies.
+    `rows` are those of motors and limits, `visits` those and the rows of user constraints, `units` the units
+    of contacts, with so many manifold blocks among them. `torsion` is 1 if there is rolling or spinning
+    friction, `resting` if the island is warm started; then all units are manifold blocks of rigid bodies.
 
     Returns:
         Residual of the last sweep, the maximum change of a row's velocity, squared; number of sweeps.
@@ -124,12 +113,9 @@ def sweep_island(
     if resting == 1:
         threshold = threshold * RESTING_PRECISION
         most = most * RESTING_SWEEPS
-    residual = real(0.0)
-    square = real(0.0)
+    residual, square = real(0.0), real(0.0)
     sweep = Int32(0)
-    searching = Int32(0)
-    if (visits > 0 or units > 0) and most > 0:
-        searching = Int32(1)
+    searching = Int32(1) if (visits > 0 or units > 0) and most > 0 else Int32(0)
     while searching == 1:
         if resting == 1:
             remember_impulses(pair_rows, world, manifold_blocks)
@@ -170,9 +156,7 @@ def solve_island(
     # With 0 iterations there must be no impulses, so there is no warm starting either.
     resting = wp.min(wp.min(pair_rows.tree_rest[world, root], 1), settings.iterations)
     outcome = Int32(NOT_RESTING)
-    units = Int32(0)
-    manifold_blocks = Int32(0)
-    torsion = Int32(0)
+    units, manifold_blocks, torsion = Int32(0), Int32(0), Int32(0)
     residual = real(0.0)
     sweeps = Int32(0)
     trying = Int32(1)

@@ -28,12 +28,7 @@ def islands_kernel(
 
 @kernel
 def free_motion_kernel(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    pair_rows: PairRows,
-    first_world: Int32,
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
 ):
     """Update velocities for a substep without constraints."""
     world = first_world + wp.tid()

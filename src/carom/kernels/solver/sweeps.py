@@ -111,13 +111,10 @@ def relax_contact_friction(
         if in_circle and (bound > 0.0 or kind == LATERAL_ROW):
             change = relax_in_circle(scratch, pair_rows, world, row, bound)
         elif not in_circle and bound > 0.0:
-            last = row + 1
-            if kind == SPINNING_ROW:
-                last = row + 0
+            last = row + 0 if kind == SPINNING_ROW else row + 1
             while row <= last:
                 change = maximum(
-                    wp.abs(change),
-                    wp.abs(relax_within(scratch, pair_rows, world, row, -bound, bound)),
+                    wp.abs(change), wp.abs(relax_within(scratch, pair_rows, world, row, -bound, bound))
                 )
                 row += 1
     return change * change
@@ -149,9 +146,7 @@ def contact_sweep(
     `units` and `torsion` are returned by `units.write_units`. Returns the maximum change squared.
     """
     residual = normal_sweep(scratch, pair_rows, world, units)
-    kind = Int32(LATERAL_ROW)
-    if torsion != 0:
-        kind = Int32(SPINNING_ROW)
+    kind = Int32(SPINNING_ROW) if torsion != 0 else Int32(LATERAL_ROW)
     while kind >= LATERAL_ROW:
         residual = maximum(residual, friction_sweep(settings, scratch, pair_rows, world, units, kind))
         kind -= 1

@@ -81,10 +81,7 @@ def write_units(
         Number of units, negative if some did not fit; number of manifold blocks; 1 if some contact has
         rolling or spinning friction.
     """
-    units = Int32(0)
-    manifold_blocks = Int32(0)
-    torsion = Int32(0)
-    next_matrices = Int32(0)
+    units, manifold_blocks, torsion, next_matrices = Int32(0), Int32(0), Int32(0), Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
@@ -131,11 +128,9 @@ def write_units(
 @func
 def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, units: Int32, outcome: Int32):
     """Store the impulses of an island's contacts, and the `outcome` of solving them."""
-    unit = Int32(0)
-    while unit < units:
+    for unit in range(units):
         code = pair_rows.unit_code[world, unit]
         if code < 0:
             keep_manifold_impulses(contacts, pair_rows, world, -1 - code, outcome)
         else:
             keep_contact_impulses(contacts, pair_rows, world, code)
-        unit += 1

@@ -16,17 +16,13 @@ _PARALLEL = real(1e-6)
 @func
 def world_point(state: State, world: Int32, tree: Int32, link: Int32, local: Vector3) -> Vector3:
     """World position of a point given in a link's frame, or in the world frame if `tree` is -1."""
-    if tree < 0:
-        return local
-    return wp.transform_point(state.link_pose[world, link], local)
+    return local if tree < 0 else wp.transform_point(state.link_pose[world, link], local)
 
 
 @func
 def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Quaternion) -> Quaternion:
     """World orientation of a frame given in a link's frame, or in the world frame if `tree` is -1."""
-    if tree < 0:
-        return local
-    return wp.transform_get_rotation(state.link_pose[world, link]) * local
+    return local if tree < 0 else wp.transform_get_rotation(state.link_pose[world, link]) * local
 
 
 @func
@@ -36,9 +32,7 @@ def user_row_count(kind: Int32) -> Int32:
         return Int32(1)
     if kind == USER_POINT_TO_POINT:
         return Int32(3)
-    if kind == USER_PRISMATIC:
-        return Int32(5)
-    return Int32(6)
+    return Int32(5) if kind == USER_PRISMATIC else Int32(6)
 
 
 @func
@@ -91,14 +85,10 @@ def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
         The direction of a translational row, else 0; the rotation axis of a rotational row, else 0; the axis'
         column in `axes`, -1 for a translational row.
     """
-    linear = Vector3(0.0, 0.0, 0.0)
-    angular = Vector3(0.0, 0.0, 0.0)
+    linear, angular = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     axis = Int32(-1)
-    linear_count = Int32(3)
-    first_angle = Int32(0)
-    if kind == USER_PRISMATIC:
-        linear_count = Int32(2)
-        first_angle = Int32(2)
+    linear_count = Int32(2) if kind == USER_PRISMATIC else Int32(3)
+    first_angle = Int32(2) if kind == USER_PRISMATIC else Int32(0)
     if i < linear_count:
         linear = Vector3(directions[i, 0], directions[i, 1], directions[i, 2])
     else:
@@ -108,7 +98,7 @@ def pose_row(kind: Int32, directions: Matrix3, axes: Matrix3, i: Int32):
 
 
 @func
-def add_pose_rows(
+def add_user_rows(
     settings: Settings,
     model: Model,
     state: State,
@@ -120,10 +110,15 @@ def add_pose_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add the rows of a point-to-point, fixed or prismatic constraint; returns the next free row and block.
+    """Add the rows of one user constraint; returns the next free row and block.
 
-    Each row stops the motion of a relative to b along or about an axis, and corrects a part of the error.
+    Each row of a point-to-point, fixed or prismatic constraint stops the motion of a relative to b along or
+    about an axis, and corrects a part of the error.
     """
+    pair_rows.user_first_row[world, user] = row
+    if users.user_kind[user] == USER_GEAR:
+        row, block = add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, row, block)
+        return row, block
     ends = user_ends(users, user)
     point_a, point_b = held_points(state, users, world, user)
     apart = point_a - point_b
@@ -136,9 +131,7 @@ def add_pose_rows(
     bound = users.user_max_impulse[user]
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
-        error = wp.dot(apart, linear)
-        if axis >= 0:
-            error = turned[axis]
+        error = turned[axis] if axis >= 0 else wp.dot(apart, linear)
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
@@ -197,10 +190,8 @@ def add_gear_row(
     link_b = users.user_link_b[user]
     auxiliary = users.user_gear_auxiliary[user]
     ratio = users.user_gear_ratio[user]
-    auxiliary_rate = real(0.0)
     error = real(0.0)
-    if auxiliary >= 0:
-        auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof]
+    auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof] if auxiliary >= 0 else 0.0
     if users.user_erp[user] != 0.0:
         angle = joint_position(model, state, world, link_a) + ratio * joint_position(
             model, state, world, link_b
@@ -223,28 +214,6 @@ def add_gear_row(
     bound = users.user_max_impulse[user]
     write_row(pair_rows, world, row, inverse_mass_a + inverse_mass_b, change, 0.0, -bound, bound, 0.0)
     return row + 1, after
-
-
-@func
-def add_user_rows(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    users: UserConstraints,
-    pair_rows: PairRows,
-    world: Int32,
-    user: Int32,
-    row: Int32,
-    block: Int32,
-):
-    """Add the rows of one user constraint; returns the next free row and block."""
-    pair_rows.user_first_row[world, user] = row
-    if users.user_kind[user] == USER_GEAR:
-        row, block = add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, row, block)
-    else:
-        row, block = add_pose_rows(settings, model, state, scratch, users, pair_rows, world, user, row, block)
-    return row, block
 
 
 @func

@@ -55,9 +55,7 @@ def next_warm_start(warm_start: real, outcome: Int32) -> real:
     """Update the counter of a contact: it may be warm started from 1 on; each step adds 1, up to 1."""
     if outcome == UNSOLVED:
         return 1.0 - PAUSE
-    if outcome == SOLVED_AND_HOLDS:
-        return HOLDS
-    return minimum(warm_start + 1.0, 1.0)
+    return HOLDS if outcome == SOLVED_AND_HOLDS else minimum(warm_start + 1.0, 1.0)
 
 
 @func
@@ -121,9 +119,7 @@ def rest_of(model: Model, state: State, pair_rows: PairRows, world: Int32, tree:
     motion = squared_motion(model, state, world, tree)
     if touches & HAS_OTHER_CONTACTS != 0 or motion >= REST or not is_rigid(model, tree):
         return MOVING
-    if touches & HAS_LOOSE_CONTACTS != 0 or motion >= STILL:
-        return RESTING
-    return HELD
+    return RESTING if touches & HAS_LOOSE_CONTACTS != 0 or motion >= STILL else HELD
 
 
 @func

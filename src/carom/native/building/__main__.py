@@ -16,14 +16,7 @@ _ROOT = Path(__file__).parents[3]
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Build what the command line asks for.
-
-    Args:
-        arguments: The command line; None for that of the process.
-
-    Returns:
-        The exit status.
-    """
+    """Build what the command line, by default that of the process, asks for; returns the exit status."""
     parser = argparse.ArgumentParser(
         prog="python -m carom.native.building", description="Build Carom's native library."
     )

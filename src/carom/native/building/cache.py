@@ -72,22 +72,14 @@ def is_there(library: Path) -> bool:
 
 
 def mark_used(entry: Path) -> None:
-    """Set the time at which an entry of the cache was last used.
-
-    Args:
-        entry: A file or folder directly in one of the cache's folders.
-    """
+    """Set the time at which a file or folder directly in one of the cache's folders was last used."""
     # A folder of another user, or one that is not writable, needs no mark.
     with contextlib.suppress(OSError):
         os.utime(entry)
 
 
 def content_key(*contents: bytes | str) -> str:
-    """A name for a file that is built from some contents.
-
-    Args:
-        *contents: The contents; another order gives another name.
-    """
+    """A name for a file that is built from some contents; another order gives another name."""
     from hashlib import blake2b
 
     digest = blake2b(digest_size=_KEY_BYTES)
@@ -100,11 +92,7 @@ def content_key(*contents: bytes | str) -> str:
 
 @contextlib.contextmanager
 def work_folder(cache: Path) -> Iterator[Path]:
-    """A temporary folder in the cache, on its file system.
-
-    Args:
-        cache: The cache folder.
-    """
+    """A temporary folder in the cache, on its file system."""
     import tempfile
 
     cache.mkdir(parents=True, exist_ok=True)
@@ -113,13 +101,9 @@ def work_folder(cache: Path) -> Iterator[Path]:
 
 
 def keep(made: Path, kept: Path) -> None:
-    """Move a file or folder into the cache atomically.
+    """Move a file or folder to its path in the cache atomically.
 
     Another process may have put the same file there meanwhile.
-
-    Args:
-        made: The file or folder.
-        kept: Its path in the cache.
     """
     kept.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -135,9 +119,6 @@ def alone(cache: Path) -> Iterator[None]:
     """Lock the cache for a build: wait until no other process builds with it, and make others wait.
 
     The lock is released whenever its process ends.
-
-    Args:
-        cache: The cache folder.
     """
     cache.mkdir(parents=True, exist_ok=True)
     with open(cache / "lock", "a+b") as lock:

@@ -66,12 +66,7 @@ class _ForwardBuilder(ModuleBuilder):
 
 
 def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
-    """Write a `.cpp` file for each module, and one manifest for all.
-
-    Args:
-        modules: Names of Python modules with kernels.
-        digest: Digest of the sources, for the manifest.
-        folder: Folder for these files.
+    """Write a `.cpp` file for each module, and one manifest with the digest of the sources, to a folder.
 
     Raises:
         KernelClash: Two modules have a kernel of the same name.

@@ -9,21 +9,7 @@ of that machine.
 from __future__ import annotations
 
 # Functions of a libm that are not processor instructions. They get names of our own; see `libm`.
-MATHS = (
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "atan",
-    "atan2",
-    "exp",
-    "log",
-    "pow",
-    "fmod",
-    "cbrt",
-    "hypot",
-)
+MATHS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "pow", "fmod", "cbrt", "hypot")
 PREFIX = "carom_"
 
 _RENAMED = tuple(f"-D{name}={PREFIX}{name}" for name in MATHS)
@@ -42,14 +28,7 @@ _ALL = (
 )
 # For kernels and hand-written C++: the only standard header is `<stdint.h>`. Loops that clear a few numbers
 # stay loops, which take less time than a call of `memset`.
-CPP_FLAGS = (
-    "-std=c++17",
-    "-fno-builtin-memset",
-    "-fno-exceptions",
-    "-fno-rtti",
-    "-nostdlibinc",
-    *_ALL,
-)
+CPP_FLAGS = ("-std=c++17", "-fno-builtin-memset", "-fno-exceptions", "-fno-rtti", "-nostdlibinc", *_ALL)
 # For the libm, which would otherwise use fused products on processors that have them.
 C_FLAGS = ("-std=c99", "-nostdlibinc", "-ffreestanding", "-U__FP_FAST_FMA", *_ALL)
 # By suffix of the library. Windows unwinds stacks by tables, and Warp's headers use Microsoft's keywords.

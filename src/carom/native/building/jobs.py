@@ -40,10 +40,7 @@ def run_all(
 ) -> None:
     """Run programs, as many at a time as there are cores, started in this order.
 
-    Args:
-        jobs: The programs.
-        environment: Their environment variables.
-        progress: Called repeatedly with the number of finished jobs and the number of all jobs.
+    `progress` is called repeatedly with the number of finished jobs and the number of all jobs.
 
     Raises:
         BuildError: A job failed; the others are stopped. The message has its output.

@@ -38,36 +38,20 @@ _HERE = Path(__file__).parent / "libm"
 def called_functions(objects: Iterable[Path]) -> set[str]:
     """The maths functions that object files refer to.
 
-    Args:
-        objects: Object files of any format: all contain the names of symbols, each followed by a zero byte.
+    Objects of any format contain the names of symbols, each followed by a zero byte.
     """
     contents = [path.read_bytes() for path in objects]
     return {name for name in MATHS if any(f"{PREFIX}{name}\0".encode() in content for content in contents)}
 
 
 def maths_sources(functions: Iterable[str], zig_library: Path) -> list[Path]:
-    """The C sources of maths functions.
-
-    Args:
-        functions: Their names.
-        zig_library: The `lib` folder of Zig.
-
-    Returns:
-        Sources, each once, sorted by name.
-    """
+    """The C sources of maths functions, each once and sorted by name, in the `lib` folder of Zig."""
     musl = zig_library / "libc" / "musl" / "src" / "math"
     names = {source for function in functions for source in _SOURCES[function]}
     return [_HERE / name if name == _OWN else musl / name for name in sorted(names)]
 
 
 def include_folders(zig_library: Path) -> list[Path]:
-    """The folders of the sources' headers, our own first.
-
-    Args:
-        zig_library: The `lib` folder of Zig.
-    """
-    return [
-        _HERE,
-        zig_library / "libc" / "musl" / "src" / "internal",
-        zig_library / "libc" / "musl" / "src" / "math",
-    ]
+    """The folders of the sources' headers, our own first."""
+    musl = zig_library / "libc" / "musl" / "src"
+    return [_HERE, musl / "internal", musl / "math"]

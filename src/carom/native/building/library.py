@@ -66,13 +66,8 @@ def build(
 ) -> Path:
     """Build the native library, or find it in the cache.
 
-    Args:
-        root: The folder that contains the package `carom`.
-        target: The platform.
-        level: One of the platform's CPU levels.
-        progress: Stream for progress display; None for none.
-        modules: Python modules whose kernels are included.
-        cache: Cache folder; None for `cache_folder()`.
+    `root` contains the package `carom`; `modules` are the Python modules whose kernels are included. Without
+    a stream there is no progress display; without a cache folder it is `cache_folder()`.
 
     Returns:
         The library, in the cache; `manifest.json` is beside it.
@@ -120,19 +115,10 @@ def _make(parts: _Build, library: Path) -> None:
 
 
 def build_all(root: Path, target: Target, progress: TextIO | None = sys.stderr) -> list[Path]:
-    """Build, or take from the cache, the libraries of a wheel.
-
-    Args:
-        root: The folder that contains the package `carom`.
-        target: The platform.
-        progress: Stream for progress display; None for none.
+    """Build, or take from the cache, the libraries of a wheel; raises errors as `build`.
 
     Returns:
         A library for each CPU level that is shipped, and their manifest.
-
-    Raises:
-        BuildError: Something is missing or does not compile.
-        KeyboardInterrupt: All that was started has been ended.
     """
     libraries = [build(root, target, level, progress) for level in target.shipped]
     return [*libraries, libraries[0].parent / MANIFEST]
@@ -155,19 +141,9 @@ def _generated_code(parts: _Build) -> Path:
             "PYTHONPATH": str(parts.root),
             "WARP_CACHE_PATH": str(work / "warp"),
         }
-        command = [
-            sys.executable,
-            "-m",
-            "carom.native.building.codegen",
-            parts.digest,
-            str(code),
-            *parts.modules,
-        ]
-        run_all(
-            [Job("the kernels' C++", command, lambda: None)],
-            environment,
-            _shows(parts.progress, "generating code"),
-        )
+        program = [sys.executable, "-m", "carom.native.building.codegen"]
+        job = Job("the kernels' C++", [*program, parts.digest, str(code), *parts.modules], lambda: None)
+        run_all([job], environment, _shows(parts.progress, "generating code"))
         keep(code, folder)
     return folder
 

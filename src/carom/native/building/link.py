@@ -19,12 +19,8 @@ _FLAGS = {
 def link_command(zig: Zig, target: Target, level: str, objects: Sequence[Path], output: Path) -> list[str]:
     """The command that links the library.
 
-    Args:
-        zig: The linker.
-        target: The platform.
-        level: One of the platform's CPU levels.
-        objects: Object files; the bytes of the library depend on their order.
-        output: Path of the library, in an empty folder: linkers leave other files beside it.
+    Its bytes depend on the order of the objects. `output` is in an empty folder: linkers leave other files
+    beside it.
     """
     flags = [*_FLAGS[target.suffix], "-g0", "-s"]
     if target.suffix == ".so":

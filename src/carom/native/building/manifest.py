@@ -31,11 +31,7 @@ class LayoutClash(Exception):
 
 
 def kernel_entry(kernel: Any, module: str) -> Layout:
-    """The entry of a kernel in the manifest.
-
-    Args:
-        kernel: The kernel, built.
-        module: The Python module that contains it.
+    """The entry of a kernel, which has been built from a Python module, in the manifest.
 
     Returns:
         `symbol`, `module`, `dimensions` of its launch, `arguments` (name, type and offset of each, in order),
@@ -57,9 +53,6 @@ def kernel_entry(kernel: Any, module: str) -> Layout:
 def struct_layouts(kernels: Iterable[Any]) -> dict[str, Layout]:
     """Layouts of all structs that kernels take, and of those in them.
 
-    Args:
-        kernels: The kernels.
-
     Returns:
         By name: `fields` (name, type and offset of each, in order), and `size` in bytes.
 
@@ -74,11 +67,7 @@ def struct_layouts(kernels: Iterable[Any]) -> dict[str, Layout]:
 
 
 def merge_layouts(into: dict[str, Layout], layouts: dict[str, Layout]) -> None:
-    """Add layouts to others.
-
-    Args:
-        into: Layouts by name; changed in place.
-        layouts: Layouts by name.
+    """Add layouts by name to others, in place.
 
     Raises:
         LayoutClash: Two structs of the same name differ.
@@ -89,13 +78,9 @@ def merge_layouts(into: dict[str, Layout], layouts: dict[str, Layout]) -> None:
 
 
 def fixed_layouts(dimensions: Iterable[int]) -> dict[str, Layout]:
-    """Layouts of structs that Warp itself declares: arrays, and the bounds of launches.
+    """Layouts of structs that Warp itself declares: arrays, and bounds of launches of so many dimensions.
 
-    Args:
-        dimensions: Numbers of dimensions of launches.
-
-    Returns:
-        As `struct_layouts`; `array`, and `bounds(1)` and so on.
+    They are as those of `struct_layouts`, with the names `array`, `bounds(1)` and so on.
     """
     layouts = {"array": _layout(array_t, _ARRAY_FIELDS)}
     for count in sorted(set(dimensions)):
@@ -105,14 +90,7 @@ def fixed_layouts(dimensions: Iterable[int]) -> dict[str, Layout]:
 
 
 def layout_assertions(kernels: Iterable[Any]) -> str:
-    """C++ that compiles only if all layouts are those of the manifest.
-
-    Args:
-        kernels: Kernels of one module.
-
-    Returns:
-        Assertions, to be appended to the generated C++.
-    """
+    """C++ that compiles only if all layouts of a module's kernels are those of the manifest."""
     kernels = sorted(kernels, key=lambda kernel: kernel.key)
     lines = []
     for struct in _structs(kernels):
@@ -126,14 +104,10 @@ def layout_assertions(kernels: Iterable[Any]) -> str:
 
 
 def type_name(kind: Any) -> str:
-    """Name of a type in the manifest.
+    """Name of a Warp type in the manifest.
 
-    Args:
-        kind: A Warp type.
-
-    Returns:
-        `float64`, `vector(3,float64)`, `matrix(3,3,float64)`, `quaternion(float64)`, `transform(float64)`,
-        the module and name of a struct, or `array(ELEMENT,DIMENSIONS)` of any of these.
+    These are `float64`, `vector(3,float64)`, `matrix(3,3,float64)`, `quaternion(float64)`,
+    `transform(float64)`, the module and name of a struct, or `array(ELEMENT,DIMENSIONS)` of any of these.
     """
     if is_array(kind):
         return f"array({type_name(kind.dtype)},{kind.ndim})"

@@ -11,11 +11,7 @@ _LOG_SECONDS = 5.0
 
 
 class ProgressLine:
-    """Shows the progress of a build.
-
-    Args:
-        stream: The stream to write to; None for no output.
-    """
+    """Shows the progress of a build on a stream, if there is one."""
 
     def __init__(self, stream: TextIO | None = None) -> None:
         self._stream = stream
@@ -24,12 +20,7 @@ class ProgressLine:
         self._length = 0
 
     def show(self, doing: str, *, now: bool = False) -> None:
-        """Show the current activity, at most once in an interval.
-
-        Args:
-            doing: The activity, such as `compiling kernels 7/16`.
-            now: Show it at once.
-        """
+        """Show the activity, such as `compiling kernels 7/16`, at most once in an interval, or `now`."""
         time_now = time.monotonic()
         wait = _TERMINAL_SECONDS if self._terminal else _LOG_SECONDS
         if self._stream is None or (not now and time_now - self._last < wait):

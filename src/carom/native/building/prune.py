@@ -16,11 +16,9 @@ _FOLDERS = ("libraries", "code", "objects")
 
 
 def prune(cache: Path, most_bytes: int = _MOST_BYTES) -> None:
-    """Remove files not used for 30 days, then the oldest ones until the cache is small enough.
+    """Remove files not used for 30 days, then the oldest ones until the rest has at most so many bytes.
 
-    Args:
-        cache: The cache folder; no other build may use it meanwhile.
-        most_bytes: Maximum total size of libraries, code and objects.
+    No other build may use the cache meanwhile.
     """
     now = time.time()
     entries = [

@@ -36,14 +36,7 @@ class Zig:
     def command(
         self, language: str, target: Target, level: str, arguments: Sequence[str | Path]
     ) -> list[str]:
-        """The command that compiles or links.
-
-        Args:
-            language: `cc` or `c++`.
-            target: The platform.
-            level: One of the platform's CPU levels.
-            arguments: Further arguments of the compiler.
-        """
+        """The command that compiles or links C or C++, the `language` being `cc` or `c++`."""
         processor = ["-target", target.triple, f"-mcpu={target.levels[level]}"]
         return [str(self.program), language, *processor, *map(str, arguments)]
 
@@ -54,10 +47,7 @@ class Zig:
 
 
 def find_zig(cache: Path) -> Zig:
-    """The Zig that is installed as the Python package `ziglang`.
-
-    Args:
-        cache: The folder for its cache.
+    """The Zig that is installed as the Python package `ziglang`, with a folder for its cache.
 
     Raises:
         BuildError: It is not installed, or does not run.

@@ -1,8 +1,7 @@
 // Reading and writing the state of bodies: kernels of quick calls.
 
 #include "export.h"
-#include "quick_calls.h"
-#include "turns.h"
+#include "rows.h"
 
 #define CAROM_QUICK(name) extern "C" CAROM_EXPORT int carom_##name(const double* in, double* out, const Call* call)
 
@@ -137,18 +136,13 @@ bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
 
 // A tuple of tuples: positions (3 numbers) and orientations (4) in turn, three times; then velocities (3 numbers each).
 PyObject* tuple_of_poses(const double* numbers, int count) {
-    PyObject* tuple = python.PyTuple_New(count);
-    for (int i = 0; tuple && i < count; ++i) {
+    Row row(count);
+    for (int i = 0; row.tuple && i < count; ++i) {
         const int length = i % 2 && i < 6 ? 4 : 3;
-        PyObject* group = tuple_of(numbers, length);
-        if (!group) {
-            python.Py_DecRef(tuple);
-            return nullptr;
-        }
-        python.PyTuple_SetItem(tuple, i, group);
+        row.add(tuple_of(numbers, length));
         numbers += length;
     }
-    return tuple;
+    return row.tuple;
 }
 
 // Writes the state of a link as groups of numbers; returns the number of groups.
@@ -192,14 +186,8 @@ extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call
     for (intptr_t i = 0; i < count; ++i)
         groups = put_link_state(numbers[i], body, links[i], with_velocity);
     // From here on the body may be gone: making a tuple can start garbage collection, which may run any code.
-    PyObject* states = python.PyTuple_New(count);
-    for (intptr_t i = 0; states && i < count; ++i) {
-        PyObject* state = tuple_of_poses(numbers[i], groups);
-        if (!state) {
-            python.Py_DecRef(states);
-            return nullptr;
-        }
-        python.PyTuple_SetItem(states, i, state);
-    }
-    return states;
+    Row states(static_cast<int>(count));
+    for (intptr_t i = 0; states.tuple && i < count; ++i)
+        states.add(tuple_of_poses(numbers[i], groups));
+    return states.tuple;
 }

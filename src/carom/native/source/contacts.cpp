@@ -9,47 +9,13 @@ namespace {
 // Larger numbers of contacts are left to Python, which lets other threads run meanwhile.
 enum { MOST_CONTACTS = 64 };
 
-struct Contact {
-    int32_t body_a, body_b, link_a, link_b;
-    Vector point_a, point_b, normal, direction1, direction2;
-    double distance, force, force1, force2;
-};
-
 Contact contact_at(const ContactReport& report, int32_t i) {
     return {
-        report.bodies_a[i],
-        report.bodies_b[i],
-        report.links_a[i],
-        report.links_b[i],
-        vector_at(report.points_a + 3 * i),
-        vector_at(report.points_b + 3 * i),
-        vector_at(report.normals + 3 * i),
-        vector_at(report.directions1 + 3 * i),
-        vector_at(report.directions2 + 3 * i),
-        report.distances[i],
-        report.forces[i],
-        report.forces1[i],
-        report.forces2[i],
+        report.bodies_a[i], report.bodies_b[i], report.links_a[i], report.links_b[i],
+        vector_at(report.points_a + 3 * i), vector_at(report.points_b + 3 * i), vector_at(report.normals + 3 * i),
+        vector_at(report.directions1 + 3 * i), vector_at(report.directions2 + 3 * i),
+        report.distances[i], report.forces[i], report.forces1[i], report.forces2[i],
     };
-}
-
-PyObject* tuple_of(const Contact& contact) {
-    Row row(14);
-    row.add(0L);
-    row.add(static_cast<long>(contact.body_a));
-    row.add(static_cast<long>(contact.body_b));
-    row.add(static_cast<long>(contact.link_a));
-    row.add(static_cast<long>(contact.link_b));
-    row.add(contact.point_a);
-    row.add(contact.point_b);
-    row.add(contact.normal);
-    row.add(contact.distance);
-    row.add(contact.force);
-    row.add(contact.force1);
-    row.add(contact.direction1);
-    row.add(contact.force2);
-    row.add(contact.direction2);
-    return row.tuple;
 }
 
 }  // namespace
@@ -71,7 +37,7 @@ extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const C
         const Instead<int32_t> link_a(report.link_a, static_cast<int32_t>(in[2]));
         const Instead<int32_t> link_b(report.link_b, static_cast<int32_t>(in[3]));
         const Instead<double> time_step(report.time_step, seconds);
-        report.function(report.bounds, report.arguments);
+        run(report);
     }
     const int32_t found = *report.found;
     Contact contacts[MOST_CONTACTS];
@@ -94,7 +60,7 @@ extern "C" CAROM_EXPORT int carom_detect_collisions(const double*, double*, cons
     // Detection starts from the present poses. After a step the others are those at the start of its last substep,
     // which other functions have to return.
     __builtin_memcpy(detection.poses_before, detection.poses, bytes);
-    detection.find_poses.function(detection.find_poses.bounds, detection.find_poses.arguments);
+    run(detection.find_poses);
     carom_perform(detection.run);
     __builtin_memcpy(detection.poses, detection.poses_before, bytes);
     return *detection.status == 0;

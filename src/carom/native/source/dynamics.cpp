@@ -81,10 +81,7 @@ double moment(const Moments& of, int axis, double mass) {
 bool is_held(const Scene& scene, const Body& body) {
     PyObject* held = python.PyObject_GetAttr(body.handle, scene.fixed_base_name);
     const bool is_free = held == python.False;
-    if (held)
-        python.Py_DecRef(held);
-    else
-        python.PyErr_Clear();
+    release(held);
     return !is_free;
 }
 

@@ -88,6 +88,6 @@ extern "C" CAROM_EXPORT int carom_command_motors(const double* in, double* out, 
     const Instead<int32_t> asked_mode(group->mode, static_cast<int32_t>(mode));
     const Instead<int32_t> asked_given(group->given, given);
     const Instead<double> asked_time_step(group->time_step, seconds);
-    group->command.function(group->command.bounds, group->command.arguments);
+    run(group->command);
     return !*group->refused;
 }

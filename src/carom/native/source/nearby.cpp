@@ -11,8 +11,6 @@ enum { PLACED = 1, PLANE = 4, ANY_LINK = -2 };
 // Greatest search distance, which stands for all larger ones [m].
 const double FAR = 1e30;
 
-void run(const KernelCall& call) { call.function(call.bounds, call.arguments); }
-
 // Copies numbers; returns whether any bit has changed.
 bool copy(double* to, const double* from, int64_t count) {
     uint64_t differences = 0;
@@ -33,10 +31,7 @@ bool place(Placement& at) {
     PyObject* value = python.PyObject_GetAttr(at.shapes, at.changes_name);
     double changes = -1.0;
     const bool well = value && read_integer(value, &changes);
-    if (value)
-        python.Py_DecRef(value);
-    else
-        python.PyErr_Clear();
+    release(value);
     if (!well)
         return false;
     const bool moved = copy(at.placed_at, at.positions, at.position_count);
@@ -77,35 +72,17 @@ int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
                 for (int32_t n = 0; n < at.link_shapes[k]; ++n) {
                     if (count == MOST_PAIRS)
                         return -1;
-                    pairs[count++] = {
-                        at.first_shape[i] + m,
-                        at.first_shape[k] + n,
-                        static_cast<int32_t>(i - a.begin),
-                        static_cast<int32_t>(k - b.begin),
-                    };
+                    const int32_t link_a = static_cast<int32_t>(i - a.begin), link_b = static_cast<int32_t>(k - b.begin);
+                    pairs[count++] = {at.first_shape[i] + m, at.first_shape[k] + n, link_a, link_b};
                 }
     return count;
 }
 
-PyObject* contact(int body_a, int body_b, int link_a, int link_b, const Candidate& found) {
+Contact contact(int32_t body_a, int32_t body_b, int32_t link_a, int32_t link_b, const Candidate& found) {
     const Vector on_b = vector_at(found.point), normal = vector_at(found.normal), none = {0.0, 0.0, 0.0};
-    const double distance = found.distance;
-    Row row(14);
-    row.add(0L);
-    row.add(static_cast<long>(body_a));
-    row.add(static_cast<long>(body_b));
-    row.add(static_cast<long>(link_a));
-    row.add(static_cast<long>(link_b));
-    row.add(Vector{on_b.x + distance * normal.x, on_b.y + distance * normal.y, on_b.z + distance * normal.z});
-    row.add(on_b);
-    row.add(normal);
-    row.add(distance);
-    row.add(0.0);
-    row.add(0.0);
-    row.add(none);
-    row.add(0.0);
-    row.add(none);
-    return row.tuple;
+    const double d = found.distance;
+    const Vector on_a = {on_b.x + d * normal.x, on_b.y + d * normal.y, on_b.z + d * normal.z};
+    return {body_a, body_b, link_a, link_b, on_a, on_b, normal, none, none, d, 0.0, 0.0, 0.0};
 }
 
 // A link by its body's number and its own, -1 for the base.
@@ -162,9 +139,8 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
     Row contacts(found);
     for (int i = 0; contacts.tuple && i < found; ++i) {
         const Pair& pair = pairs[of[i]];
-        contacts.add(contact(
-            static_cast<int>(in[0]), static_cast<int>(in[1]), first_a + pair.link_a, first_b + pair.link_b, points[i]
-        ));
+        const int body_a = static_cast<int>(in[0]), body_b = static_cast<int>(in[1]);
+        contacts.add(tuple_of(contact(body_a, body_b, first_a + pair.link_a, first_b + pair.link_b, points[i])));
     }
     return contacts.tuple;
 }
@@ -197,8 +173,8 @@ extern "C" CAROM_EXPORT PyObject* carom_overlapping(const double* in, const Call
     Row links(count);
     for (int i = 0; links.tuple && i < count; ++i) {
         Row link(2);
-        link.add(static_cast<long>(places[i].body));
-        link.add(static_cast<long>(places[i].link));
+        link.add(places[i].body);
+        link.add(places[i].link);
         links.add(link.tuple);
     }
     return links.tuple;

@@ -8,6 +8,7 @@
 #include "quick_calls.h"
 
 #include "export.h"
+#include "rows.h"
 
 Python python;
 
@@ -185,17 +186,12 @@ PyObject* result_of(const QuickCall& made, const double* numbers, int count) {
     }
     if (made.is_flat)
         return group_of(numbers, made.groups[0]);
-    PyObject* tuple = python.PyTuple_New(count);
-    for (int i = 0; tuple && i < count; ++i) {
-        PyObject* group = group_of(numbers, made.groups[i]);
-        if (!group) {
-            python.Py_DecRef(tuple);
-            return nullptr;
-        }
-        python.PyTuple_SetItem(tuple, i, group);
+    Row row(count);
+    for (int i = 0; row.tuple && i < count; ++i) {
+        row.add(group_of(numbers, made.groups[i]));
         numbers += made.groups[i] ? made.groups[i] : 1;
     }
-    return tuple;
+    return row.tuple;
 }
 
 PyObject* answer(
@@ -264,16 +260,10 @@ bool read_time_step(const Client& client, double* seconds) {
 }
 
 PyObject* tuple_of(const double* numbers, int count) {
-    PyObject* tuple = python.PyTuple_New(count);
-    for (int i = 0; tuple && i < count; ++i) {
-        PyObject* number = python.PyFloat_FromDouble(numbers[i]);
-        if (!number) {
-            python.Py_DecRef(tuple);
-            return nullptr;
-        }
-        python.PyTuple_SetItem(tuple, i, number);
-    }
-    return tuple;
+    Row row(count);
+    for (int i = 0; row.tuple && i < count; ++i)
+        row.add(numbers[i]);
+    return row.tuple;
 }
 
 const Client* find_client(double number) {
@@ -310,27 +300,19 @@ void run(const Launch& launch, int64_t tree) {
     // The host relies on the tree that it set last.
     const int32_t before = *launch.tree;
     *launch.tree = static_cast<int32_t>(tree);
-    launch.function(launch.bounds, launch.arguments);
+    run(static_cast<const KernelCall&>(launch));
     *launch.tree = before;
 }
 
 Lock::Lock(const Client& of) : client(of) {
     PyObject* taken = python.PyObject_CallObject(client.acquire, client.without_waiting);
     is_held = taken == python.True;
-    if (taken)
-        python.Py_DecRef(taken);
-    else
-        python.PyErr_Clear();
+    release(taken);
 }
 
 Lock::~Lock() {
-    if (!is_held)
-        return;
-    PyObject* nothing = python.PyObject_CallObject(client.release, nullptr);
-    if (nothing)
-        python.Py_DecRef(nothing);
-    else
-        python.PyErr_Clear();
+    if (is_held)
+        ::release(python.PyObject_CallObject(client.release, nullptr));
 }
 
 // Names of the functions and objects that the host writes to the table `python`, in order.

@@ -8,30 +8,24 @@
 #include "perform.h"
 #include "python.h"
 
-struct Launch {
+struct KernelCall {
     void (*function)(void* bounds, void* arguments);
     void* bounds;
     void* arguments;
+};
+
+struct Launch : KernelCall {
     int32_t* tree;  // among the arguments
 };
 
 // The kernel that lists contacts, its query, and the arrays of its results.
-struct ContactReport {
-    void (*function)(void* bounds, void* arguments);
-    void* bounds;
-    void* arguments;
+struct ContactReport : KernelCall {
     int32_t *count, *body_a, *link_a, *body_b, *link_b;
     double* time_step;
     const int32_t* there;  // number of contacts in the world
     int64_t room;          // number of contacts that fit into the results
     const int32_t *found, *bodies_a, *bodies_b, *links_a, *links_b;
     const double *points_a, *points_b, *normals, *distances, *forces, *forces1, *forces2, *directions1, *directions2;
-};
-
-struct KernelCall {
-    void (*function)(void* bounds, void* arguments);
-    void* bounds;
-    void* arguments;
 };
 
 // Collision detection at the current coordinates of all bodies.
@@ -229,8 +223,18 @@ bool read_integer(PyObject* value, double* number);
 // Reads a sequence of at most `most` integers from 0 to `end` - 1; returns their number, or -1 if it is none.
 intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* indices);
 
+inline void run(const KernelCall& call) { call.function(call.bounds, call.arguments); }
+
 // Runs a kernel for one tree.
 void run(const Launch& launch, int64_t tree);
+
+// Releases an object; if it is missing because of an error, clears the error.
+inline void release(PyObject* object) {
+    if (object)
+        python.Py_DecRef(object);
+    else
+        python.PyErr_Clear();
+}
 
 // Replaces a value and restores it on destruction: the host relies on the arguments that it set last.
 template <typename T>

@@ -20,10 +20,36 @@ struct Row {
         tuple = nullptr;
     }
 
-    void add(long number) { add(python.PyLong_FromLong(number)); }
+    void add(int32_t number) { add(python.PyLong_FromLong(number)); }
     void add(double number) { add(python.PyFloat_FromDouble(number)); }
     void add(Vector v) { add(::tuple_of(&v.x, 3)); }
 
     PyObject* tuple;
     int place = 0;
 };
+
+// A contact as the tuple that users get.
+struct Contact {
+    int32_t body_a, body_b, link_a, link_b;
+    Vector point_a, point_b, normal, direction1, direction2;
+    double distance, force, force1, force2;
+};
+
+inline PyObject* tuple_of(const Contact& contact) {
+    Row row(14);
+    row.add(0);
+    row.add(contact.body_a);
+    row.add(contact.body_b);
+    row.add(contact.link_a);
+    row.add(contact.link_b);
+    row.add(contact.point_a);
+    row.add(contact.point_b);
+    row.add(contact.normal);
+    row.add(contact.distance);
+    row.add(contact.force);
+    row.add(contact.force1);
+    row.add(contact.direction1);
+    row.add(contact.force2);
+    row.add(contact.direction2);
+    return row.tuple;
+}

@@ -25,6 +25,13 @@ const double NO_AXIS = 10.0 * 1.1920928955078125e-07;
 // Tolerance of the squared length of a unit quaternion in single precision.
 const double UNIT = 1e-6;
 
+// Puts the only group of results; returns the number of groups.
+template <typename Group>
+int only(double* out, Group group) {
+    put(out, group);
+    return 1;
+}
+
 double length_of(Vector v) { return hypot(hypot(v.x, v.y), v.z); }
 double to_cosine(double x) { return x > 1.0 ? 1.0 : x < -1.0 ? -1.0 : x; }
 
@@ -39,30 +46,24 @@ CAROM_TURNS(quaternion_from_euler) {
     const double sr = sin(in[0] / 2.0), cr = cos(in[0] / 2.0);
     const double sp = sin(in[1] / 2.0), cp = cos(in[1] / 2.0);
     const double sy = sin(in[2] / 2.0), cy = cos(in[2] / 2.0);
-    put(out, unit({
+    return only(out, unit({
         sr * cp * cy - cr * sp * sy,
         cr * sp * cy + sr * cp * sy,
         cr * cp * sy - sr * sp * cy,
         cr * cp * cy + sr * sp * sy,
     }));
-    return 1;
 }
 
 CAROM_TURNS(euler_from_quaternion) {
     const double x = in[0], y = in[1], z = in[2], w = in[3];
     const double sine = -2.0 * (x * z - w * y);
-    if (sine <= -GIMBAL_LOCK) {
-        put(out, Vector{0.0, -HALF_PI, 2.0 * atan2(x, -y)});
-        return 1;
-    }
-    if (sine >= GIMBAL_LOCK) {
-        put(out, Vector{0.0, HALF_PI, 2.0 * atan2(-x, y)});
-        return 1;
-    }
+    if (sine <= -GIMBAL_LOCK)
+        return only(out, Vector{0.0, -HALF_PI, 2.0 * atan2(x, -y)});
+    if (sine >= GIMBAL_LOCK)
+        return only(out, Vector{0.0, HALF_PI, 2.0 * atan2(-x, y)});
     const double xx = x * x, yy = y * y, zz = z * z, ww = w * w;
     const double roll = atan2(2.0 * (y * z + w * x), ww - xx - yy + zz);
-    put(out, Vector{roll, asin(sine), atan2(2.0 * (x * y + w * z), ww + xx - yy - zz)});
-    return 1;
+    return only(out, Vector{roll, asin(sine), atan2(2.0 * (x * y + w * z), ww + xx - yy - zz)});
 }
 
 CAROM_TURNS(matrix_from_quaternion) {
@@ -88,20 +89,16 @@ CAROM_TURNS(invert_transform) {
 CAROM_TURNS(rotate_vector) {
     const Quaternion q = quaternion_at(in);
     const Quaternion turned = q * Quaternion{in[4], in[5], in[6], 0.0} * conjugate(q);
-    put(out, Vector{turned.x, turned.y, turned.z});
-    return 1;
+    return only(out, Vector{turned.x, turned.y, turned.z});
 }
 
 CAROM_TURNS(quaternion_from_axis_angle) {
     const Vector axis = vector_at(in);
     const double half = 0.5 * in[3], length = length_of(axis);
-    if (length == 0.0) {
-        put(out, Quaternion{sin(half), 0.0, 0.0, cos(half)});
-        return 1;
-    }
+    if (length == 0.0)
+        return only(out, Quaternion{sin(half), 0.0, 0.0, cos(half)});
     const double s = sin(half) / length;
-    put(out, Quaternion{axis.x * s, axis.y * s, axis.z * s, cos(half)});
-    return 1;
+    return only(out, Quaternion{axis.x * s, axis.y * s, axis.z * s, cos(half)});
 }
 
 CAROM_TURNS(axis_angle_from_quaternion) {
@@ -121,25 +118,21 @@ CAROM_TURNS(axis_angle_from_quaternion) {
 CAROM_TURNS(quaternion_slerp) {
     const Quaternion a = quaternion_at(in), b = quaternion_at(in + 4);
     const double fraction = in[8], cosine = dot(a, b) / __builtin_sqrt(dot(a, a) * dot(b, b));
-    if (__builtin_fabs(cosine) >= 1.0) {
-        put(out, a);
-        return 1;
-    }
+    if (__builtin_fabs(cosine) >= 1.0)
+        return only(out, a);
     const double sign = cosine < 0.0 ? -1.0 : 1.0, angle = acos(sign * cosine);
     const double from_a = sin((1.0 - fraction) * angle) / sin(angle);
     const double from_b = sin(sign * fraction * angle) / sin(angle);
-    put(out, Quaternion{
+    return only(out, Quaternion{
         a.x * from_a + b.x * from_b,
         a.y * from_a + b.y * from_b,
         a.z * from_a + b.z * from_b,
         a.w * from_a + b.w * from_b,
     });
-    return 1;
 }
 
 CAROM_TURNS(difference_quaternion) {
-    put(out, difference(quaternion_at(in), quaternion_at(in + 4)));
-    return 1;
+    return only(out, difference(quaternion_at(in), quaternion_at(in + 4)));
 }
 
 CAROM_TURNS(axis_difference_quaternion) {
@@ -147,28 +140,23 @@ CAROM_TURNS(axis_difference_quaternion) {
     const Vector &x = turn.rows[0], &y = turn.rows[1], &z = turn.rows[2];
     const double sine = z.x;
     if (sine >= 1.0)
-        put(out, Vector{atan2(x.y, y.y), HALF_PI, 0.0});
-    else if (sine <= -1.0)
-        put(out, Vector{-atan2(x.y, y.y), -HALF_PI, 0.0});
-    else
-        put(out, Vector{atan2(-z.y, z.z), asin(sine), atan2(-y.x, x.x)});
-    return 1;
+        return only(out, Vector{atan2(x.y, y.y), HALF_PI, 0.0});
+    if (sine <= -1.0)
+        return only(out, Vector{-atan2(x.y, y.y), -HALF_PI, 0.0});
+    return only(out, Vector{atan2(-z.y, z.z), asin(sine), atan2(-y.x, x.x)});
 }
 
 // Declines if the duration is too short for a finite velocity.
 CAROM_TURNS(velocity_quaternion) {
     const Quaternion turn = difference(quaternion_at(in), quaternion_at(in + 4));
     const double duration = in[8], sine = length_of({turn.x, turn.y, turn.z}), w = turn.w;
-    if (sine == 0.0) {
-        put(out, Vector{0.0, 0.0, 0.0});
-        return 1;
-    }
+    if (sine == 0.0)
+        return only(out, Vector{0.0, 0.0, 0.0});
     // If quaternions do not have unit length, PyBullet computes the angle from w alone.
     const bool is_unit = __builtin_fabs(sine * sine + w * w - 1.0) < UNIT;
     const double angle = 2.0 * (is_unit ? atan2(sine, w) : acos(to_cosine(w)));
     const double scale = angle / (sine * duration);
     if (!__builtin_isfinite(scale))
         return 0;
-    put(out, Vector{turn.x * scale, turn.y * scale, turn.z * scale});
-    return 1;
+    return only(out, Vector{turn.x * scale, turn.y * scale, turn.z * scale});
 }
