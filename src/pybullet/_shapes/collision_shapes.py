@@ -104,18 +104,8 @@ def createCollisionShape(
     is_framed = collisionFramePosition is not None or collisionFrameOrientation is not None
     name = None if fileName is None else text(fileName, "fileName")
     if kind in PRIMITIVES:
-        shape = _placed(
-            primitive(
-                kind,
-                _FAILED,
-                radius=radius,
-                length=height,
-                half_extents=halfExtents,
-                normal=planeNormal,
-                length_name="height",
-            ),
-            pose,
-        )
+        sizes = radius, height, halfExtents, planeNormal
+        shape = _placed(primitive(kind, _FAILED, *sizes, length_name="height"), pose)
     elif kind == GEOM_MESH and vertices is not None:
         shape = _mesh_from_data(vertices, indices, scale_of(meshScale, _FAILED), pose)
     elif kind == GEOM_MESH and name is not None:
@@ -182,21 +172,9 @@ def createCollisionShapeArray(
         ... )
         >>> snowman = p.createMultiBody(1, shape, basePosition=[0, 2, 1])
     """
+    given = locals()
     client = client_of(physicsClientId)
-    columns = ShapeColumns(
-        "createCollisionShapeArray",
-        "collision",
-        kinds=shapeTypes,
-        radii=radii,
-        half_extents=halfExtents,
-        lengths=lengths,
-        file_names=fileNames,
-        mesh_scales=meshScales,
-        plane_normals=planeNormals,
-        flags=flags,
-        positions=collisionFramePositions,
-        orientations=collisionFrameOrientations,
-    )
+    columns = ShapeColumns("createCollisionShapeArray", "collision", given)
     is_part = len(columns.kinds) > 1 or columns.is_framed
 
     def part(index: int, kind: int) -> CollisionShape:

@@ -27,7 +27,7 @@ _GREATEST_SIZE = 1e15
 
 
 def primitive(
-    kind: int, problem: str, *, radius: Any, length: Any, half_extents: Any, normal: Any, length_name: str
+    kind: int, problem: str, radius: Any, length: Any, half_extents: Any, normal: Any, *, length_name: str
 ) -> Geometry:
     """A sphere, box, cylinder, plane or capsule.
 

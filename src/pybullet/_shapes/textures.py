@@ -203,16 +203,7 @@ def resetVisualShapeData(
         >>> p.getVisualShapeData(cube)[0][7]
         (0.0, 1.0, 0.0, 1.0)
     """
-    changeVisualShape(
-        objectUniqueId,
-        linkIndex,
-        shapeIndex,
-        textureUniqueId,
-        rgbaColor,
-        specularColor,
-        flags,
-        physicsClientId,
-    )
+    changeVisualShape(**locals())
 
 
 def _pixels(values: Any, columns: int, rows: int) -> NDArray[np.uint8]:

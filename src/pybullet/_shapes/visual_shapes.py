@@ -98,15 +98,8 @@ def createVisualShape(
         specular=optional_vector3(specularColor, _FAILED, "specularColor") or _HIGHLIGHT,
     )
     if kind in PRIMITIVES:
-        geometry = primitive(
-            kind,
-            _FAILED,
-            radius=radius,
-            length=length,
-            half_extents=halfExtents,
-            normal=planeNormal,
-            length_name="length",
-        )
+        sizes = radius, length, halfExtents, planeNormal
+        geometry = primitive(kind, _FAILED, *sizes, length_name="length")
     elif kind == GEOM_MESH and vertices is not None and indices is not None:
         geometry = _mesh_from_data(vertices, indices, normals, uvs, scale_of(meshScale, _FAILED))
     elif kind == GEOM_MESH and fileName is not None:
@@ -165,21 +158,9 @@ def createVisualShapeArray(
         ...     visualFramePositions=[[0, 0, 0], [0, 0, 0.3]],
         ... )
     """
+    given = locals()
     client = client_of(physicsClientId)
-    columns = ShapeColumns(
-        "createVisualShapeArray",
-        "visual",
-        kinds=shapeTypes,
-        radii=radii,
-        half_extents=halfExtents,
-        lengths=lengths,
-        file_names=fileNames,
-        mesh_scales=meshScales,
-        plane_normals=planeNormals,
-        flags=flags,
-        positions=visualFramePositions,
-        orientations=visualFrameOrientations,
-    )
+    columns = ShapeColumns("createVisualShapeArray", "visual", given)
     colours = Column(rgbaColors, "rgbaColors", "rgba color")
 
     def part(index: int, kind: int) -> Visual:
