@@ -11,12 +11,12 @@ from pybullet._calls.arguments import Indices, Vector, Vectors, integer, real, t
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH
 from pybullet._calls.errors import fail, logger
+from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import CollisionShape
 from pybullet._shapes.shape_arguments import (
     PRIMITIVES,
     find_file,
-    frame,
     points,
     primitive,
     scale_of,
@@ -100,7 +100,7 @@ def createCollisionShape(
     """
     client = client_of(physicsClientId)
     kind, bits = integer(shapeType, "shapeType"), integer(flags, "flags")
-    pose = frame(collisionFramePosition, collisionFrameOrientation, _FAILED, "collisionFrame")
+    pose = optional_pose(collisionFramePosition, collisionFrameOrientation, _FAILED, "collisionFrame")
     is_framed = collisionFramePosition is not None or collisionFrameOrientation is not None
     name = None if fileName is None else text(fileName, "fileName")
     if kind in PRIMITIVES:

@@ -8,7 +8,8 @@ from typing import Any, TypeVar
 from carom.description import Geometry, Pose
 from pybullet._calls.arguments import integer, sequence
 from pybullet._calls.errors import error, fail, logger
-from pybullet._shapes.shape_arguments import frame, primitive
+from pybullet._calls.optional_vectors import optional_pose
+from pybullet._shapes.shape_arguments import primitive
 
 Made = TypeVar("Made")
 
@@ -89,7 +90,9 @@ class ShapeColumns:
 
     def frame(self, index: int) -> Pose:
         """The frame of a shape in the link frame."""
-        return frame(self._positions.item(index), self._orientations.item(index), self.problem, self._frame)
+        return optional_pose(
+            self._positions.item(index), self._orientations.item(index), self.problem, self._frame
+        )
 
     def primitive(self, index: int) -> Geometry:
         """The geometry of a shape whose type is one of `PRIMITIVES`."""

@@ -9,12 +9,11 @@ from pybullet._calls.arguments import Indices, Vector, Vectors, integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_MESH
 from pybullet._calls.errors import error, fail, logger
-from pybullet._calls.optional_vectors import optional_vector3, optional_vector4
+from pybullet._calls.optional_vectors import optional_pose, optional_vector3, optional_vector4
 from pybullet._clients.clients import Client, client_of
 from pybullet._shapes.shape_arguments import (
     PRIMITIVES,
     find_file,
-    frame,
     points,
     primitive,
     scale_of,
@@ -92,7 +91,7 @@ def createVisualShape(
     client = client_of(physicsClientId)
     kind = integer(shapeType, "shapeType")
     integer(flags, "flags")
-    pose = frame(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
+    pose = optional_pose(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
     material = Material(
         rgba=optional_vector4(rgbaColor, _FAILED, "rgbaColor") or _WHITE,
         specular=optional_vector3(specularColor, _FAILED, "specularColor") or _HIGHLIGHT,
