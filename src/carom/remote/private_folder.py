@@ -33,6 +33,23 @@ def make_private(folder: Path) -> None:
         raise RemoteError(f"{folder} is not a folder that only you can use; remove it.")
 
 
+def write_private(path: Path, content: bytes) -> None:
+    """Write or replace a file in an existing folder so that other users can never read any of it.
+
+    Raises:
+        OSError: It cannot be written; the file is then as before.
+    """
+    # The file of `mkstemp` is private, and it is moved to its place when it is complete.
+    handle, draft = tempfile.mkstemp(dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.replace(draft, path)
+    except OSError:
+        Path(draft).unlink(missing_ok=True)
+        raise
+
+
 def is_private(status: os.stat_result) -> bool:
     """Whether a file or folder belongs to this user alone."""
     # On Windows the access control list of the user's own folder makes files in it private.

@@ -25,6 +25,7 @@ from pybullet._calls.constants import (
 )
 from pybullet._calls.detours import add_detour
 from pybullet._calls.errors import fail
+from pybullet._calls.options import Target
 from pybullet._clients.clients import (
     MAX_CLIENTS,
     NOT_CONNECTED,
@@ -39,7 +40,6 @@ from pybullet._clients.clients import (
     remote_clients,
     why_not_connected,
 )
-from pybullet._connections.target import Target
 from pybullet._window.window import Window
 
 __all__ = [

@@ -20,7 +20,9 @@ from pybullet._clients.clients import Client
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
     from carom.model.body_spec import BodySpec
-    from pybullet._bodies.link_rows import Place
+
+Place = tuple[int, int]
+"""A body and one of its links."""
 
 BARE_LINK = -2
 """Link index that is reported for a shape without a body."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from pybullet._bodies.link_rows import Place, places
 from pybullet._calls.arguments import bound, integer, vector3
 from pybullet._calls.builtin import exported
 from pybullet._clients.clients import client_of
@@ -129,7 +128,7 @@ def _contact_point(
 @exported
 def getOverlappingObjects(
     aabbMin: Sequence[float], aabbMax: Sequence[float], physicsClientId: int = 0
-) -> tuple[Place, ...] | None:
+) -> tuple[tuple[int, int], ...] | None:
     """The links whose bounding boxes overlap an axis-aligned box.
 
     Args:
@@ -151,5 +150,6 @@ def getOverlappingObjects(
     lower = vector3(aabbMin, _BAD_CORNER, "aabbMin")
     upper = vector3(aabbMax, _BAD_CORNER, "aabbMax")
     with client.lock:
-        found = places(client.world, client.world.queries().overlapping(lower, upper))
-    return tuple(sorted(place for place in found if place is not None)) or None
+        places = client.world.link_places
+        found = [places[row] for row in client.world.queries().overlapping(lower, upper)]
+    return tuple(sorted(found)) or None
