@@ -17,6 +17,7 @@ from carom.errors import CaromError
 from carom.formats.search import AssetSearch
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, BodySpec
+from carom.native.library import library
 from carom.soft.from_urdf import urdf_body
 from carom.version import __version__
 
@@ -185,10 +186,8 @@ def _serve(options: argparse.Namespace) -> None:
 
 
 def _warmup(_options: argparse.Namespace) -> None:
-    from carom.cli.warmup import warmup
-
     began = time.perf_counter()
-    warmup()
+    library()
     print(f"The physics kernels are ready, after {time.perf_counter() - began:.1f} s.")
 
 
