@@ -9,6 +9,7 @@ from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose
 from carom.description.joint import NEEDS_AXIS
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
+from carom.errors import CaromError
 from pybullet._calls.arguments import (
     Indices,
     Vector,
@@ -317,7 +318,6 @@ def _joint(
 
 
 def _assembled(robot: Robot, flags: int) -> BodySpec:
-    from carom.errors import CaromError
     from carom.layouts.flags import LoadFlags
     from carom.model.assemble import assemble
 

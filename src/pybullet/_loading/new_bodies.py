@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from carom.errors import CaromError
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import Client
 from pybullet._clients.origins import FileLoad, Origin
@@ -43,8 +44,6 @@ def add_bodies(
     Raises:
         pybullet.error: The file of a mesh cannot be used. The world is then unchanged.
     """
-    from carom.errors import CaromError
-
     try:
         with client.lock:
             client.bodies.forget_all()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.pose import IDENTITY
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, real, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH
@@ -248,7 +249,6 @@ def _mesh_from_file(
     client: Client, name: str, mesh_scale: Any, flags: int, pose: Pose, *, is_part: bool, problem: str
 ) -> CollisionShape:
     """The shape of a mesh file; `is_part`: PyBullet would make it part of a compound."""
-    from carom.errors import DescriptionError
     from carom.model.shape_pieces import mesh_geometries
 
     mesh = Mesh(
@@ -300,7 +300,6 @@ def _heightfield(
 
 def _check_pieces(shape: CollisionShape, problem: str) -> None:
     """Prepare the shape for collision detection now, so that errors are raised here."""
-    from carom.errors import DescriptionError
     from carom.model.shape_pieces import shape_pieces
 
     for collision in shape.collisions:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Heightfield, Visual
 from carom.description.pose import Vector3
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import sequence
 from pybullet._calls.errors import fail
 
@@ -53,8 +54,6 @@ def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
         (points along y, points along x) heights.
     """
     import numpy as np
-
-    from carom.errors import DescriptionError
 
     if path.suffix.lower() != ".txt":
         from carom.render.images import read_image

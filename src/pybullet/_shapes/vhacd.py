@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from carom.errors import CaromError
 from pybullet._calls.arguments import integer, real, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
@@ -98,7 +99,6 @@ def vhacd(
     if named:
         logger.warning("vhacd: %s: no effect with CoACD.", ", ".join(named))
 
-    from carom.errors import CaromError
     from carom.formats.mesh import read_mesh
     from carom.geometry.decomposition import DecompositionOptions, decompose
     from carom.model.shape_pieces import joined_parts

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_MESH
@@ -182,7 +183,6 @@ def createVisualShapeArray(
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
     """The mesh of a file. If the file cannot be used, an empty mesh, as in PyBullet, and a logged warning."""
-    from carom.errors import DescriptionError
     from carom.formats.files import is_fresh
     from carom.formats.mesh import read_mesh
 
