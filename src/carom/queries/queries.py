@@ -40,16 +40,8 @@ _FAR = 1e30
 class Queries:
     """The collision queries of a world, as launches over its present arrays.
 
-    Args:
-        structs: Structs by the names of kernel arguments.
-        positions: The memory of the coordinates of all bodies.
-        places: Body and link of each row of the link arrays.
-        present_poses: `World.present_poses`.
-        contact_arrays: The arrays of shapes.
-        pairs: Workspace of collision detection.
-        state: The state of the world.
-        soft_work: Workspace of soft bodies.
-        quick: The record of addresses for quick calls.
+    `structs` are by the names of kernel arguments, `places` are body and link of each row of the link arrays,
+    `pairs` is the workspace of collision detection, and `quick` gets addresses for quick calls.
     """
 
     def __init__(
@@ -223,11 +215,9 @@ class Queries:
         return _one_after_the_other(rigid, soft)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
-        """Rows of the links whose bounds overlap a box; bounds of links without shapes are nearly a point.
+        """Rows of the links whose bounds overlap a box, given by its corners in world axes [m].
 
-        Args:
-            lower: Minimum corner of the box in world axes [m].
-            upper: Its maximum corner.
+        Bounds of links without shapes are nearly a point.
         """
         found: set[int] = set()
         if self._shape_count:

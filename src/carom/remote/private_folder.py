@@ -21,12 +21,7 @@ def private_folder() -> Path:
 
 
 def make_private(folder: Path) -> None:
-    """Create the folder if it does not exist.
-
-    Raises:
-        RemoteError: It exists, and other users may use it.
-        OSError: It cannot be created.
-    """
+    """Create the folder if it does not exist; raises `RemoteError` if other users may use it."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode) or not is_private(status):

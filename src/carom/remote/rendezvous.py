@@ -21,13 +21,7 @@ _GREATEST_SIZE = 4096
 
 @dataclass(frozen=True)
 class Note:
-    """How to reach a server.
-
-    Attributes:
-        host: Host at which the server listens.
-        port: Port at which the server listens.
-        key: The key that clients need.
-    """
+    """How to reach a server: its host and port, and the key that clients need."""
 
     host: str
     port: int

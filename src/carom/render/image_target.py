@@ -90,15 +90,7 @@ class ImageTarget:
         light: Light,
         projector: Matrix | None,
     ) -> RawImage:
-        """Draw an image; see `Renderer.draw`.
-
-        Args:
-            link_to_world: (links, 4, 4) poses of the links of the scene.
-            view: (4, 4) world to eye coordinates.
-            projection: (4, 4) eye to clip coordinates.
-            light: The light.
-            projector: (4, 4) world to homogeneous texture coordinates, or None.
-        """
+        """Draw an image, with (links, 4, 4) poses of the links of the scene; see `Renderer.draw`."""
         self._view.look(product(projection, view), link_to_world)
         self._link_rotation[:] = link_to_world[:, :3, :3]
         if projector is not None:

@@ -62,13 +62,7 @@ class ViewBuffers:
         ]
 
     def look(self, world_to_clip: Matrix, link_to_world: Matrix, *, two_sided: bool = False) -> None:
-        """Set the camera and the poses of the links.
-
-        Args:
-            world_to_clip: (4, 4) product of projection and view matrix.
-            link_to_world: (links, 4, 4) poses of the links.
-            two_sided: Draw back faces, too.
-        """
+        """Set the camera (4, 4), world to clip coordinates, and the poses of the links (links, 4, 4)."""
         world_to_pixel = product(self._to_pixels, world_to_clip)
         self._facing[0] = 0.0 if two_sided else facing_sign(world_to_pixel)
         self._link_to_pixel[:] = product(world_to_pixel, link_to_world)

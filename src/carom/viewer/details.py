@@ -74,12 +74,7 @@ NOTHING = Wish()
 
 
 class Details:
-    """Reads the data that all pages together need. For use by one thread.
-
-    Args:
-        world: The world.
-        lock: Held while the world is stepped or changed.
-        board: The board for masses, constraints and rays.
+    """Reads the data that all pages together need; the lock is that of steps. For use by one thread.
 
     Attributes:
         wish: The present wish of all pages together.

@@ -22,14 +22,7 @@ A recording needs no connection: <code>with world.record("run.html") as replay: 
 
 
 def frame(port: int, token: str, picture: bytes | None = None, height: int = HEIGHT) -> str:
-    """HTML that shows the page of a server on the machine of the kernel.
-
-    Args:
-        port: Port of the server.
-        token: Token of the server.
-        picture: PNG file to show if the page cannot be reached.
-        height: Height of the frame [pixels].
-    """
+    """HTML that shows the page of a server on the kernel's machine or, if out of reach, a picture (PNG)."""
     identifier = f"carom-{uuid4().hex}"
     facts = json.dumps(
         {

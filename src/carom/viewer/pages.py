@@ -33,10 +33,7 @@ class Page:
 
 
 class Pages:
-    """The pages that are open.
-
-    Args:
-        gone: Called with the number of a page that has been closed.
+    """The pages that are open; `gone` is called with the number of a page that has been closed.
 
     Attributes:
         somebody: Set while a page is open.

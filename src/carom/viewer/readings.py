@@ -62,13 +62,9 @@ def contacts(world: World) -> Columns:
 def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
     """Velocities of links, and readings of their joints' force-torque sensors.
 
-    Args:
-        world: The world.
-        wanted: Pairs of body id and link index; -1 is the base. Pairs that do not exist are left out.
-
     Returns:
         (links, 14): body, link, velocity of the centre of mass (3) [m/s], angular velocity (3) [rad/s],
-        force (3) [N] and moment (3) [N m] of the sensor.
+        force (3) [N] and moment (3) [N m] of the sensor. Links that do not exist are left out.
     """
     rows = []
     fresh: set[int] = set()
@@ -85,11 +81,7 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
 
 
 class JointReadings:
-    """States and targets of joints; one of `World.observers` while any are needed.
-
-    Args:
-        world: The world.
-    """
+    """States and targets of joints; one of `World.observers` while any are needed."""
 
     def __init__(self, world: World) -> None:
         self._world = world

@@ -139,14 +139,7 @@ class Assets:
 
 
 def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
-    """Message that describes a body, without the poses of its links; a soft body has its present shape.
-
-    Args:
-        body: The body.
-        appearance: The appearance of its world.
-        assets: Meshes and textures on the pages.
-        collisions: Whether to describe the collision shapes, too.
-    """
+    """Message that describes a body, without the poses of its links; a soft body has its present shape."""
     shapes = []
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))

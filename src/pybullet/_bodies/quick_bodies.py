@@ -33,13 +33,7 @@ _MOST_ROOM = 1 << 20
 
 
 class QuickBodies:
-    """The records of a connection's bodies for quick calls; in use until `close`.
-
-    Args:
-        calls: The quick calls.
-        number: Number of the connection.
-        client: The connection.
-    """
+    """The records of a connection's bodies for quick calls, by its number; in use until `close`."""
 
     __slots__ = ("_clients", "_kept", "_number", "_places", "_record", "_shown")
 

@@ -25,11 +25,7 @@ Ask = Callable[..., Any]
 
 
 class UserDataView:
-    """The copy of one client.
-
-    Args:
-        ask: Calls a function in the world's process.
-    """
+    """The copy of one client; `ask` calls a function in the world's process."""
 
     def __init__(self, ask: Ask) -> None:
         self._ask = ask
@@ -39,14 +35,7 @@ class UserDataView:
     def call(
         self, function: Function, arguments: Any, keywords: dict[str, Any], go_on: Callable[[], Any]
     ) -> Any:
-        """Answer a call from the copy, or pass the call on to the world and copy the changes.
-
-        Args:
-            function: The function that is called.
-            arguments: Its positional arguments.
-            keywords: Its keyword arguments.
-            go_on: Makes the call in the world's process.
-        """
+        """Answer a call from the copy, or let `go_on` make it in the world's process and copy the changes."""
         reader = READERS.get(function.name)
         if function.name in _LOADING:
             return self._loaded(go_on())

@@ -17,13 +17,7 @@ from pybullet._calls.errors import warn_once
 def optional_vector3(values: Any, problem: str, name: str) -> Vector3 | None:
     """Three finite numbers; None if not given or, with a warning, if the length is not three.
 
-    Args:
-        values: The argument.
-        problem: PyBullet's error message if one of three items is not a finite number.
-        name: Name of the argument.
-
-    Raises:
-        pybullet.error: There are three items, and one is not a finite number.
+    Raises `pybullet.error` if there are three items, and one is not a finite number.
     """
     return vector3(values, problem, name) if has_length(values, 3, name) else None
 
@@ -39,14 +33,7 @@ def optional_rotation(values: Any, problem: str, name: str) -> Quaternion | None
 
 
 def optional_pose(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
-    """A pose from two arguments; None stands for the origin and for no rotation.
-
-    Args:
-        position: Three numbers or None.
-        orientation: Four numbers or None.
-        problem: PyBullet's error message for other values.
-        prefix: First part of the names of both arguments, such as `visualFrame`.
-    """
+    """A pose from two arguments, whose names begin with `prefix`; the identity for those that are None."""
     if position is None and orientation is None:
         return IDENTITY
     place = optional_vector3(position, problem, f"{prefix}Position") or IDENTITY.position

@@ -150,11 +150,7 @@ remote_clients: dict[int, RemoteClient] = {}
 
 
 def living_client(physics_client_id: Any) -> Client | None:
-    """The client with an id; None if there is none, or if its window was closed, which ends the connection.
-
-    Raises:
-        TypeError: The id is not an integer.
-    """
+    """The client with an id, an integer; None if there is none, or its window was closed, which ends it."""
     number = integer(physics_client_id, "physicsClientId")
     client = clients.get(number)
     if client is not None and not client.window.is_open():
@@ -172,12 +168,7 @@ def why_not_connected(physics_client_id: Any) -> str:
 
 
 def client_of(physics_client_id: Any) -> Client:
-    """The client with an id.
-
-    Raises:
-        pybullet.error: There is no such client.
-        TypeError: The id is not an integer.
-    """
+    """The client with an id; raises `pybullet.error` if there is none, `TypeError` if it is no integer."""
     client = clients.get(physics_client_id) if type(physics_client_id) is int else None
     if client is None or not client.window.is_open():
         client = living_client(physics_client_id)
@@ -187,11 +178,7 @@ def client_of(physics_client_id: Any) -> Client:
 
 
 def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
-    """The client with an id, local or remote; None if there is none, or its server or window is gone.
-
-    Raises:
-        TypeError: The id is not an integer.
-    """
+    """The client with an id, local or remote; None if there is none, or its server or window is gone."""
     number = integer(physics_client_id, "physicsClientId")
     client = remote_clients.get(number)
     if client is not None and not client.is_open():

@@ -32,12 +32,7 @@ _alive: WeakSet[RemoteClient] = WeakSet()
 
 
 class RemoteClient:
-    """A connection to a world in another process.
-
-    Args:
-        method: Connection method: `SHARED_MEMORY`, `TCP`, ...
-        connection: The connection itself.
-    """
+    """A connection to a world in another process."""
 
     def __init__(self, method: int, connection: Connection) -> None:
         self.method = method
@@ -89,11 +84,7 @@ class RemoteClient:
 
 
 def join_server(method: int, address: Address) -> RemoteClient | None:
-    """Connects to a server.
-
-    Returns:
-        The connection; None if there is no server or it does not accept the key; the reason is logged.
-    """
+    """Connects to a server; None if there is none or it does not accept the key, and the reason is logged."""
     from carom.remote.connection import Connection
 
     problem: object = address.nobody

@@ -34,11 +34,6 @@ class Served:
 
     All clients call the same functions, one call at a time. Only user data are copied for each client.
 
-    Args:
-        number: Id of the client in this process.
-        client: The client in this process.
-        options: Addresses and key of the server.
-
     Raises:
         pybullet.error: A server with the same key or port exists, or it cannot listen at an address.
     """

@@ -78,11 +78,7 @@ class Address(NamedTuple):
 
 
 def server_options(method: int, target: Target) -> ServerOptions:
-    """The addresses and the key of a server.
-
-    Raises:
-        pybullet.error: A port is not valid, or the key cannot be used.
-    """
+    """The addresses and the key of a server; raises `pybullet.error` for a wrong port or an unusable key."""
     bind = target.option("bind") or _LOOPBACK
     graphics = method in (constants.GRAPHICS_SERVER, constants.GRAPHICS_SERVER_MAIN_THREAD)
     meetings = [Meeting(_GRAPHICS if graphics else _SHARED_MEMORY, _LOOPBACK, 0, target.key)]
@@ -95,11 +91,7 @@ def server_options(method: int, target: Target) -> ServerOptions:
 
 
 def address_of(method: int, target: Target) -> Address:
-    """The address of the server for a client's arguments of `connect`.
-
-    Raises:
-        pybullet.error: The file with the key cannot be used.
-    """
+    """A server's address for a client's arguments of `connect`; `pybullet.error` for a bad key file."""
     if method in (constants.SHARED_MEMORY, constants.GRAPHICS_CLIENT):
         note = find(f"{_SHARED_MEMORY if method == constants.SHARED_MEMORY else _GRAPHICS}-{target.key}")
         nobody = f"No server has the key {target.key}."

@@ -46,19 +46,10 @@ class Thing:
 def bare_shape(
     client: Client, number: Any, body_id: int, position: Any, orientation: Any, side: str
 ) -> Thing | None:
-    """A collision shape at a pose; None, with a warning, if there is no such shape.
+    """A collision shape at a pose [m]; None, with a warning, if there is no such shape.
 
-    Args:
-        client: The connection.
-        number: Id of the shape.
-        body_id: Body id given by the script, which is reported.
-        position: Position of the shape [m]; None for the origin.
-        orientation: Its orientation (x, y, z, w); None for no rotation.
-        side: A or B, for error messages.
-
-    Raises:
-        pybullet.error: The position or orientation has a number that is not finite, or the orientation has
-            length 0.
+    `body_id` is the body that is reported, and `side`, A or B, is for error messages: an unusable pose raises
+    `pybullet.error`.
     """
     from carom.layouts.flags import LoadFlags
     from carom.model.body_spec import BodySpec, LinkSpec

@@ -30,19 +30,10 @@ def add_bodies(
     problem: str,
     load: FileLoad | None = None,
 ) -> tuple[int, ...]:
-    """Add bodies to the world of a client.
+    """Add bodies to the world of a client, each with the pose of its base's link frame; returns their ids.
 
-    Args:
-        client: The client.
-        bodies: The description of each body, and the world pose of its base's link frame.
-        problem: PyBullet's error message if a body cannot be created.
-        load: The call that loads the bodies, if they come from a file.
-
-    Returns:
-        The ids of the bodies.
-
-    Raises:
-        pybullet.error: The file of a mesh cannot be used. The world is then unchanged.
+    `load` is the call that loads them from a file. If the file of a mesh cannot be used, `pybullet.error` is
+    raised, with `problem` first, and the world is unchanged.
     """
     try:
         with client.lock:

@@ -61,13 +61,7 @@ def _joint_type(kind: JointType) -> Raw:
 
 
 def multi_body(body: Body, position: Sequence[float], orientation: Sequence[float]) -> str:
-    """The call of `createMultiBody` that creates a copy of a body, with its shapes.
-
-    Args:
-        body: The body.
-        position: Position of the copy's base link frame in the world [m].
-        orientation: Its orientation (x, y, z, w).
-    """
+    """The call of `createMultiBody` that copies a body to a world pose of its base's link frame."""
     spec = body.spec
     kept = spec.flags & ~LoadFlags.USE_IMPLICIT_CYLINDER | LoadFlags.MAINTAIN_LINK_ORDER
     lists: dict[str, list[Any]] = {}

@@ -66,11 +66,6 @@ class CommandLog:
     Each call is written to the file when it returns, so the log of a killed process is complete. Calls that
     raise an exception are not recorded: they change nothing.
 
-    Args:
-        number: Id of the client.
-        client: The client.
-        path: The file; an existing one is replaced.
-
     Raises:
         OSError: The file cannot be written.
     """

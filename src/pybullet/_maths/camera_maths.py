@@ -50,16 +50,7 @@ def look_at(eye: Vector3, target: Vector3, up: Vector3) -> Matrix16 | None:
 def orbit(
     target: Vector3, distance: float, yaw: float, pitch: float, roll: float, up_axis: int
 ) -> tuple[Vector3, Vector3]:
-    """Eye and up vector of a camera that orbits a target.
-
-    Args:
-        target: Point that the camera looks at [m].
-        distance: Distance from the target [m].
-        yaw: About the upward axis [degrees].
-        pitch: Upwards [degrees].
-        roll: About the viewing direction [degrees].
-        up_axis: The upward axis: 1 for y, 2 for z.
-    """
+    """Eye and up vector of a camera that orbits a target [m]; angles [degrees]; `up_axis` 1 is y, 2 is z."""
     if up_axis == Z_UP:
         turn = _rotation_zyx(radians(yaw), radians(roll), radians(pitch))
         forward, up = (0.0, -distance, 0.0), (0.0, 0.0, 1.0)

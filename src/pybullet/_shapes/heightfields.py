@@ -22,16 +22,9 @@ _WRONG_SIZE = "Size of heightfieldData doesn't match numHeightfieldColumns*numHe
 
 
 def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDArray[np.float64]:
-    """Heights from a sequence of numbers, with x varying fastest.
+    """Heights (columns along y, rows along x) from rows * columns numbers, with x varying fastest.
 
-    Args:
-        values: rows * columns numbers.
-        rows: Number of points along x.
-        columns: Number of points along y.
-        problem: PyBullet's error message if the values cannot be used.
-
-    Returns:
-        (columns, rows) heights, rounded to single precision as in PyBullet.
+    They are rounded to single precision, as in PyBullet.
     """
     import numpy as np
 
@@ -45,13 +38,10 @@ def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDA
 
 
 def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
-    """Heights from a text file of comma-separated numbers, or from the red channel (0 to 1) of an image.
+    """Heights (points along y, along x) from the numbers of a text or the red channel (0 to 1) of an image.
 
     As in PyBullet, the numbers of a text are taken column by column and fill rows along x: if there are as
     many lines as columns, each line is a row along y. An image is a view from above, mirrored along x.
-
-    Returns:
-        (points along y, points along x) heights.
     """
     import numpy as np
 
@@ -98,13 +88,9 @@ def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> H
 
 
 def replace_heights(client: Client, number: int, heights: NDArray[np.float64], problem: str) -> None:
-    """Replace the heights of a heightfield, and of all bodies made of it; its position does not change.
+    """Replace the heights (points along y, points along x) of a shape, and of all bodies made of it.
 
-    Args:
-        client: The connection.
-        number: Id of the collision shape.
-        heights: (points along y, points along x) heights, as many as before.
-        problem: PyBullet's error message if this is not possible.
+    Their number and the position of the heightfield do not change.
     """
     shape = client.shapes.collisions.get(number)
     if shape is None:

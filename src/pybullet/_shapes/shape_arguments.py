@@ -28,16 +28,9 @@ _GREATEST_SIZE = 1e15
 def primitive(
     kind: int, problem: str, radius: Any, length: Any, half_extents: Any, normal: Any, *, length_name: str
 ) -> Geometry:
-    """A sphere, box, cylinder, plane or capsule.
+    """A sphere, box, cylinder, plane or capsule from the arguments of a call; sizes in metres.
 
-    Args:
-        kind: `GEOM_*`, one of `PRIMITIVES`.
-        problem: PyBullet's error message if the shape cannot be created.
-        radius: Of a sphere, cylinder or capsule [m].
-        length: Of a cylinder, or of the part of a capsule between its two hemispheres [m].
-        half_extents: Half the size of a box along x, y and z [m]; required for a box.
-        normal: Normal of a plane; None for the z axis.
-        length_name: Name of the argument `length`.
+    `length` is that of a cylinder, or between the two hemispheres of a capsule. A box needs `half_extents`.
 
     Raises:
         pybullet.error: A size is missing, negative or not finite.

@@ -15,13 +15,7 @@ Made = TypeVar("Made")
 
 
 class Column:
-    """One list argument.
-
-    Args:
-        values: The list; None if it is not given.
-        name: Name of the argument.
-        words: Name of its items in PyBullet's error message for an argument that is not a sequence.
-    """
+    """One list argument; `words` name its items in PyBullet's error message for one that is no sequence."""
 
     def __init__(self, values: Any, name: str, words: str) -> None:
         self.is_given = values is not None
@@ -47,12 +41,7 @@ _ITEMS = {
 
 
 class ShapeColumns:
-    """The list arguments that both functions have.
-
-    Args:
-        function: Name of the function.
-        frame_of: `collision` or `visual`.
-        given: The arguments of the call, by name.
+    """The list arguments that both functions have; `frame_of` is `collision` or `visual`.
 
     Attributes:
         problem: PyBullet's error message if no shape can be created.
@@ -107,13 +96,9 @@ class ShapeColumns:
         )
 
     def each(self, make: Callable[[int, int], Made]) -> list[Made]:
-        """Create all shapes; as in PyBullet, shapes that cannot be created are left out, with a warning.
+        """Create all shapes by `make(index, type)`; those that cannot be made are left out, with a warning.
 
-        Args:
-            make: Creates a shape from its index and type.
-
-        Raises:
-            pybullet.error: No shape can be created.
+        Raises `pybullet.error` if no shape can be created.
         """
         made, reasons = [], []
         for index, kind in enumerate(self.kinds):

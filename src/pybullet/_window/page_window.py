@@ -40,11 +40,7 @@ _DEFAULT_SHADE = 0.8
 
 
 class PageWindow(Window):
-    """A window that shows the script's items in a viewer.
-
-    Args:
-        viewer: The viewer.
-        client: The connection whose world it shows.
+    """A window that shows the world and the items of a client in a viewer.
 
     Attributes:
         viewer: The viewer that serves the page.
@@ -196,11 +192,7 @@ class PageWindow(Window):
 
 
 def open_window(client: Client, options: str) -> PageWindow:
-    """Opens a window that shows the world of a client.
-
-    Args:
-        client: The connection.
-        options: Options of `connect` for the window.
+    """Opens a window that shows the world of a client, with options of `connect`.
 
     Raises:
         pybullet.error: The server cannot listen at the address, or the video cannot be written.

@@ -97,12 +97,7 @@ class Window:
         """Moves the camera; angles in degrees."""
 
     def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        """Shows a camera image that the script has rendered.
-
-        Args:
-            image: The image.
-            camera: Projection matrix times view matrix of the image, as in OpenGL; shape (4, 4).
-        """
+        """Shows an image of the script; `camera` is its projection matrix times view matrix, shape (4, 4)."""
 
     def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
         """Shows rays that the script has cast, and their hits."""

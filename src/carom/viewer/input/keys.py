@@ -38,11 +38,7 @@ def key_code(key: str, place: str) -> int | None:
     """PyBullet's code of a key; None for keys without a code.
 
     Letters have the code of the lower-case character, and digits that of the digit, regardless of Shift and
-    Caps Lock.
-
-    Args:
-        key: `key` of the browser's event: a name or a character.
-        place: `code` of the event: the physical key of the keyboard.
+    Caps Lock. `key` and `place` are `key` and `code` of the browser's event.
     """
     if key in _NAMED:
         return _NAMED[key]
