@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from carom.description import Mesh
 from carom.errors import CaromError
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import Client
@@ -56,7 +57,6 @@ def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
 
     Otherwise the first image reads them, because they are larger than a robot's other files.
     """
-    from carom.description import Mesh
     from carom.formats.files import is_fresh
 
     paths = {
