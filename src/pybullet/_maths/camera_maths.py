@@ -21,6 +21,8 @@ __all__ = [
 Matrix16 = tuple[float, ...]
 
 Y_UP, Z_UP = 1, 2
+# The planes of the window's camera [m].
+_NEAR, _FAR = 0.01, 1000.0
 
 
 def cross(a: Vector3, b: Vector3) -> Vector3:
@@ -71,6 +73,11 @@ def frustum(left: float, right: float, bottom: float, top: float, near: float, f
         *((right + left) / width, (top + bottom) / height, -(far + near) / depth, -1.0),
         *(0.0, 0.0, -2.0 * far * near / depth, 0.0),
     )
+
+
+def window_lens(aspect: float) -> Matrix16:
+    """Projection matrix of the window's camera; `aspect` is the image's width divided by its height."""
+    return frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR)
 
 
 def _rotation_zyx(z: float, y: float, x: float) -> tuple[Vector3, Vector3, Vector3]:

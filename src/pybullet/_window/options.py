@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
 from carom.description.transform import subtracted
-from pybullet._maths.camera_maths import Y_UP, cross, frustum, look_at, orbit, unit
+from pybullet._maths.camera_maths import Y_UP, cross, look_at, orbit, unit, window_lens
 
 if TYPE_CHECKING:
     from carom.viewer.camera import Orbit
 
-_NEAR, _FAR = 0.01, 1000.0
 # Length of the image's edges as `getDebugVisualizerCamera` reports them, for rays through its pixels.
 _RAY_PLANE = 20000.0
 
@@ -31,7 +30,7 @@ def camera_info(camera: Orbit, up_axis: int) -> tuple[int | float | tuple[float,
         camera.width,
         camera.height,
         look_at(eye, camera.target, up) or look_at(eye, camera.target, upward) or (0.0,) * 16,
-        frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR),
+        window_lens(aspect),
         up,
         forward,
         _scaled(right, _RAY_PLANE * aspect),
