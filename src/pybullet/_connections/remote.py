@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
 from carom.remote.errors import Malformed, NoServer, ServerGone
@@ -28,7 +28,8 @@ EXCEPTIONS = {
     for kind in (TypeError, ValueError, OverflowError, IndexError, KeyError, OSError, MemoryError)
 }
 
-_alive: WeakSet[RemoteClient] = WeakSet()
+at_work: WeakSet[Any] = WeakSet()
+"""Connections and servers of this process, which a forked process leaves to its parent."""
 
 
 class RemoteClient:
@@ -38,7 +39,7 @@ class RemoteClient:
         self.method = method
         self._connection = connection
         self._user_data = UserDataView(lambda name, *arguments: self._ask(name, list(arguments), {}))
-        _alive.add(self)
+        at_work.add(self)
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
         """Calls a function on the server.
@@ -64,7 +65,8 @@ class RemoteClient:
             raise error(f"{name} cannot be called in another process: {problem}") from None
         if kind == RESULT:
             return answer[0]
-        _raise(*answer)
+        exception, text = answer
+        raise EXCEPTIONS.get(exception, error)(text)
 
     def set_timeout(self, seconds: float) -> None:
         """Sets how long to wait for answers [s]."""
@@ -97,14 +99,10 @@ def join_server(method: int, address: Address) -> RemoteClient | None:
     return None
 
 
-def _raise(name: str, text: str) -> NoReturn:
-    raise EXCEPTIONS.get(name, error)(text)
-
-
 def _leave_to_the_parent() -> None:
     # Two processes on one connection would read each other's answers.
-    for client in list(_alive):
-        client.leave_to_the_parent()
+    for connection in list(at_work):
+        connection.leave_to_the_parent()
 
 
 if hasattr(os, "register_at_fork"):

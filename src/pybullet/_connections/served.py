@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from threading import RLock, current_thread, local
 from typing import Any
-from weakref import WeakSet
 
 from carom.remote.connection import Connection
 from carom.remote.errors import Malformed, NoServer, RemoteError
@@ -17,7 +15,7 @@ from pybullet._bodies.user_data_view import UserDataView
 from pybullet._calls.detours import Function, detour_of, functions, remove_detour
 from pybullet._calls.errors import error, fail, logger
 from pybullet._clients.clients import NOT_CONNECTED, Client, living_client
-from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
+from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT, at_work
 from pybullet._connections.server_options import ServerOptions, reachable
 
 # Time limit for an answer when checking whether a server exists [s].
@@ -25,8 +23,6 @@ _PATIENCE = 5.0
 _CANNOT_START = "Cannot start the physics server:"
 # This function locks the client itself, but not while it waits because the simulation is paused.
 _STEP = "stepSimulation"
-
-_alive: WeakSet[Served] = WeakSet()
 
 
 class Served:
@@ -61,7 +57,7 @@ class Served:
         except (OSError, RemoteError) as problem:
             self.close()
             fail(_CANNOT_START, f"{problem}")
-        _alive.add(self)
+        at_work.add(self)
 
     @property
     def addresses(self) -> list[tuple[str, int]]:
@@ -162,12 +158,3 @@ def _is_taken(name: str) -> bool:
     except NoServer:
         return False
     return True
-
-
-def _leave_to_the_parent() -> None:
-    for server in list(_alive):
-        server.leave_to_the_parent()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_leave_to_the_parent)
