@@ -139,20 +139,9 @@ class Queries:
             separation: After a hit, hits on the same link within this fraction of the ray are ignored.
         """
         self._prepare(IN_HIERARCHY)
-        if self._soft is not None:
-            return self._cast_at_all(self._soft, starts, ends, mask, hit_number, separation)
-        return self._cast(starts, ends, mask, hit_number, separation)
-
-    def _cast_at_all(
-        self,
-        soft: SoftQueries,
-        starts: Points,
-        ends: Points,
-        mask: int,
-        hit_number: int,
-        separation: float,
-    ) -> tuple[RayHit, ...]:
-        """As `cast_rays`, including soft bodies."""
+        soft = self._soft
+        if soft is None:
+            return self._cast(starts, ends, mask, hit_number, separation)
         from carom.queries.soft_bodies import nth_hit
 
         # The n-th hit of all is one of the first n hits on shapes or one of the hits on soft bodies.
@@ -233,7 +222,8 @@ class Queries:
                     x, y, z, qx, qy, qz, qw = _POSE.unpack_from(poses, row * _POSE.size)
                     turn = rotation_matrix((qx, qy, qz, qw))
                     center, half = turned_box(bounds.center, bounds.half, turn, (x, y, z))
-                    if all(map(_meet, center, half, lower, upper)):
+                    box = zip(center, half, lower, upper, strict=True)
+                    if all(c - h <= high and c + h >= low for c, h, low, high in box):
                         found.add(row)
         return sorted(found)
 
@@ -284,7 +274,3 @@ def _one_after_the_other(first: ContactColumns, second: ContactColumns) -> Conta
         for column, other in zip(first.columns, second.columns, strict=True)
     )
     return ContactColumns(first.found + second.found, tuple(columns))
-
-
-def _meet(center: float, half: float, lower: float, upper: float) -> bool:
-    return center - half <= upper and center + half >= lower

@@ -126,12 +126,8 @@ class ImageTarget:
     def _set_lighting(self, light: Light, projected: bool) -> None:
         lighting = self._lighting[0]
         lighting["direction"] = unit_vector(np.array(light.direction))
-        lighting["colour"] = light.colour
-        lighting["ambient"] = light.ambient
-        lighting["diffuse"] = light.diffuse
-        lighting["specular"] = light.specular
-        lighting["shadow"] = light.shadow
-        lighting["shade"] = light.shade
+        for name in ("colour", "ambient", "diffuse", "specular", "shadow", "shade"):
+            lighting[name] = getattr(light, name)
         lighting["projected"] = projected
 
     def _set_bias(self, camera: ShadowCamera) -> None:

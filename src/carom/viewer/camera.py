@@ -64,12 +64,5 @@ class SharedCamera:
         self.orbit = replace(self.orbit, width=width, height=height)
 
     def _message(self) -> dict[str, object]:
-        orbit = self.orbit
-        return {
-            "type": "camera",
-            "distance": orbit.distance,
-            "yaw": orbit.yaw,
-            "pitch": orbit.pitch,
-            "target": orbit.target,
-            "chosen": self.chosen,
-        }
+        view = {name: getattr(self.orbit, name) for name in ("distance", "yaw", "pitch", "target")}
+        return {"type": "camera", **view, "chosen": self.chosen}

@@ -15,7 +15,6 @@ from carom.layouts.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POS
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
     from carom.world.world import World
 
 Columns = NDArray[np.float32]
@@ -119,7 +118,8 @@ class JointReadings:
         places = [
             (body.id, joint, body.position_index[joint], body.velocity_index[joint])
             for body in bodies
-            for joint in _movable(body)
+            for joint, freedoms in enumerate(body.velocity_count)
+            if freedoms == 1
         ]
         if not places:
             return np.zeros((0, JOINT_COLUMNS), dtype=np.float32)
@@ -141,7 +141,3 @@ class JointReadings:
                 np.where(applied != 0.0, applied, np.nan),
             )
         ).astype(np.float32)
-
-
-def _movable(body: Body) -> list[int]:
-    return [joint for joint, freedoms in enumerate(body.velocity_count) if freedoms == 1]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
+from carom.model.body_spec import BodySpec, LinkSpec
 from pybullet._calls.arguments import integer
 from pybullet._calls.errors import logger
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
@@ -19,7 +20,6 @@ from pybullet._clients.clients import Client
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
-    from carom.model.body_spec import BodySpec
 
 Place = tuple[int, int]
 """A body and one of its links."""
@@ -52,7 +52,6 @@ def bare_shape(
     `pybullet.error`.
     """
     from carom.layouts.flags import LoadFlags
-    from carom.model.body_spec import BodySpec, LinkSpec
 
     problem = "getClosestPoints failed."
     name = f"collisionShape{side}"
@@ -70,8 +69,6 @@ def bare_shape(
 
 def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
     """One link of a body, or with `BARE_LINK` all; an empty list if there is no such body or link."""
-    from carom.model.body_spec import BodySpec
-
     body = client.world.bodies.get(body_id)
     if body is None:
         return []

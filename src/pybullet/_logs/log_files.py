@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pybullet._calls.constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
+from pybullet._contacts.contacts import getContactPoints
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -170,8 +171,6 @@ class ContactLog(BinaryLog):
 
     def after_substep(self) -> None:
         """Writes a record for each contact."""
-        from pybullet._contacts.contacts import getContactPoints
-
         for contact in getContactPoints(physicsClientId=self._client_id):
             flag, a, b, link_a, link_b, on_a, on_b, normal, distance, force = contact[:10]
             if self._asked_for((a, link_a), (b, link_b)):

@@ -15,6 +15,7 @@ from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import CollisionShape
+from pybullet._shapes.heightfields import heightfield, heights_from_data, heights_from_file, replace_heights
 from pybullet._shapes.shape_arguments import (
     PRIMITIVES,
     find_file,
@@ -27,6 +28,9 @@ from pybullet._shapes.shape_columns import ShapeColumns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
 
 __all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollisionShape"]
 
@@ -115,12 +119,12 @@ def createCollisionShape(
         fail(_FAILED, "A mesh needs fileName or vertices.")
     elif kind == GEOM_HEIGHTFIELD:
         real(heightfieldTextureScaling, "heightfieldTextureScaling")
-        rows = integer(numHeightfieldRows, "numHeightfieldRows")
-        columns = integer(numHeightfieldColumns, "numHeightfieldColumns")
+        heights = _heights(client, name, heightfieldData, numHeightfieldRows, numHeightfieldColumns)
         replaced = integer(replaceHeightfieldIndex, "replaceHeightfieldIndex")
-        shape = _heightfield(client, name, heightfieldData, rows, columns, meshScale, replaced)
-        if shape is None:
+        if replaced >= 0:
+            replace_heights(client, replaced, heights, _FAILED)
             return replaced
+        shape = _placed(heightfield(heights, scale_of(meshScale, _FAILED), _FAILED), IDENTITY)
     else:
         fail(_FAILED, f"There is no type of shape {kind}.")
     _check_pieces(shape, _FAILED)
@@ -269,33 +273,13 @@ def _mesh_from_file(
     return CollisionShape(tuple(collisions), (Visual(replace(mesh, concave=False), pose),))
 
 
-def _heightfield(
-    client: Client,
-    name: str | None,
-    data: Any,
-    rows: int,
-    columns: int,
-    mesh_scale: Any,
-    replaced: int,
-) -> CollisionShape | None:
-    """A heightfield; None if its heights replace those of the shape `replaced`."""
-    from pybullet._shapes.heightfields import (
-        heightfield,
-        heights_from_data,
-        heights_from_file,
-        replace_heights,
-    )
-
+def _heights(client: Client, name: str | None, data: Any, rows: Any, columns: Any) -> NDArray[np.float64]:
+    row_count, column_count = integer(rows, "numHeightfieldRows"), integer(columns, "numHeightfieldColumns")
     if name is not None:
-        heights = heights_from_file(find_file(client, name, _FAILED), _FAILED)
-    elif data is not None and rows > 0 and columns > 0:
-        heights = heights_from_data(data, rows, columns, _FAILED)
-    else:
-        fail(_FAILED, "A heightfield needs fileName, or heightfieldData and its numbers of rows and columns.")
-    if replaced >= 0:
-        replace_heights(client, replaced, heights, _FAILED)
-        return None
-    return _placed(heightfield(heights, scale_of(mesh_scale, _FAILED), _FAILED), IDENTITY)
+        return heights_from_file(find_file(client, name, _FAILED), _FAILED)
+    if data is not None and row_count > 0 and column_count > 0:
+        return heights_from_data(data, row_count, column_count, _FAILED)
+    fail(_FAILED, "A heightfield needs fileName, or heightfieldData and its numbers of rows and columns.")
 
 
 def _check_pieces(shape: CollisionShape, problem: str) -> None:

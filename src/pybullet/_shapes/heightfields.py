@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -109,8 +110,6 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
 
 
 def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
-    from dataclasses import replace
-
     from carom.layouts.flags import LoadFlags
     from carom.render.appearance import appearance_of
 

@@ -260,7 +260,8 @@ def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
         case Plane():
             return GEOM_PLANE, (0.0, 0.0, 0.0), b""
         case Mesh(_, scale):
-            return GEOM_MESH, scale, _file_name(geometry)
+            # The name that a script gave, or the path of a file that a robot file names.
+            return GEOM_MESH, scale, (geometry.asked_for or str(geometry.path)).encode()
         case ConvexHull(scale=scale) | TriangleMesh(scale=scale):
             return GEOM_MESH, scale, b""
         case Heightfield():
@@ -271,8 +272,3 @@ def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
 
 _SIGNED_DISTANCE_FIELD = 8
 """PyBullet's type of a signed distance field; PyBullet has no constant for it."""
-
-
-def _file_name(mesh: Mesh) -> bytes:
-    """The file of a mesh: the name that a script gave, or the path of a file that a robot file names."""
-    return (mesh.asked_for or str(mesh.path)).encode()

@@ -197,14 +197,11 @@ def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) ->
             read_mesh_visual(mesh.path)
     except (error, DescriptionError) as reason:
         logger.warning("%s", reason)
-        return _nothing()
+
+        import numpy as np
+
+        return TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
     return mesh
-
-
-def _nothing() -> TriangleMesh:
-    import numpy as np
-
-    return TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
 
 
 def _mesh_from_data(

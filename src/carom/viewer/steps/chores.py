@@ -29,13 +29,9 @@ class Chores:
             return
         try:
             while self._waiting:
-                self._try(self._waiting.popleft())
+                try:
+                    self._waiting.popleft()()
+                except Exception:
+                    _log.exception("A request from the page has failed.")
         finally:
             self._world_lock.release()
-
-    @staticmethod
-    def _try(chore: Callable[[], None]) -> None:
-        try:
-            chore()
-        except Exception:
-            _log.exception("A request from the page has failed.")
