@@ -17,8 +17,7 @@ from carom.native.quick_calls import Body, Box, Client, Joint, Link, Moments
 if TYPE_CHECKING:
     from carom.model.inertia import MassTerms
     from carom.native.quick_calls import QuickCalls
-    from pybullet._bodies.body_access import BodyAccess
-    from pybullet._bodies.link_access import LinkAccess
+    from pybullet._bodies.body_access import BodyAccess, LinkAccess
     from pybullet._bodies.link_box import LinkBox
     from pybullet._clients.clients import Client as Connection
 

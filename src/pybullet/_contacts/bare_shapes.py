@@ -30,13 +30,7 @@ BARE_LINK = -2
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """One side of a query: a link, or a shape without a body.
-
-    Attributes:
-        place: The body and link that are reported.
-        spec: A fixed body with its shapes.
-        pose: Pose of its link frame in the world.
-    """
+    """One side of a query, by its reported place: a fixed body with shapes, and its link frame's pose."""
 
     place: Place
     spec: BodySpec

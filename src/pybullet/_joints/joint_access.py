@@ -94,6 +94,8 @@ class JointAccess:
 
     def add_torques(self, torques: Sequence[float]) -> None:
         """Add to the torques of the next step; ignored unless there is one for each degree of freedom."""
+        if torques and len(torques) == self.body.velocity_count[self.index]:
+            self.motor.add_torques(torques)
 
     def command_multi_dof(self, mode: int, command: MultiDofCommand) -> None:
         """Set the motor or the PD controller, as the functions for joints with several dofs do."""
@@ -128,10 +130,6 @@ class AxisJoint(JointAccess):
     def multi_dof_state(self) -> MultiDofState:
         position, velocity, reaction, torque = self.state()
         return ((position,), (velocity,), reaction, (torque,))
-
-    def add_torques(self, torques: Sequence[float]) -> None:
-        if len(torques) == 1:
-            self.motor.add_torques(torques)
 
     def command_multi_dof(self, mode: int, command: MultiDofCommand) -> None:
         position, velocity, force, kp, kd, clamp, _ = command
@@ -180,10 +178,6 @@ class MultiDofJoint(JointAccess):
             self._reaction(),
             tuple([impulse / time_step for impulse in self.impulses[u : u + self.dofs].tolist()]),
         )
-
-    def add_torques(self, torques: Sequence[float]) -> None:
-        if len(torques) == self.body.velocity_count[self.index]:
-            self.motor.add_torques(torques)
 
     def command_multi_dof(self, mode: int, command: MultiDofCommand) -> None:
         motor = self.motor
