@@ -10,15 +10,9 @@ from carom.viewer.board import Board
 
 @dataclass(frozen=True, slots=True)
 class Orbit:
-    """A camera that circles a target.
+    """A camera that circles a target [m]: distance [m], angles [degrees], and size of the image [pixels].
 
-    Attributes:
-        distance: Distance from the camera to the target [m].
-        yaw: Angle about the upward axis [degrees].
-        pitch: Upward angle; a camera with a negative pitch looks down from above [degrees].
-        target: The point that the camera looks at [m].
-        width: Width of the image [pixels].
-        height: Height of the image [pixels].
+    Yaw is about the upward axis; with a negative pitch the camera looks down from above.
     """
 
     distance: float = 5.0

@@ -50,12 +50,7 @@ class Meeting(NamedTuple):
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """Options of a server.
-
-    Attributes:
-        meetings: The addresses at which it can be reached.
-        key: The key that clients need.
-    """
+    """Options of a server: the addresses at which it can be reached, and the key that clients need."""
 
     meetings: tuple[Meeting, ...]
     key: bytes

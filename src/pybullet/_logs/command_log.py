@@ -45,14 +45,7 @@ _SIZES = struct.Struct("<IQ")
 
 
 class Command(NamedTuple):
-    """One call.
-
-    Attributes:
-        name: Name of the function, one of `COMMANDS`.
-        arguments: Positional arguments.
-        keywords: Keyword arguments.
-        result: The result of the call; None for steps.
-    """
+    """One call: the name of a function, one of `COMMANDS`, its arguments, and its result; None for steps."""
 
     name: str
     arguments: list[Any]
