@@ -66,9 +66,7 @@ def _parser() -> argparse.ArgumentParser:
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
     view.add_argument(
-        "file",
-        type=Path,
-        help="URDF, SDF or MJCF (.xml) file; files of pybullet_data are found by name",
+        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; files of pybullet_data are found by name"
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(

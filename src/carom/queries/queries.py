@@ -121,13 +121,7 @@ class Queries:
         ]
 
     def cast_rays(
-        self,
-        starts: Points,
-        ends: Points,
-        *,
-        mask: int = -1,
-        hit_number: int = 0,
-        separation: float = 0.0,
+        self, starts: Points, ends: Points, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> tuple[RayHit, ...]:
         """Cast rays.
 

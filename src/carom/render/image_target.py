@@ -136,12 +136,7 @@ class ImageTarget:
         self._image_tasks = self._make_image_tasks(self._view)
 
     def draw(
-        self,
-        link_to_world: Matrix,
-        view: Matrix,
-        projection: Matrix,
-        light: Light,
-        projector: Matrix | None,
+        self, link_to_world: Matrix, view: Matrix, projection: Matrix, light: Light, projector: Matrix | None
     ) -> RawImage:
         """Draw an image, with (links, 4, 4) poses of the links of the scene; see `Renderer.draw`."""
         self._view.look(product(projection, view), link_to_world)

@@ -162,11 +162,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
 def _link(body: Body, link: int) -> dict[str, Any]:
     spec = body.link_spec(link)
     frame = inverse(body.link_inertial_frame(link))
-    facts: dict[str, Any] = {
-        "name": spec.name,
-        "position": frame.position,
-        "orientation": frame.orientation,
-    }
+    facts: dict[str, Any] = {"name": spec.name, "position": frame.position, "orientation": frame.orientation}
     if link != BASE:
         facts |= {"joint": spec.joint_name, "kind": spec.joint_type.value, "axis": spec.joint_axis}
         facts["parent"] = spec.parent - BASE

@@ -31,10 +31,7 @@ from pybullet._maths.maths import getEulerFromQuaternion
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
-__all__ = [
-    "calculateInverseKinematics",
-    "calculateInverseKinematics2",
-]
+__all__ = ["calculateInverseKinematics", "calculateInverseKinematics2"]
 
 _PROBLEM = "Error in calculateInverseKinematics"
 _NO_POSITION = "calculateInverseKinematics couldn't extract position vector3"

@@ -12,11 +12,7 @@ from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import BASE, body_access, link_or_warning, no_joint
 
-__all__ = [
-    "changeDynamics",
-    "enableJointForceTorqueSensor",
-    "getDynamicsInfo",
-]
+__all__ = ["changeDynamics", "enableJointForceTorqueSensor", "getDynamicsInfo"]
 
 DynamicsInfo = tuple[
     float, float, Vector3, Vector3, Quaternion, float, float, float, float, float, int, float

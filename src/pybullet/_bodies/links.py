@@ -13,10 +13,7 @@ from pybullet._clients.lookup import body_access
 if TYPE_CHECKING:
     from pybullet._bodies.body_access import BodyAccess, LinkState, LinkStateWithVelocity
 
-__all__ = [
-    "getLinkState",
-    "getLinkStates",
-]
+__all__ = ["getLinkState", "getLinkStates"]
 
 _NO_STATE = "getLinkState failed."
 _NEGATIVE_BODY = "getLinkState failed; invalid bodyUniqueId"

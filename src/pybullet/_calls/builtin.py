@@ -91,10 +91,7 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
         function.__module__ = "pybullet"
         documentation = f"{function.__name__}{signature}\n--\n\n{_documentation(function)}"
         definition = _MethodDefinition(
-            function.__name__.encode(),
-            vectorcall,
-            _METH_FASTCALL_WITH_KEYWORDS,
-            documentation.encode(),
+            function.__name__.encode(), vectorcall, _METH_FASTCALL_WITH_KEYWORDS, documentation.encode()
         )
         _definitions.append(definition)
         builtin = _new_builtin(ctypes.byref(definition), function, "pybullet")

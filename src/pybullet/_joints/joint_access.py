@@ -163,12 +163,7 @@ class MultiDofJoint(JointAccess):
         self.motor = kind(client.world, client, self.u)
 
     def state(self) -> JointState:
-        return (
-            self.positions[self.q],
-            self.velocities[self.u],
-            self._reaction(),
-            0.0,
-        )
+        return (self.positions[self.q], self.velocities[self.u], self._reaction(), 0.0)
 
     def multi_dof_state(self) -> MultiDofState:
         q, u, time_step = self.q, self.u, self.client.time_step

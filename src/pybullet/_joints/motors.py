@@ -27,11 +27,7 @@ from pybullet._clients.lookup import joint_access
 from pybullet._joints.joints import NO_INDICES
 from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
-__all__ = [
-    "setJointMotorControl",
-    "setJointMotorControl2",
-    "setJointMotorControlArray",
-]
+__all__ = ["setJointMotorControl", "setJointMotorControl2", "setJointMotorControlArray"]
 
 _ILLEGAL_MODE = "Illegal control mode."
 _UNPARSED = "Error parsing arguments in setJointControl."

@@ -27,10 +27,7 @@ from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no
 from pybullet._joints.joints import NO_INDICES
 from pybullet._joints.motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
-__all__ = [
-    "setJointMotorControlMultiDof",
-    "setJointMotorControlMultiDofArray",
-]
+__all__ = ["setJointMotorControlMultiDof", "setJointMotorControlMultiDofArray"]
 
 _ILLEGAL_MODE = "Illegal control mode."
 _NO_CLAMP = -1.0

@@ -14,10 +14,7 @@ from pybullet._clients.clients import client_of
 from pybullet._clients.origins import FileLoad
 from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
 
-__all__ = [
-    "loadURDF",
-    "setAdditionalSearchPath",
-]
+__all__ = ["loadURDF", "setAdditionalSearchPath"]
 
 _CANNOT_LOAD = "Cannot load URDF file."
 _LEGACY_POSE = ("startPosX", "startPosY", "startPosZ", "startOrnX", "startOrnY", "startOrnZ", "startOrnW")

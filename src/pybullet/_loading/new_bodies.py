@@ -26,10 +26,7 @@ def warn_of_coordinates(function: str, use_maximal: int) -> None:
 
 
 def add_bodies(
-    client: Client,
-    bodies: Sequence[tuple[BodySpec, Pose]],
-    problem: str,
-    load: FileLoad | None = None,
+    client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str, load: FileLoad | None = None
 ) -> tuple[int, ...]:
     """Add bodies to the world of a client, each with the pose of its base's link frame; returns their ids.
 

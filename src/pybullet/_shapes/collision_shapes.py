@@ -16,14 +16,7 @@ from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import CollisionShape
 from pybullet._shapes.heightfields import heightfield, heights_from_data, heights_from_file, replace_heights
-from pybullet._shapes.shape_arguments import (
-    PRIMITIVES,
-    find_file,
-    points,
-    primitive,
-    scale_of,
-    triangles,
-)
+from pybullet._shapes.shape_arguments import PRIMITIVES, find_file, points, primitive, scale_of, triangles
 from pybullet._shapes.shape_columns import ShapeColumns
 
 if TYPE_CHECKING:

@@ -12,14 +12,7 @@ from pybullet._calls.constants import GEOM_MESH
 from pybullet._calls.errors import error, fail, logger
 from pybullet._calls.optional_vectors import optional_pose, optional_vector3, optional_vector4
 from pybullet._clients.clients import Client, client_of
-from pybullet._shapes.shape_arguments import (
-    PRIMITIVES,
-    find_file,
-    points,
-    primitive,
-    scale_of,
-    triangles,
-)
+from pybullet._shapes.shape_arguments import PRIMITIVES, find_file, points, primitive, scale_of, triangles
 from pybullet._shapes.shape_columns import Column, ShapeColumns
 
 if TYPE_CHECKING:
