@@ -132,7 +132,7 @@ def test_a_key_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_cannot_be_served(
     options: list[str], problem: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("carom.cli.serve.warmup", lambda: None)
+    monkeypatch.setattr("carom.cli.serve.library", lambda: None)
     assert main(["serve", *options]) == 1
     assert problem in capsys.readouterr().err
     assert not p.isConnected()

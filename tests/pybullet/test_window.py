@@ -9,17 +9,17 @@ import pytest
 import pybullet as p
 from carom.viewer.items import DebugLine, DebugPoints, DebugText
 from pybullet._clients.clients import clients
-from pybullet._window.recording_window import RecordingWindow
+from pybullet._window.page_window import PageWindow
 
 
 @pytest.fixture
-def window() -> RecordingWindow:
+def window() -> PageWindow:
     window = clients[p.connect(p.GUI)].window
-    assert isinstance(window, RecordingWindow)
+    assert isinstance(window, PageWindow)
     return window
 
 
-def test_sliders_read_back_their_start_values(window: RecordingWindow) -> None:
+def test_sliders_read_back_their_start_values(window: PageWindow) -> None:
     force = p.addUserDebugParameter("force", -5, 5, 1.5)
     button = p.addUserDebugParameter("button", 1, 0, 3)
     default = p.addUserDebugParameter("default")
@@ -32,7 +32,7 @@ def test_sliders_read_back_their_start_values(window: RecordingWindow) -> None:
     assert not window.sliders
 
 
-def test_drawings_get_ids_and_can_be_replaced(window: RecordingWindow) -> None:
+def test_drawings_get_ids_and_can_be_replaced(window: PageWindow) -> None:
     line = p.addUserDebugLine([0, 0, 0], (1, 0, 0), lineColorRGB=np.array([1, 0, 0]), lineWidth=3)
     text = p.addUserDebugText("here", [0, 0, 1], textSize=2, textOrientation=[0, 0, 0, 1])
     points = p.addUserDebugPoints([[0, 0, 0], [1, 1, 1]], [[1, 0, 0]] * 2, 4)
@@ -48,7 +48,7 @@ def test_drawings_get_ids_and_can_be_replaced(window: RecordingWindow) -> None:
     assert set(window.items) == {line, points}
 
 
-def test_removing_all_drawings_keeps_sliders(window: RecordingWindow) -> None:
+def test_removing_all_drawings_keeps_sliders(window: PageWindow) -> None:
     p.addUserDebugLine([0, 0, 0], [1, 0, 0])
     slider = p.addUserDebugParameter("slider")
     p.addUserDebugLine([0, 0, 0], [1, 0, 0])
@@ -58,20 +58,20 @@ def test_removing_all_drawings_keeps_sliders(window: RecordingWindow) -> None:
     assert p.addUserDebugLine([0, 0, 0], [1, 0, 0]) == slider + 1
 
 
-def test_resetting_the_simulation_removes_drawings(window: RecordingWindow) -> None:
+def test_resetting_the_simulation_removes_drawings(window: PageWindow) -> None:
     p.addUserDebugLine([0, 0, 0], [1, 0, 0])
     p.resetSimulation()
     assert not window.items
 
 
-def test_wireframe_colours(window: RecordingWindow) -> None:
+def test_wireframe_colours(window: PageWindow) -> None:
     p.setDebugObjectColor(3, -1, [1, 0, 0])
     assert window.colours == {(3, -1): (1.0, 0.0, 0.0)}
     p.setDebugObjectColor(3, -1)
     assert not window.colours
 
 
-def test_the_camera_goes_where_it_is_sent(window: RecordingWindow) -> None:
+def test_the_camera_goes_where_it_is_sent(window: PageWindow) -> None:
     p.resetDebugVisualizerCamera(2.5, 30, -20, [1, 2, 3])
     info = p.getDebugVisualizerCamera()
     assert len(info) == 12
@@ -94,12 +94,12 @@ def test_the_camera_goes_where_it_is_sent(window: RecordingWindow) -> None:
 
 
 @pytest.mark.parametrize("pitch", [-90, 90])
-def test_a_camera_that_looks_straight_down_or_up(window: RecordingWindow, pitch: float) -> None:
+def test_a_camera_that_looks_straight_down_or_up(window: PageWindow, pitch: float) -> None:
     p.resetDebugVisualizerCamera(1, 0, pitch, [0, 0, 0])
     assert np.isfinite(np.concatenate([np.atleast_1d(field) for field in p.getDebugVisualizerCamera()])).all()
 
 
-def test_options_are_kept(window: RecordingWindow) -> None:
+def test_options_are_kept(window: PageWindow) -> None:
     p.configureDebugVisualizer(p.COV_ENABLE_GUI, 0)
     p.configureDebugVisualizer(
         lightPosition=[1, 2, 3], rgbBackground=[0, 0, 1], shadowMapResolution=512, shadowMapIntensity=0.5
@@ -112,7 +112,7 @@ def test_options_are_kept(window: RecordingWindow) -> None:
     assert p.getDebugVisualizerCamera()[4] == (0.0, 1.0, 0.0)
 
 
-def test_nobody_presses_a_key(window: RecordingWindow) -> None:
+def test_nobody_presses_a_key(window: PageWindow) -> None:
     assert p.getKeyboardEvents() == {}
     assert p.getMouseEvents() == ()
     assert p.getVREvents() == ()
@@ -124,13 +124,13 @@ def test_the_window_has_the_size_asked_for() -> None:
 
 
 @pytest.mark.parametrize("method", [p.GUI, p.GUI_SERVER, p.GUI_MAIN_THREAD])
-def test_there_is_one_window_at_most(window: RecordingWindow, method: int) -> None:
+def test_there_is_one_window_at_most(window: PageWindow, method: int) -> None:
     with pytest.raises(p.error, match=r"^Only one local in-process GUI/GUI_SERVER connection allowed"):
         p.connect(method)
     assert p.connect(p.DIRECT) == 1
 
 
-def test_a_closed_window_disconnects(window: RecordingWindow) -> None:
+def test_a_closed_window_disconnects(window: PageWindow) -> None:
     assert p.isConnected() == 1
     window.close()
     assert p.isConnected() == 0
@@ -173,7 +173,7 @@ def test_without_a_window_nothing_is_shown(client: int) -> None:
     ]
 
 
-def test_points_need_colours(window: RecordingWindow) -> None:
+def test_points_need_colours(window: PageWindow) -> None:
     with pytest.raises(p.error, match=r"^numColors must match numPositions\."):
         p.addUserDebugPoints([[0, 0, 0]], [])
     with pytest.raises(p.error, match="at least one point"):

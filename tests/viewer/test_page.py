@@ -330,7 +330,7 @@ def test_a_paused_simulation_goes_step_by_step(page: Page):
     # The page shows at once what it has asked for.
     window = clients[0].window
     assert isinstance(window, PageWindow)
-    wait_for(lambda: window._viewer.pause_control.closed, page)
+    wait_for(lambda: window.viewer.pause_control.closed, page)
     steps = []
 
     def script() -> None:

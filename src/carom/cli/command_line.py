@@ -17,6 +17,7 @@ from carom.errors import CaromError
 from carom.formats.search import AssetSearch
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BASE, BodySpec
+from carom.native.library import library
 from carom.soft.from_urdf import urdf_body
 from carom.version import __version__
 
@@ -65,9 +66,7 @@ def _parser() -> argparse.ArgumentParser:
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
     view.add_argument(
-        "file",
-        type=Path,
-        help="URDF, SDF or MJCF (.xml) file; files of pybullet_data are found by name",
+        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; files of pybullet_data are found by name"
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(
@@ -185,10 +184,8 @@ def _serve(options: argparse.Namespace) -> None:
 
 
 def _warmup(_options: argparse.Namespace) -> None:
-    from carom.cli.warmup import warmup
-
     began = time.perf_counter()
-    warmup()
+    library()
     print(f"The physics kernels are ready, after {time.perf_counter() - began:.1f} s.")
 
 

@@ -9,8 +9,8 @@ from types import FrameType
 from typing import Any
 
 import pybullet
-from carom.cli.warmup import warmup
 from carom.errors import CaromError
+from carom.native.library import library
 
 # Signals that end the server. On Windows a process can send only Ctrl-Break to another one.
 _REQUESTS = [signal.Signals[name] for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name)]
@@ -45,7 +45,7 @@ def serve(service: Service) -> None:
         ending.set()
 
     # Before clients can connect, because kernels may have to be compiled.
-    warmup()
+    library()
     method = pybullet.GUI_SERVER if service.window else pybullet.SHARED_MEMORY_SERVER
     try:
         client = pybullet.connect(method, key=service.key, options=" ".join(service.options))

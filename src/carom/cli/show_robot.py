@@ -27,13 +27,7 @@ _LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPA
 
 
 class RobotView:
-    """Shows the robots of a file, and moves their joints by sliders.
-
-    Args:
-        file: URDF, SDF or MJCF file.
-        search: Search folders for meshes, and for the file if it does not exist under its name.
-        host: Address to serve the page at.
-        port: Port to serve the page at; None for the default port or any free port.
+    """Shows the robots of a file (URDF, SDF or MJCF), and moves their joints by sliders.
 
     Raises:
         DescriptionError: The file cannot be used, or there is no robot in it.

@@ -25,13 +25,7 @@ _PATIENCE = 30.0
 
 @dataclass(eq=False)
 class Member:
-    """An actor on a node.
-
-    Attributes:
-        node: The node.
-        actor: Ray's handle of the actor.
-        is_ready: Whether its environment has been made.
-    """
+    """An actor on a node, by Ray's handle; it is ready when its environment has been made."""
 
     node: Node
     actor: Any
@@ -52,12 +46,8 @@ class Returned:
 class Crew:
     """The actors of a rollout, at most one on each node.
 
-    Args:
-        make_env: The function that makes vector environments, pickled.
-        num_envs: Number of environments of each vector environment.
-        max_episode_steps: Number of steps after which episodes are truncated.
-        nodes: Maximum number of nodes, or "all".
-        cpus: Number of CPUs that Ray reserves for each actor.
+    `make_env`, pickled, makes vector environments of `num_envs`; `nodes` is the maximum number, or "all", and
+    `cpus` the number of CPUs that Ray reserves for each actor.
     """
 
     make_env: bytes

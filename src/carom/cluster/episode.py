@@ -55,11 +55,7 @@ class Episode:
 
 
 class StepLog:
-    """Records all steps of a vector environment, in arrays that grow.
-
-    Args:
-        keep_steps: Whether to keep observations and actions, besides the rewards.
-    """
+    """Records all steps of a vector environment, in growing arrays; only the rewards unless `keep_steps`."""
 
     def __init__(self, keep_steps: bool) -> None:
         self._keep_steps = keep_steps

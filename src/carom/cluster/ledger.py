@@ -16,22 +16,16 @@ Outcome: TypeAlias = list[Episode] | EpisodeError
 
 
 class Ledger:
-    """The bookkeeping of one collection.
+    """The bookkeeping of one collection: of `episodes`, or of at least `steps`; the other is None.
 
     Nodes play *batches* of consecutive episodes. Finished batches are counted in the order of their episodes,
     not in the order in which they finish. So the collected episodes do not depend on which node plays which
-    batch, and a failure is reported if, and only if, the episodes before it were not enough.
+    batch, and a failure is reported if, and only if, the episodes before it were not enough. The collection
+    also fails if a batch loses its process so many times (`attempts`).
 
     Attributes:
         counted: The episodes that count, in the order of their ids, which are consecutive.
         repeated: Number of episodes that were repeated.
-
-    Args:
-        first: The id of the first episode.
-        batch_size: Number of episodes of a batch.
-        episodes: Number of episodes to collect; None if the number of steps is given.
-        steps: Minimum total number of steps; the episode that reaches it is the last one.
-        attempts: Number of times a batch may lose its process before the collection fails.
     """
 
     def __init__(

@@ -127,12 +127,7 @@ class NodePlayer:
 
 @dataclass(frozen=True)
 class Node:
-    """A live node of the cluster.
-
-    Attributes:
-        id: Ray's id of the node.
-        address: Its network address.
-    """
+    """A live node of the cluster: Ray's id of the node, and its network address."""
 
     id: str
     address: str

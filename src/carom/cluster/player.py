@@ -38,13 +38,9 @@ class Player:
         self._longest = np.inf if max_episode_steps is None else max_episode_steps
 
     def play(self, policy: Policy, ids: range, seed: int, *, keep_steps: bool = True) -> list[Episode]:
-        """Play episodes, which do not depend on episodes played before.
+        """Play episodes, at least one, by their ids; they do not depend on episodes played before.
 
-        Args:
-            policy: The policy.
-            ids: Ids of the episodes; at least one.
-            seed: Episode k has the seed `seed + k`.
-            keep_steps: Whether to keep observations and actions, besides the rewards.
+        Episode k has the seed `seed + k`. Only with `keep_steps` are observations and actions kept.
 
         Raises:
             EpisodeError: The policy or the environment failed.

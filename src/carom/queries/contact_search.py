@@ -39,13 +39,7 @@ NO_CONTACTS = ContactColumns(0, ())
 
 
 class ContactSearch:
-    """Query the contacts of a world.
-
-    Args:
-        structs: Structs by the names of kernel arguments, including `places`.
-        contacts: The contacts.
-        quick: The record for quick calls, in which the addresses of the arrays are set.
-    """
+    """Query the contacts of a world; addresses for quick calls are set in `quick`."""
 
     def __init__(self, structs: KernelStructs, contacts: ArrayTable, quick: QuickScene) -> None:
         self._contacts = contacts

@@ -46,13 +46,7 @@ class ShapePairs(NamedTuple):
 
 
 class PairSearch:
-    """Find the nearest points of shapes of a world.
-
-    Args:
-        structs: Structs by the names of kernel arguments.
-        contact_arrays: The arrays of shapes.
-        quick: The record for quick calls, in which the addresses of the arrays are set.
-    """
+    """Find the nearest points of shapes of a world; addresses for quick calls are set in `quick`."""
 
     def __init__(self, structs: KernelStructs, contact_arrays: ContactArrays, quick: QuickScene) -> None:
         self._quick = quick

@@ -11,10 +11,6 @@ class PresentPoses:
 
     On entry it returns the memory of `link_pose`. On exit it restores the former poses: after a step they are
     those at the start of the last substep, as getters expect. Contexts may be nested.
-
-    Args:
-        poses: The memory of `link_pose`.
-        structs: Structs by the names of kernel arguments.
     """
 
     __slots__ = ("_before", "_find", "_poses")

@@ -40,16 +40,8 @@ _FAR = 1e30
 class Queries:
     """The collision queries of a world, as launches over its present arrays.
 
-    Args:
-        structs: Structs by the names of kernel arguments.
-        positions: The memory of the coordinates of all bodies.
-        places: Body and link of each row of the link arrays.
-        present_poses: `World.present_poses`.
-        contact_arrays: The arrays of shapes.
-        pairs: Workspace of collision detection.
-        state: The state of the world.
-        soft_work: Workspace of soft bodies.
-        quick: The record of addresses for quick calls.
+    `structs` are by the names of kernel arguments, `places` are body and link of each row of the link arrays,
+    `pairs` is the workspace of collision detection, and `quick` gets addresses for quick calls.
     """
 
     def __init__(
@@ -129,13 +121,7 @@ class Queries:
         ]
 
     def cast_rays(
-        self,
-        starts: Points,
-        ends: Points,
-        *,
-        mask: int = -1,
-        hit_number: int = 0,
-        separation: float = 0.0,
+        self, starts: Points, ends: Points, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> tuple[RayHit, ...]:
         """Cast rays.
 
@@ -147,20 +133,9 @@ class Queries:
             separation: After a hit, hits on the same link within this fraction of the ray are ignored.
         """
         self._prepare(IN_HIERARCHY)
-        if self._soft is not None:
-            return self._cast_at_all(self._soft, starts, ends, mask, hit_number, separation)
-        return self._cast(starts, ends, mask, hit_number, separation)
-
-    def _cast_at_all(
-        self,
-        soft: SoftQueries,
-        starts: Points,
-        ends: Points,
-        mask: int,
-        hit_number: int,
-        separation: float,
-    ) -> tuple[RayHit, ...]:
-        """As `cast_rays`, including soft bodies."""
+        soft = self._soft
+        if soft is None:
+            return self._cast(starts, ends, mask, hit_number, separation)
         from carom.queries.soft_bodies import nth_hit
 
         # The n-th hit of all is one of the first n hits on shapes or one of the hits on soft bodies.
@@ -223,11 +198,9 @@ class Queries:
         return _one_after_the_other(rigid, soft)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
-        """Rows of the links whose bounds overlap a box; bounds of links without shapes are nearly a point.
+        """Rows of the links whose bounds overlap a box, given by its corners in world axes [m].
 
-        Args:
-            lower: Minimum corner of the box in world axes [m].
-            upper: Its maximum corner.
+        Bounds of links without shapes are nearly a point.
         """
         found: set[int] = set()
         if self._shape_count:
@@ -243,7 +216,8 @@ class Queries:
                     x, y, z, qx, qy, qz, qw = _POSE.unpack_from(poses, row * _POSE.size)
                     turn = rotation_matrix((qx, qy, qz, qw))
                     center, half = turned_box(bounds.center, bounds.half, turn, (x, y, z))
-                    if all(map(_meet, center, half, lower, upper)):
+                    box = zip(center, half, lower, upper, strict=True)
+                    if all(c - h <= high and c + h >= low for c, h, low, high in box):
                         found.add(row)
         return sorted(found)
 
@@ -294,7 +268,3 @@ def _one_after_the_other(first: ContactColumns, second: ContactColumns) -> Conta
         for column, other in zip(first.columns, second.columns, strict=True)
     )
     return ContactColumns(first.found + second.found, tuple(columns))
-
-
-def _meet(center: float, half: float, lower: float, upper: float) -> bool:
-    return center - half <= upper and center + half >= lower

@@ -27,11 +27,7 @@ Without a hit: -1, -1, 1.0 and zero vectors."""
 
 
 class RayCast:
-    """Cast rays at the shapes of a world.
-
-    Args:
-        structs: Structs by the names of kernel arguments, including `places`.
-    """
+    """Cast rays at the shapes of a world."""
 
     def __init__(self, structs: KernelStructs) -> None:
         self._cast = Question(

@@ -34,16 +34,7 @@ _TINY = 1.0e-300
 
 
 class SoftQueries:
-    """The collision queries of the soft bodies of a world.
-
-    Args:
-        structs: Structs by the names of kernel arguments.
-        contact_arrays: The shapes and the soft bodies.
-        state: The state of the world.
-        work: The workspace of soft bodies.
-        places: Body and link of each row of the link arrays.
-        present_poses: `World.present_poses`.
-    """
+    """The collision queries of the soft bodies of a world; `places` are body and link of each link row."""
 
     def __init__(
         self,
@@ -75,15 +66,10 @@ class SoftQueries:
     # Rays
 
     def cast(self, starts: Points, ends: Points, mask: int) -> list[list[RayHit]]:
-        """All hits of each ray on faces of soft bodies, the nearest first.
+        """All hits of each ray on faces of soft bodies, the nearest first; points are (n, 3), world axes [m].
 
         Cloth is hit from both sides, solids from outside only. As with shapes, a ray that starts inside a
-        solid does not hit it.
-
-        Args:
-            starts: Starting points in world axes [m], shape (n, 3).
-            ends: End points in world axes [m], shape (n, 3).
-            mask: Mask of the collision groups that are hit.
+        solid does not hit it. `mask` is that of the collision groups that are hit.
         """
         start = np.asarray(starts, dtype=np.float64).reshape(-1, 3)
         way = np.asarray(ends, dtype=np.float64).reshape(-1, 3) - start

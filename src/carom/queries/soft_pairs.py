@@ -49,13 +49,9 @@ class PairContact:
 def touching_pairs(
     soft: SoftArrays, places: NDArray[np.float64], work: Mapping[str, NDArray], nearest: float
 ) -> Iterator[PairContact]:
-    """The nodes that touch faces of other soft bodies.
+    """The nodes that touch faces of other soft bodies: up to a gap of `nearest` [m].
 
-    Args:
-        soft: The soft bodies.
-        places: (n, 3) positions of the nodes [m].
-        work: The workspace of soft bodies, in which the last step listed the faces near each node.
-        nearest: Gap up to which a node counts as touching [m].
+    `places` are the (n, 3) positions of the nodes [m]; in `work` the last step listed the faces near each.
     """
     if len(soft.bodies) < 2:
         return

@@ -23,16 +23,10 @@ _MOST_OF_A_STEP = 240
 
 
 class Film:
-    """Takes pictures at even intervals of simulated time; one of `World.observers`.
+    """Takes pictures at even intervals of simulated time [s]; one of `World.observers`.
 
     The first picture shows the world before the next step. If a step is longer than the interval, its picture
-    is repeated.
-
-    Args:
-        world: The world.
-        file: The file that the pictures are written to.
-        interval: Simulated time between two pictures [s].
-        take: Renders a picture: (height, width, 3) red, green and blue.
+    is repeated. `take` renders a picture: (height, width, 3) red, green and blue.
 
     Attributes:
         automatic: Take pictures as time passes; otherwise only `shoot` takes pictures.

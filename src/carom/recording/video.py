@@ -18,13 +18,7 @@ _QUALITY = {"crf": "18", "preset": "veryfast"}
 
 
 class VideoFile:
-    """An MP4 file being written. It can be played after it is closed.
-
-    Args:
-        path: The file; an existing one is replaced.
-        width: Number of columns of its pictures.
-        height: Number of rows.
-        fps: Pictures per second.
+    """An MP4 file being written, of pictures of one size. It can be played after it is closed.
 
     Raises:
         ImportError: PyAV is not installed.

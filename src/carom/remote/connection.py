@@ -19,11 +19,7 @@ _FOR_EVER = 1e6
 class Connection:
     """One connection to a server. Thread-safe: calls of several threads are made one after the other.
 
-    Args:
-        host: Host of the server.
-        port: Port of the server.
-        key: The key of the server.
-        timeout: How long to wait for an answer [s].
+    `timeout` is how long to wait for an answer [s].
 
     Raises:
         NoServer: There is no server, or it refuses the connection.

@@ -33,12 +33,7 @@ _ZEROS = bytes(ALIGNMENT)
 
 @dataclass(frozen=True)
 class Limits:
-    """The largest sizes that one side accepts from the other [bytes].
-
-    Attributes:
-        message: Largest size of a message.
-        contents: Largest size of the contents of all its arrays.
-    """
+    """The largest sizes that one side accepts from the other [bytes]: of a message, and of all its arrays."""
 
     message: int
     contents: int
@@ -51,13 +46,7 @@ OF_RESULTS = Limits(message=512 << 20, contents=2048 << 20)
 
 
 class Frame(NamedTuple):
-    """One received frame.
-
-    Attributes:
-        number: Number of the call.
-        message: The message.
-        contents: Contents of its arrays.
-    """
+    """One received frame: the number of the call, the message, and the contents of its arrays."""
 
     number: int
     message: memoryview
@@ -72,17 +61,7 @@ def check_size(message: bytes, arrays: Sequence[memoryview], limits: Limits) -> 
 
 
 def send(peer: socket.socket, number: int, message: bytes, arrays: Sequence[memoryview]) -> None:
-    """Send one frame.
-
-    Args:
-        peer: The socket.
-        number: Number of the call.
-        message: The message.
-        arrays: Contents of its arrays.
-
-    Raises:
-        OSError: The socket is closed, or its timeout is over.
-    """
+    """Send one frame; raises `OSError` if the socket is closed, or its timeout is over."""
     head = _HEADER.pack(number, len(message), _size(arrays)) + message + _ZEROS[: -len(message) % ALIGNMENT]
     pieces: list[bytes | memoryview] = [head]
     for array in arrays:
@@ -101,9 +80,7 @@ def _size(arrays: Sequence[memoryview]) -> int:
 class Reader:
     """Reads frames from a socket. If waiting for a frame is interrupted, the part read so far is kept.
 
-    Args:
-        peer: The socket.
-        limits: Limits of the frames. For long frames memory is allocated as data arrive, not by the header.
+    For long frames memory is allocated as data arrive, not by the header.
     """
 
     def __init__(self, peer: socket.socket, limits: Limits) -> None:

@@ -31,11 +31,7 @@ def new_key() -> bytes:
 
 
 def enter(peer: socket.socket, key: bytes) -> None:
-    """The client's side of the handshake.
-
-    Raises:
-        NoServer: The other side is no server of this version, has another key, or refuses the connection.
-    """
+    """The client's side; raises `NoServer` for another version or key, or if the connection is refused."""
     mine = secrets.token_bytes(_NONCE)
     talk = _Talk(peer)
     try:
@@ -53,16 +49,10 @@ def enter(peer: socket.socket, key: bytes) -> None:
 
 
 def admit(peer: socket.socket, key: bytes, take_place: Callable[[], bool]) -> bool:
-    """The server's side of the handshake.
+    """The server's side of the handshake: whether the client knows the key.
 
-    Args:
-        peer: Socket of the client.
-        key: The key that the client has to know.
-        take_place: Reserves a place for another client; returns False if none is left. It is called if the
-            client knows the key, and the client is told the result.
-
-    Returns:
-        Whether the client knows the key.
+    `take_place` reserves a place for another client; it returns False if none is left. It is called if the
+    client knows the key, and the client is told the result.
 
     Raises:
         OSError: The socket is closed, or the time limit is over.

@@ -21,16 +21,28 @@ def private_folder() -> Path:
 
 
 def make_private(folder: Path) -> None:
-    """Create the folder if it does not exist.
-
-    Raises:
-        RemoteError: It exists, and other users may use it.
-        OSError: It cannot be created.
-    """
+    """Create the folder if it does not exist; raises `RemoteError` if other users may use it."""
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     status = folder.lstat()
     if not stat.S_ISDIR(status.st_mode) or not is_private(status):
         raise RemoteError(f"{folder} is not a folder that only you can use; remove it.")
+
+
+def write_private(path: Path, content: bytes) -> None:
+    """Write or replace a file in an existing folder so that other users can never read any of it.
+
+    Raises:
+        OSError: It cannot be written; the file is then as before.
+    """
+    # The file of `mkstemp` is private, and it is moved to its place when it is complete.
+    handle, draft = tempfile.mkstemp(dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.replace(draft, path)
+    except OSError:
+        Path(draft).unlink(missing_ok=True)
+        raise
 
 
 def is_private(status: os.stat_result) -> bool:

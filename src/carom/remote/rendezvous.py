@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from carom.remote.private_folder import is_private, make_private, private_folder
+from carom.remote.private_folder import is_private, make_private, private_folder, write_private
 
 # Largest size of a note [bytes].
 _GREATEST_SIZE = 4096
@@ -22,13 +21,7 @@ _GREATEST_SIZE = 4096
 
 @dataclass(frozen=True)
 class Note:
-    """How to reach a server.
-
-    Attributes:
-        host: Host at which the server listens.
-        port: Port at which the server listens.
-        key: The key that clients need.
-    """
+    """How to reach a server: its host and port, and the key that clients need."""
 
     host: str
     port: int
@@ -41,16 +34,9 @@ class Note:
             RemoteError: The folder belongs to another user, or other users may use it.
             OSError: The note cannot be written.
         """
-        folder = private_folder()
-        make_private(folder)
-        handle, draft = tempfile.mkstemp(dir=folder)
-        try:
-            with os.fdopen(handle, "w", encoding="ascii") as file:
-                json.dump({"host": self.host, "port": self.port, "key": self.key.hex()}, file)
-            os.replace(draft, _path(name))
-        except OSError:
-            Path(draft).unlink(missing_ok=True)
-            raise
+        make_private(private_folder())
+        note = {"host": self.host, "port": self.port, "key": self.key.hex()}
+        write_private(_path(name), json.dumps(note).encode())
 
     def take_away(self, name: str) -> None:
         """Remove the note, unless another server has replaced it by its own."""

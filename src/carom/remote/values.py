@@ -48,11 +48,7 @@ def padded(size: int) -> int:
 
 
 def pack(value: Any) -> tuple[bytes, list[memoryview]]:
-    """Serialise a value.
-
-    Returns:
-        The bytes, and the contents of the arrays in the value, in order.
-    """
+    """A value as bytes, and the contents of the arrays in it, in order."""
     arrays: list[memoryview] = []
     # np.float64 is a subclass of float, and is packed as one. File names may contain invalid UTF-8.
     packer = msgpack.Packer(default=_Substitute(arrays), unicode_errors="surrogatepass")
@@ -60,12 +56,7 @@ def pack(value: Any) -> tuple[bytes, list[memoryview]]:
 
 
 def unpack(message: bytes | memoryview, contents: memoryview, *, lists: bool) -> Any:
-    """The value that `pack` has serialised; its arrays share memory with `contents`.
-
-    Args:
-        message: The bytes.
-        contents: Contents of the arrays, each padded to a multiple of `ALIGNMENT`.
-        lists: Whether sequences become lists; otherwise they become tuples.
+    """The value that `pack` has serialised, with `lists` or tuples; its arrays share memory with `contents`.
 
     Raises:
         Malformed: The bytes are not a serialised value.

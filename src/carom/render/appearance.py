@@ -97,16 +97,7 @@ class Appearance:
         texture: int | None = None,
         two_sided: bool | None = None,
     ) -> None:
-        """Change the appearance of a link.
-
-        Args:
-            body: The body.
-            link: The link; -1 is the base.
-            shape: Index of the shape among those of the link; None for all shapes.
-            rgba: New colour.
-            specular: New colour of highlights.
-            texture: Number of the new texture, -1 for none.
-            two_sided: Draw back faces, too.
+        """Change the appearance of a link, -1 for the base; without `shape` of all shapes. None: as it is.
 
         Raises:
             IndexError: There is no such link or shape.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 from carom.native.cpu import core_count
 
@@ -38,15 +39,11 @@ def _work(pending: object) -> None:
         task()
 
 
-_pools: list[ThreadPoolExecutor] = []
-
-
+@cache
 def _pool() -> ThreadPoolExecutor:
-    if not _pools:
-        _pools.append(ThreadPoolExecutor(MAX_WORKERS, thread_name_prefix="carom-render"))
-    return _pools[0]
+    return ThreadPoolExecutor(MAX_WORKERS, thread_name_prefix="carom-render")
 
 
 # The threads of a process do not exist in its forked children.
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_pools.clear)
+    os.register_at_fork(after_in_child=_pool.cache_clear)

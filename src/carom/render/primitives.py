@@ -24,12 +24,7 @@ Primitive = Sphere | Box | Cylinder | Capsule | Plane
 
 @functools.lru_cache(maxsize=1024)
 def primitive_mesh(shape: Primitive, segments: int = SEGMENTS) -> RenderMesh:
-    """The triangles of a primitive, in the frame of the shape.
-
-    Args:
-        shape: The primitive.
-        segments: Sides of the polygon that approximates a circle; a multiple of 4.
-    """
+    """The triangles of a primitive, in its frame; circles have `segments` sides, a multiple of 4."""
     if isinstance(shape, Box):
         return _box(shape.half_extents)
     if isinstance(shape, Plane):

@@ -47,18 +47,10 @@ class ShadowCamera:
 def shadow_camera(
     light: Light, scene: SceneArrays, link_to_world: Matrix, projection: Matrix, width: int, height: int
 ) -> ShadowCamera:
-    """The camera at a light.
+    """The camera at a light, for an image of this size and projection (4, 4); links have poses (links, 4, 4).
 
     For a lamp at a finite distance it has the projection of the image, as in PyBullet. For parallel light its
     view covers all shapes that may cast a shadow.
-
-    Args:
-        light: The light.
-        scene: The scene.
-        link_to_world: (links, 4, 4) poses of its links.
-        projection: (4, 4) projection of the image.
-        width: Columns of the image.
-        height: Rows of the image.
     """
     direction = unit_vector(np.array(light.direction))
     if not isinf(light.distance):

@@ -70,12 +70,9 @@ class SoftSurface:
     part_starts: NDArray[np.int64]
 
     def write(self, arrays: dict[str, Any], centres: NDArray[np.float64], radii: NDArray[np.float64]) -> None:
-        """Update the arrays of a scene from the positions of the nodes.
+        """Update the arrays of a scene, by their names in `Scene`, from the positions of the nodes.
 
-        Args:
-            arrays: Arrays of the `Scene` struct by name.
-            centres: Centre of the bounding sphere of each part, in the inertial frame of its link [m].
-            radii: Radius of that sphere [m].
+        `centres` and `radii` [m] are of the parts' bounding spheres, in the inertial frames of their links.
         """
         nodes, triangles = nodes_at_base(self.body)
         corners = triangles.reshape(-1)

@@ -10,14 +10,10 @@ from numpy.typing import ArrayLike
 
 
 class ActionChecker:
-    """Converts a policy's actions to checked arrays.
-
-    Args:
-        space: Action space of one environment: a `Box` or `Discrete`.
-        count: Number of environments.
+    """Converts a policy's actions in `count` environments to checked arrays.
 
     Raises:
-        ValueError: The space has another type.
+        ValueError: The action space of one environment is neither a `Box` nor `Discrete`.
     """
 
     def __init__(self, space: gymnasium.spaces.Space[Any], count: int) -> None:

@@ -48,27 +48,14 @@ class Access:
     def may_connect(
         self, path: str, host_header: str | None, origin: str | None, cookies: str | None = None
     ) -> bool:
-        """Whether a socket may be opened.
-
-        Args:
-            path: The path of the request, with the query.
-            host_header: `Host` of the request.
-            origin: `Origin` of the request; only browsers send it.
-            cookies: `Cookie` of the request.
-        """
+        """Whether a socket may be opened, by the path with the query, and three headers of the request."""
         if self.knows_token(path):
             return True
         own = self.is_own(host_header) and origin_allowed(host_header, origin)
         return own and self.is_known(path, host_header, cookies)
 
     def may_read(self, path: str, host_header: str | None, cookies: str | None) -> bool:
-        """Whether the page may be served.
-
-        Args:
-            path: The path of the request, with the query.
-            host_header: `Host` of the request.
-            cookies: `Cookie` of the request.
-        """
+        """Whether the page may be served, by the path with the query, and two headers of the request."""
         return self.is_own(host_header) or self.knows_token(path) or self.has_cookie(cookies)
 
     def is_known(self, path: str, host_header: str | None, cookies: str | None) -> bool:
@@ -124,12 +111,7 @@ def is_loopback(host: str) -> bool:
 
 
 def host_allowed(bound_to: str, host_header: str | None) -> bool:
-    """Whether the host of a request is this server.
-
-    Args:
-        bound_to: Host that the server listens on.
-        host_header: `Host` of the request. Its port may differ, as through an SSH tunnel.
-    """
+    """Whether the host of a request is this server; its port may differ, as through an SSH tunnel."""
     name = _name(f"//{host_header}") if host_header else None
     if name is None:
         return False

@@ -60,14 +60,7 @@ class Board:
         return entry is not None and not entry.gone
 
     def since(self, revision: int) -> tuple[list[bytes], int]:
-        """The messages newer than a revision, the oldest first.
-
-        Args:
-            revision: The revision of the page; 0 for none.
-
-        Returns:
-            The messages, and the revision for the next call.
-        """
+        """The messages newer than a revision, 0 for all, the oldest first; and the revision to ask next."""
         with self._lock:
             if revision == self._revision:
                 return [], revision

@@ -10,15 +10,9 @@ from carom.viewer.board import Board
 
 @dataclass(frozen=True, slots=True)
 class Orbit:
-    """A camera that circles a target.
+    """A camera that circles a target [m]: distance [m], angles [degrees], and size of the image [pixels].
 
-    Attributes:
-        distance: Distance from the camera to the target [m].
-        yaw: Angle about the upward axis [degrees].
-        pitch: Upward angle; a camera with a negative pitch looks down from above [degrees].
-        target: The point that the camera looks at [m].
-        width: Width of the image [pixels].
-        height: Height of the image [pixels].
+    Yaw is about the upward axis; with a negative pitch the camera looks down from above.
     """
 
     distance: float = 5.0
@@ -64,12 +58,5 @@ class SharedCamera:
         self.orbit = replace(self.orbit, width=width, height=height)
 
     def _message(self) -> dict[str, object]:
-        orbit = self.orbit
-        return {
-            "type": "camera",
-            "distance": orbit.distance,
-            "yaw": orbit.yaw,
-            "pitch": orbit.pitch,
-            "target": orbit.target,
-            "chosen": self.chosen,
-        }
+        view = {name: getattr(self.orbit, name) for name in ("distance", "yaw", "pitch", "target")}
+        return {"type": "camera", **view, "chosen": self.chosen}

@@ -27,14 +27,8 @@ _MOST_LINKS = 64
 class Wish:
     """The data that one page, or all pages together, need.
 
-    Attributes:
-        collisions: Collision shapes.
-        contacts: Contacts of each frame.
-        joints: Ids of the bodies whose joints are read, or all.
-        links: Bodies and links whose velocities are read.
-        dynamics: Masses and inertias.
-        constraints: Constraints that scripts have made.
-        rays: Rays that scripts cast.
+    `joints` are the ids of the bodies whose joints are read, or all; `links` are bodies and links whose
+    velocities are read; `dynamics` are masses and inertias.
     """
 
     collisions: bool = False
@@ -74,12 +68,7 @@ NOTHING = Wish()
 
 
 class Details:
-    """Reads the data that all pages together need. For use by one thread.
-
-    Args:
-        world: The world.
-        lock: Held while the world is stepped or changed.
-        board: The board for masses, constraints and rays.
+    """Reads the data that all pages together need; the lock is that of steps. For use by one thread.
 
     Attributes:
         wish: The present wish of all pages together.

@@ -29,11 +29,7 @@ def has_display() -> bool:
 
 
 def tunnel_command(address: str) -> str | None:
-    """The command for the user's own machine to reach a page of this one; None without SSH.
-
-    Args:
-        address: Address of the page.
-    """
+    """The command for the user's own machine to reach a page of this one; None without SSH."""
     if not over_ssh():
         return None
     port = urlsplit(address).port

@@ -11,13 +11,7 @@ _WHITE = (1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class DebugItem:
-    """A drawing in the scene.
-
-    Attributes:
-        life_time: Life time [s]; 0 for ever.
-        parent_body: Body whose link carries it; -1 for the world.
-        parent_link: That link; -1 for the base.
-    """
+    """A drawing on a link, -1 for the base, of a body or the world (-1); life time [s], 0 for ever."""
 
     life_time: float = 0.0
     parent_body: int = -1
@@ -56,12 +50,7 @@ class DebugPoints(DebugItem):
 
 @dataclass(slots=True)
 class Handle:
-    """A frame that the user moves with the mouse.
-
-    Attributes:
-        name: Its label.
-        pose: Position [m] and orientation (x, y, z, w), in the world.
-    """
+    """A frame that the user moves with the mouse: position [m] and orientation (x, y, z, w), in the world."""
 
     name: str
     pose: tuple[Vector3, Quaternion]

@@ -17,11 +17,7 @@ MAX_INCOMING_BYTES = 1 << 16
 
 
 def encoded(header: Mapping[str, Any], payload: bytes = b"") -> bytes:
-    """A message to a page.
-
-    Raises:
-        ValueError: A number in the header is not finite.
-    """
+    """A message to a page; raises `ValueError` if a number in the header is not finite."""
     text = json.dumps(header, separators=(",", ":"), allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
     return struct.pack("<I", len(text)) + text + payload
@@ -34,11 +30,7 @@ def decoded(message: bytes) -> tuple[dict[str, Any], bytes]:
 
 
 def received(text: str | bytes) -> dict[str, Any]:
-    """A message from a page.
-
-    Raises:
-        ValueError: The message is not a JSON object, or has no type.
-    """
+    """A message from a page; raises `ValueError` if it is not a JSON object with a type."""
     message = json.loads(text)
     if not isinstance(message, dict) or not isinstance(message.get("type"), str):
         raise ValueError("a message has to be a JSON object with a type")

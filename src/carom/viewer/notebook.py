@@ -7,7 +7,6 @@ import json
 import os
 import sys
 from base64 import b64encode
-from typing import Any
 from uuid import uuid4
 
 from carom.viewer.page_files import page_files
@@ -22,14 +21,7 @@ A recording needs no connection: <code>with world.record("run.html") as replay: 
 
 
 def frame(port: int, token: str, picture: bytes | None = None, height: int = HEIGHT) -> str:
-    """HTML that shows the page of a server on the machine of the kernel.
-
-    Args:
-        port: Port of the server.
-        token: Token of the server.
-        picture: PNG file to show if the page cannot be reached.
-        height: Height of the frame [pixels].
-    """
+    """HTML that shows the page of a server on the kernel's machine or, if out of reach, a picture (PNG)."""
     identifier = f"carom-{uuid4().hex}"
     facts = json.dumps(
         {
@@ -62,8 +54,8 @@ def replay_frame(page: str) -> str:
 
 def in_notebook() -> bool:
     """Whether this process is the kernel of a notebook."""
-    shell = _shell()
-    return shell is not None and hasattr(shell, "kernel")
+    ipython = sys.modules.get("IPython")
+    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
 
 
 def show(markup: str) -> None:
@@ -79,8 +71,3 @@ def _proxy_of_editor(port: int) -> str | None:
     if not pattern.startswith(("http://", "https://")) or "{{port}}" not in pattern:
         return None
     return pattern.replace("{{port}}", str(port)).rstrip("/") + "/"
-
-
-def _shell() -> Any:
-    ipython = sys.modules.get("IPython")
-    return None if ipython is None else ipython.get_ipython()

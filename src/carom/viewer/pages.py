@@ -9,12 +9,9 @@ from carom.viewer.board import Board
 
 
 class Page:
-    """An open page.
+    """An open page, and the revision of the board that it has.
 
-    Attributes:
-        number: Its number.
-        revision: The revision of the board that the page has.
-        news: Set when there may be new messages.
+    `news` is set when there may be new messages.
     """
 
     def __init__(self, number: int) -> None:
@@ -33,10 +30,7 @@ class Page:
 
 
 class Pages:
-    """The pages that are open.
-
-    Args:
-        gone: Called with the number of a page that has been closed.
+    """The pages that are open; `gone` is called with the number of a page that has been closed.
 
     Attributes:
         somebody: Set while a page is open.

@@ -20,12 +20,7 @@ class Pictures:
         self._hidden: set[int] = set()
 
     def wait(self, pages: Callable[[], Iterable[int]], patience: float) -> None:
-        """Asks for a picture and waits until all visible pages have drawn it.
-
-        Args:
-            pages: Returns the numbers of the open pages.
-            patience: Maximum time to wait [s]: browsers may be too busy.
-        """
+        """Asks for a picture and waits until all visible pages have drawn it, at most for `patience` [s]."""
         with self._changed:
             self.asked += 1
             picture = self.asked

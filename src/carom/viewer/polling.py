@@ -35,13 +35,7 @@ class _Asker:
 
 
 class Polling:
-    """Answers pages that poll.
-
-    Args:
-        pages: The pages that are open.
-        news: Returns the messages that are new to a page.
-        receive: Called with the number of a page and a text that it sends.
-    """
+    """Answers pages that poll, with the messages `news` for a page; `receive` is called with its texts."""
 
     def __init__(
         self, pages: Pages, news: Callable[[Page], list[bytes]], receive: Callable[[int, str], None]
@@ -52,11 +46,7 @@ class Polling:
         self._askers: dict[str, _Asker] = {}
 
     async def answer(self, path: str) -> bytes:
-        """The answer to a request for a path.
-
-        Raises:
-            ValueError: The request does not name its page.
-        """
+        """The answer to a request for a path; raises `ValueError` if it does not name its page."""
         query = parse_qs(urlsplit(path).query)
         (name,) = query.get("page", [])
         now = asyncio.get_running_loop().time

@@ -33,12 +33,7 @@ class Previews:
         self._corners: list[list[float]] | None = None
 
     def show(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        """Shows an image, unless the last one is very recent.
-
-        Args:
-            image: The image.
-            camera: (4, 4) matrix from the world to clip coordinates, as in OpenGL.
-        """
+        """Shows an image, unless one was just shown; `camera` is (4, 4), from world to clip coordinates."""
         now = monotonic()
         if now < self._due:
             return
@@ -61,13 +56,9 @@ class Previews:
 
 
 def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:
-    """Corners of a camera's frustum from its near plane to 25 cm behind it: four near, four far.
+    """Corners in the world of a camera's frustum from its near plane to 25 cm behind it: four near, four far.
 
-    Args:
-        camera: (4, 4) matrix from the world to clip coordinates, as in OpenGL.
-
-    Returns:
-        Points in the world; None if the matrix has no inverse.
+    `camera` is the (4, 4) matrix from the world to clip coordinates, as in OpenGL; None without an inverse.
     """
     try:
         back = np.linalg.inv(camera)

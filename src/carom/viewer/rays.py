@@ -29,13 +29,7 @@ class Rays:
         self._cast: deque[tuple[float, ...]] = deque(maxlen=_MOST_RAYS)
 
     def tell(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
-        """Records rays that a script has cast.
-
-        Args:
-            starts: Start points, in the world [m].
-            ends: End points, in the world [m].
-            hits: Body, link, fraction of the ray, position and normal of the hit of each ray.
-        """
+        """Records rays that a script has cast, from starts to ends in the world [m], and their hits."""
         for start, end, (_, _, fraction, _, normal) in zip(starts, ends, hits, strict=True):
             self._cast.append((*start, *end, *normal, fraction))
 

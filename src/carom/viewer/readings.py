@@ -15,7 +15,6 @@ from carom.layouts.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POS
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
     from carom.world.world import World
 
 Columns = NDArray[np.float32]
@@ -62,13 +61,9 @@ def contacts(world: World) -> Columns:
 def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
     """Velocities of links, and readings of their joints' force-torque sensors.
 
-    Args:
-        world: The world.
-        wanted: Pairs of body id and link index; -1 is the base. Pairs that do not exist are left out.
-
     Returns:
         (links, 14): body, link, velocity of the centre of mass (3) [m/s], angular velocity (3) [rad/s],
-        force (3) [N] and moment (3) [N m] of the sensor.
+        force (3) [N] and moment (3) [N m] of the sensor. Links that do not exist are left out.
     """
     rows = []
     fresh: set[int] = set()
@@ -85,11 +80,7 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
 
 
 class JointReadings:
-    """States and targets of joints; one of `World.observers` while any are needed.
-
-    Args:
-        world: The world.
-    """
+    """States and targets of joints; one of `World.observers` while any are needed."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -127,7 +118,8 @@ class JointReadings:
         places = [
             (body.id, joint, body.position_index[joint], body.velocity_index[joint])
             for body in bodies
-            for joint in _movable(body)
+            for joint, freedoms in enumerate(body.velocity_count)
+            if freedoms == 1
         ]
         if not places:
             return np.zeros((0, JOINT_COLUMNS), dtype=np.float32)
@@ -149,7 +141,3 @@ class JointReadings:
                 np.where(applied != 0.0, applied, np.nan),
             )
         ).astype(np.float32)
-
-
-def _movable(body: Body) -> list[int]:
-    return [joint for joint, freedoms in enumerate(body.velocity_count) if freedoms == 1]

@@ -60,12 +60,7 @@ class SceneFeed:
         self._shapes: dict[int, bytes] = {}
 
     def frame(self, extras: dict[str, Any], blocks: Blocks = ()) -> bytes | None:
-        """The present poses, as a message; None if nothing has changed.
-
-        Args:
-            extras: Further items of the message.
-            blocks: Arrays that follow the poses, by name.
-        """
+        """The present poses, and arrays by name, as a message with extras; None if nothing has changed."""
         self._follow_bodies()
         self._follow_nodes()
         poses = self._world.link_pose

@@ -35,12 +35,8 @@ _OTHER_NAME = "This server does not answer to that host name; the option --names
 _WHOLE_ADDRESS = "Open the whole address that the simulation has printed, with its token.\n"
 
 
-def _not_of_a_server(record: logging.LogRecord) -> bool:
-    return record.threadName != _THREAD_NAME
-
-
 # Asyncio's warnings about closed sockets do not belong in the terminal of a script.
-logging.getLogger("asyncio").addFilter(_not_of_a_server)
+logging.getLogger("asyncio").addFilter(lambda record: record.threadName != _THREAD_NAME)
 
 PREFERRED_PORT = 8400
 _FRAMES_PER_SECOND = 60

@@ -139,14 +139,7 @@ class Assets:
 
 
 def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
-    """Message that describes a body, without the poses of its links; a soft body has its present shape.
-
-    Args:
-        body: The body.
-        appearance: The appearance of its world.
-        assets: Meshes and textures on the pages.
-        collisions: Whether to describe the collision shapes, too.
-    """
+    """Message that describes a body, without the poses of its links; a soft body has its present shape."""
     shapes = []
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
@@ -169,11 +162,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
 def _link(body: Body, link: int) -> dict[str, Any]:
     spec = body.link_spec(link)
     frame = inverse(body.link_inertial_frame(link))
-    facts: dict[str, Any] = {
-        "name": spec.name,
-        "position": frame.position,
-        "orientation": frame.orientation,
-    }
+    facts: dict[str, Any] = {"name": spec.name, "position": frame.position, "orientation": frame.orientation}
     if link != BASE:
         facts |= {"joint": spec.joint_name, "kind": spec.joint_type.value, "axis": spec.joint_axis}
         facts["parent"] = spec.parent - BASE

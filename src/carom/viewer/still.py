@@ -21,13 +21,9 @@ _NEAR, _FAR = 0.02, 200.0
 
 
 def still(world: World) -> bytes | None:
-    """A PNG file of the bodies of a world at present, as in the first view of pages.
+    """A PNG file of the bodies of a world at present, as in the first view of pages; None without bodies.
 
-    Args:
-        world: The world; it must not be stepped meanwhile.
-
-    Returns:
-        The file; None if there are no bodies.
+    The world must not be stepped meanwhile.
     """
     from PIL import Image
 

@@ -164,7 +164,11 @@ class Viewer:
             # machines are valid for one script only.
             token = user_token() if is_loopback(host) else fresh_token()
         access = Access(host, token, named)
-        self._server = PageServer(access, port, self._board, self._frame, self._receive, self._page_gone)
+
+        def receive(page: int, told: dict[str, Any]) -> None:
+            self._answers[told["type"]](page, told)
+
+        self._server = PageServer(access, port, self._board, self._frame, receive, self._page_gone)
 
     @property
     def address(self) -> str:
@@ -393,9 +397,6 @@ class Viewer:
         if self._values:
             extras["values"] = self._values.copy()
         return self._feed.frame(extras, self._details.blocks())
-
-    def _receive(self, page: int, told: dict[str, Any]) -> None:
-        self._answers[told["type"]](page, told)
 
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)

@@ -17,11 +17,7 @@ from pybullet._maths.maths import getQuaternionFromEuler
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
-__all__ = [
-    "calculateInverseDynamics",
-    "calculateJacobian",
-    "calculateMassMatrix",
-]
+__all__ = ["calculateInverseDynamics", "calculateJacobian", "calculateMassMatrix"]
 
 Matrix = tuple[tuple[float, ...], ...]
 

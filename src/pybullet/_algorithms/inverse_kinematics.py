@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, overload
@@ -31,10 +31,7 @@ from pybullet._maths.maths import getEulerFromQuaternion
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
-__all__ = [
-    "calculateInverseKinematics",
-    "calculateInverseKinematics2",
-]
+__all__ = ["calculateInverseKinematics", "calculateInverseKinematics2"]
 
 _PROBLEM = "Error in calculateInverseKinematics"
 _NO_POSITION = "calculateInverseKinematics couldn't extract position vector3"
@@ -152,6 +149,7 @@ def calculateInverseKinematics(
         >>> [round(x, 2) + 0.0 for x in p.getLinkState(arm, 6, computeForwardKinematics=1)[4]]
         [0.5, 0.0, 0.5]
     """
+    given = locals()
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseKinematics")
     if endEffectorLinkIndex is _MISSING or targetPosition is _MISSING:
         name = "endEffectorLinkIndex" if endEffectorLinkIndex is _MISSING else "targetPosition"
@@ -161,15 +159,7 @@ def calculateInverseKinematics(
     position = vector3(targetPosition, _NO_POSITION, "targetPosition")
     orientation = _orientation(targetOrientation)
     body = body_of(client, body_id, _PROBLEM)
-    options = _options(
-        body,
-        (lowerLimits, upperLimits, jointRanges, restPoses),
-        jointDamping,
-        solver,
-        currentPositions,
-        maxNumIterations,
-        residualThreshold,
-    )
+    options = _options(body, given)
     link_of(body, link, "endEffectorLinkIndex", _PROBLEM)
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
         # Scripts that do not ask for accuracy may depend on PyBullet's result (trained policies, for
@@ -228,6 +218,7 @@ def calculateInverseKinematics2(
         >>> len(angles)
         7
     """
+    given = locals()
     client = client_of(physicsClientId)
     links = indices(endEffectorLinkIndices, _NO_POSITION, "endEffectorLinkIndices")
     positions = [
@@ -240,15 +231,7 @@ def calculateInverseKinematics2(
         fail(_PROBLEM, f"There are {len(links)} links and {len(positions)} positions for them.")
     links = links[: len(positions)]
     body = body_of(client, bodyUniqueId, _PROBLEM)
-    options = _options(
-        body,
-        (lowerLimits, upperLimits, jointRanges, restPoses),
-        jointDamping,
-        solver,
-        currentPositions,
-        maxNumIterations,
-        residualThreshold,
-    )
+    options = _options(body, given)
     for link in links:
         link_of(body, link, "endEffectorLinkIndices", _PROBLEM)
 
@@ -282,16 +265,10 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
     return rotation(given, _PROBLEM, name)
 
 
-def _options(
-    body: Body,
-    limits: tuple[Any, Any, Any, Any],
-    damping: Any,
-    solver: int,
-    current_positions: Any,
-    iterations: int,
-    threshold: float,
-) -> dict[str, Any]:
-    """The options of `carom.algorithms.inverse_kinematics`."""
+def _options(body: Body, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The options of `carom.algorithms.inverse_kinematics` for the arguments of a call, given by name."""
+    solver, damping, current_positions = given["solver"], given["jointDamping"], given["currentPositions"]
+    iterations, threshold = given["maxNumIterations"], given["residualThreshold"]
     freedoms = sum(body.velocity_count)
     if freedoms == 0:
         fail(_PROBLEM, f"Body {body.id} ({body.name}) has no joint that moves.")
@@ -304,10 +281,8 @@ def _options(
         options["iterations"] = iterations
     if threshold is not _UNSTATED and real(threshold, "residualThreshold") >= 0.0:
         options["threshold"] = threshold
-    if not limits[0] is limits[1] is limits[2] is limits[3] is None:
-        lower, upper, ranges, rest = [
-            _for_each_freedom(values, name, freedoms) for values, name in zip(limits, _LIMITS, strict=True)
-        ]
+    if any(given[name] is not None for name in _LIMITS):
+        lower, upper, ranges, rest = [_for_each_freedom(given[name], name, freedoms) for name in _LIMITS]
         if lower is not None and upper is not None:
             options |= {"lower": lower, "upper": upper, "ranges": ranges, "rest": rest}
     if damping is not None:

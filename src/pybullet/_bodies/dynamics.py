@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
@@ -11,11 +12,7 @@ from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import BASE, body_access, link_or_warning, no_joint
 
-__all__ = [
-    "changeDynamics",
-    "enableJointForceTorqueSensor",
-    "getDynamicsInfo",
-]
+__all__ = ["changeDynamics", "enableJointForceTorqueSensor", "getDynamicsInfo"]
 
 DynamicsInfo = tuple[
     float, float, Vector3, Vector3, Quaternion, float, float, float, float, float, int, float
@@ -29,6 +26,30 @@ _UNCHANGED, _NO_LIMIT = -1, 1
 _ANY_SIZE = frozenset(
     {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
 )
+# Parameters of the whole body.
+_OF_BODY = frozenset(
+    {"sleep_threshold", "linear_damping", "angular_damping"}
+    | {"activation_state", "max_joint_velocity", "collision_margin"}
+)
+# Arguments that are numbers, in PyBullet's order, after those that come first: parameter and conversion.
+_NUMBERS: dict[str, tuple[str, Callable[[Any, str], float]]] = {
+    "mass": ("mass", real),
+    "lateralFriction": ("lateral_friction", real),
+    "spinningFriction": ("spinning_friction", real),
+    "rollingFriction": ("rolling_friction", real),
+    "linearDamping": ("linear_damping", real),
+    "angularDamping": ("angular_damping", real),
+    "jointDamping": ("joint_damping", real),
+    "restitution": ("restitution", real),
+    "contactStiffness": ("contact_stiffness", real),
+    "contactDamping": ("contact_damping", real),
+    "frictionAnchor": ("friction_anchor", integer),
+    "ccdSweptSphereRadius": ("ccd_swept_sphere_radius", real),
+    "activationState": ("activation_state", integer),
+    "contactProcessingThreshold": ("contact_processing_threshold", real),
+    "maxJointVelocity": ("max_joint_velocity", real),
+    "collisionMargin": ("collision_margin", real),
+}
 # Changes of these parameters make a whole `BodyAccess` outdated, or only its equations of motion.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
 _INERTIA = {"mass", "inertia"}
@@ -164,6 +185,7 @@ def changeDynamics(
         >>> p.getDynamicsInfo(cube, -1)[:2]
         (0.2, 0.9)
     """
+    given = locals()
     client = client_of(physicsClientId)
     named_link = integer(linkIndex, "linkIndex")
     changes = _Changes(named_link)
@@ -171,7 +193,7 @@ def changeDynamics(
     if jointLimitForce is not _UNCHANGED:
         changes.take("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
     if sleepThreshold is not _UNCHANGED:
-        changes.take_for_body("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
+        changes.take("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
     if jointLowerLimit is not _NO_LIMIT or jointUpperLimit is not _UNCHANGED:
         lower = real(jointLowerLimit, "jointLowerLimit")
         changes.take_limits(lower, real(jointUpperLimit, "jointUpperLimit"))
@@ -179,39 +201,9 @@ def changeDynamics(
         changes.take_vector("anisotropic_friction", anisotropicFriction, "anisotropicFriction")
     if localInertiaDiagonal is not None:
         changes.take_vector("inertia", localInertiaDiagonal, "localInertiaDiagonal")
-    if mass is not _UNCHANGED:
-        changes.take("mass", real(mass, "mass"))
-    if lateralFriction is not _UNCHANGED:
-        changes.take("lateral_friction", real(lateralFriction, "lateralFriction"))
-    if spinningFriction is not _UNCHANGED:
-        changes.take("spinning_friction", real(spinningFriction, "spinningFriction"))
-    if rollingFriction is not _UNCHANGED:
-        changes.take("rolling_friction", real(rollingFriction, "rollingFriction"))
-    if linearDamping is not _UNCHANGED:
-        changes.take_for_body("linear_damping", real(linearDamping, "linearDamping"))
-    if angularDamping is not _UNCHANGED:
-        changes.take_for_body("angular_damping", real(angularDamping, "angularDamping"))
-    if jointDamping is not _UNCHANGED:
-        changes.take("joint_damping", real(jointDamping, "jointDamping"))
-    if restitution is not _UNCHANGED:
-        changes.take("restitution", real(restitution, "restitution"))
-    if contactStiffness is not _UNCHANGED:
-        changes.take("contact_stiffness", real(contactStiffness, "contactStiffness"))
-    if contactDamping is not _UNCHANGED:
-        changes.take("contact_damping", real(contactDamping, "contactDamping"))
-    if frictionAnchor is not _UNCHANGED:
-        changes.take("friction_anchor", integer(frictionAnchor, "frictionAnchor"))
-    if ccdSweptSphereRadius is not _UNCHANGED:
-        changes.take("ccd_swept_sphere_radius", real(ccdSweptSphereRadius, "ccdSweptSphereRadius"))
-    if activationState is not _UNCHANGED:
-        changes.take_for_body("activation_state", integer(activationState, "activationState"))
-    if contactProcessingThreshold is not _UNCHANGED:
-        threshold = real(contactProcessingThreshold, "contactProcessingThreshold")
-        changes.take("contact_processing_threshold", threshold)
-    if maxJointVelocity is not _UNCHANGED:
-        changes.take_for_body("max_joint_velocity", real(maxJointVelocity, "maxJointVelocity"))
-    if collisionMargin is not _UNCHANGED:
-        changes.take_for_body("collision_margin", real(collisionMargin, "collisionMargin"))
+    for name, (parameter, convert) in _NUMBERS.items():
+        if given[name] is not _UNCHANGED:
+            changes.take(parameter, convert(given[name], name))
 
     if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
         fail("Both contactStiffness and contactDamping needs to be set together.")
@@ -296,21 +288,17 @@ class _Changes:
         self.misdirected: list[str] = []
 
     def take(self, name: str, value: float) -> None:
-        """Take a value that belongs to the named link, unless it is negative."""
+        """Take a value that belongs to the named link or the whole body, unless it is negative."""
         if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
             _refuse_size(name, value)
-        if value >= 0:
-            self.values[name] = value
+        if value < 0:
+            return
+        self.values[name] = value
+        if name in _OF_BODY:
+            self.link = BASE
+        else:
             self.link = self._named_link
             self.misdirected.append(name)
-
-    def take_for_body(self, name: str, value: float) -> None:
-        """Take a value that belongs to the whole body, unless it is negative."""
-        if value > MAX_MAGNITUDE and name not in _ANY_SIZE:
-            _refuse_size(name, value)
-        if value >= 0:
-            self.values[name] = value
-            self.link = BASE
 
     def take_limits(self, lower: float, upper: float) -> None:
         """Take the limits of the named link's joint, unless the lower limit is greater than the upper one."""

@@ -20,10 +20,7 @@ if TYPE_CHECKING:
     from pybullet._bodies.body_access import BodyAccess
     from pybullet._clients.clients import Client
 
-__all__ = [
-    "applyExternalForce",
-    "applyExternalTorque",
-]
+__all__ = ["applyExternalForce", "applyExternalTorque"]
 
 _FRAMES = (WORLD_FRAME, LINK_FRAME)
 _WRONG_FRAME = "flag has to be either WORLD_FRAME or LINK_FRAME"

@@ -11,13 +11,9 @@ from pybullet._clients.clients import clients
 from pybullet._clients.lookup import body_access
 
 if TYPE_CHECKING:
-    from pybullet._bodies.body_access import BodyAccess
-    from pybullet._bodies.link_access import LinkState, LinkStateWithVelocity
+    from pybullet._bodies.body_access import BodyAccess, LinkState, LinkStateWithVelocity
 
-__all__ = [
-    "getLinkState",
-    "getLinkStates",
-]
+__all__ = ["getLinkState", "getLinkStates"]
 
 _NO_STATE = "getLinkState failed."
 _NEGATIVE_BODY = "getLinkState failed; invalid bodyUniqueId"

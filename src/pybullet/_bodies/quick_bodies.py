@@ -17,8 +17,7 @@ from carom.native.quick_calls import Body, Box, Client, Joint, Link, Moments
 if TYPE_CHECKING:
     from carom.model.inertia import MassTerms
     from carom.native.quick_calls import QuickCalls
-    from pybullet._bodies.body_access import BodyAccess
-    from pybullet._bodies.link_access import LinkAccess
+    from pybullet._bodies.body_access import BodyAccess, LinkAccess
     from pybullet._bodies.link_box import LinkBox
     from pybullet._clients.clients import Client as Connection
 
@@ -33,13 +32,7 @@ _MOST_ROOM = 1 << 20
 
 
 class QuickBodies:
-    """The records of a connection's bodies for quick calls; in use until `close`.
-
-    Args:
-        calls: The quick calls.
-        number: Number of the connection.
-        client: The connection.
-    """
+    """The records of a connection's bodies for quick calls, by its number; in use until `close`."""
 
     __slots__ = ("_clients", "_kept", "_number", "_places", "_record", "_shown")
 

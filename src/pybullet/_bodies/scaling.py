@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -49,8 +50,6 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
         fail(_WRONG, f"The factors have to be greater than 0, not {factors}.")
     if body is None:
         return
-
-    from dataclasses import replace
 
     from carom.layouts.flags import LoadFlags
     from carom.model.scaled_shapes import scaled_collisions

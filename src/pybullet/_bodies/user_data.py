@@ -87,11 +87,7 @@ def getUserData(userDataId: int, physicsClientId: int = 0) -> bytes | None:
 
 @exported
 def getUserDataId(
-    bodyUniqueId: int,
-    key: str,
-    linkIndex: int = -1,
-    visualShapeIndex: int = -1,
-    physicsClientId: int = 0,
+    bodyUniqueId: int, key: str, linkIndex: int = -1, visualShapeIndex: int = -1, physicsClientId: int = 0
 ) -> int:
     """The id of a text.
 

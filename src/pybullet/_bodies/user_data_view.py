@@ -25,11 +25,7 @@ Ask = Callable[..., Any]
 
 
 class UserDataView:
-    """The copy of one client.
-
-    Args:
-        ask: Calls a function in the world's process.
-    """
+    """The copy of one client; `ask` calls a function in the world's process."""
 
     def __init__(self, ask: Ask) -> None:
         self._ask = ask
@@ -39,17 +35,13 @@ class UserDataView:
     def call(
         self, function: Function, arguments: Any, keywords: dict[str, Any], go_on: Callable[[], Any]
     ) -> Any:
-        """Answer a call from the copy, or pass the call on to the world and copy the changes.
-
-        Args:
-            function: The function that is called.
-            arguments: Its positional arguments.
-            keywords: Its keyword arguments.
-            go_on: Makes the call in the world's process.
-        """
+        """Answer a call from the copy, or let `go_on` make it in the world's process and copy the changes."""
         reader = READERS.get(function.name)
         if function.name in _LOADING:
-            return self._loaded(go_on())
+            result = go_on()
+            # PyBullet copies the texts that come with bodies loaded from files only on request.
+            self._read_anew(result if isinstance(result, tuple) else (result,))
+            return result
         if reader is None and function.name not in _CHANGING:
             return go_on()
         bound = signature(function.plain).bind(*arguments, **keywords)
@@ -78,11 +70,6 @@ class UserDataView:
                 self._known = UserData()
             case _:
                 self._synchronise(given["bodyUniqueId"], given["bodyUniqueIds"])
-
-    def _loaded(self, result: Any) -> Any:
-        """Copy the texts that come with bodies loaded from files; PyBullet does this only on request."""
-        self._read_anew(result if isinstance(result, tuple) else (result,))
-        return result
 
     def _synchronise(self, one: Any, several: Any) -> None:
         asked = several if several is not None else one

@@ -29,12 +29,7 @@ Vectors = Iterable[Vector]
 
 
 def integer(value: Any, name: str) -> int:
-    """A signed 32-bit integer.
-
-    Raises:
-        TypeError: It is not an integer.
-        OverflowError: It needs more than 32 bits.
-    """
+    """A signed 32-bit integer; raises `TypeError` or, if it needs more bits, `OverflowError` for others."""
     if type(value) is int and _LEAST_INT <= value <= _GREATEST_INT:
         return value
     try:
@@ -49,12 +44,7 @@ def integer(value: Any, name: str) -> int:
 
 
 def real(value: Any, name: str, problem: str = "") -> float:
-    """A finite number; `problem` is PyBullet's error message for other numbers, if it has one.
-
-    Raises:
-        TypeError: It is not a number.
-        pybullet.error: It is infinite or not a number (NaN).
-    """
+    """A finite number; others raise `TypeError`, or `pybullet.error` with `problem` (infinity, NaN)."""
     kind = type(value)
     if kind is float and isfinite(value):
         return value
@@ -68,12 +58,7 @@ def real(value: Any, name: str, problem: str = "") -> float:
 
 
 def bound(value: Any, name: str) -> float:
-    """A number or infinity, which stands for no limit.
-
-    Raises:
-        TypeError: It is not a number.
-        pybullet.error: It is not a number (NaN) or minus infinity.
-    """
+    """A number or infinity, which stands for no limit; NaN and minus infinity raise `pybullet.error`."""
     if type(value) is float and value > -inf:
         return value
     number = _as_float(value, name)
@@ -83,11 +68,7 @@ def bound(value: Any, name: str) -> float:
 
 
 def text(value: Any, name: str) -> str:
-    """A string.
-
-    Raises:
-        TypeError: It is not a string.
-    """
+    """A string; raises `TypeError` for others."""
     if not isinstance(value, str):
         raise TypeError(f"argument must be str, not {type(value).__name__} ({name})")
     return value
@@ -105,15 +86,7 @@ def _as_float(value: Any, name: str) -> float:
 def by_name(
     function: str, names: Sequence[str], arguments: tuple[Any, ...], keywords: dict[str, Any]
 ) -> dict[str, Any]:
-    """The arguments of a call after the first one, by name.
-
-    For functions that can be called with different lists of arguments.
-
-    Args:
-        function: Name of the function.
-        names: Names of the arguments, in order.
-        arguments: The positional arguments.
-        keywords: The keyword arguments.
+    """The arguments of a call after the first one, by name, for functions with different lists of arguments.
 
     Raises:
         TypeError: There are too many arguments, one is unknown, or one is given twice.
@@ -131,11 +104,7 @@ def by_name(
 
 
 def one_body(body_unique_id: Any, body_index: Any, function: str) -> Any:
-    """The body of a call, given as either `bodyUniqueId` or `bodyIndex`.
-
-    Raises:
-        TypeError: Neither or both are given.
-    """
+    """The body of a call, given as `bodyUniqueId` or `bodyIndex`; `TypeError` if neither or both are."""
     if body_unique_id is None and body_index is None:
         raise TypeError(f"{function}() missing required argument 'bodyUniqueId' (pos 1)")
     if body_unique_id is not None and body_index is not None:
@@ -151,16 +120,7 @@ def required(function: str, **arguments: Any) -> None:
 
 
 def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
-    """Finite numbers from any sequence: a list, a tuple, a range or an array of one dimension.
-
-    Args:
-        values: The sequence.
-        problem: PyBullet's error message for a wrong argument.
-        name: Name of the argument.
-
-    Raises:
-        pybullet.error: `values` is not a sequence, or an item is not a finite number.
-    """
+    """Finite numbers from any sequence, also an array of one axis; raises `pybullet.error` for others."""
     if isinstance(values, (list, tuple)):
         try:
             if -inf < sum(values) < inf:
@@ -239,12 +199,7 @@ def moderate(value: float, problem: str, name: str) -> float:
 
 
 def quantity(value: Any, name: str) -> float:
-    """A position, velocity, gain or the like: a finite number that kernels can compute with.
-
-    Raises:
-        TypeError: It is not a number.
-        pybullet.error: It is not finite, or its magnitude is greater than `MAX_MAGNITUDE`.
-    """
+    """A number as from `real` that kernels can compute with: its magnitude is at most `MAX_MAGNITUDE`."""
     return moderate(real(value, name), "", name)
 
 
@@ -272,11 +227,7 @@ def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:
 
 
 def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:
-    """Indices from any sequence of integers or of floats with integer values.
-
-    Raises:
-        pybullet.error: `values` is not a sequence, or an item is not an index.
-    """
+    """Indices from any sequence of integers or of whole floats; raises `pybullet.error` for others."""
     items = sequence(values, problem, name)
     if _ONLY_INTEGERS.issuperset(map(type, items)):
         return items

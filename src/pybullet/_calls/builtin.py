@@ -81,11 +81,9 @@ def exported(function: F) -> F:
 
 
 def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable[[F], F]:
-    """As `exported`, but `help` shows the given signature instead of the Python function's.
+    """As `exported`, but `help` and `inspect.signature` show the given signature, parentheses included.
 
-    Args:
-        signature: The signature that `help` and `inspect.signature` show, parentheses included.
-        usual_form: Converts other forms of the arguments to that of the signature, if there are any.
+    `usual_form` converts other forms of the arguments to that of the signature, if there are any.
     """
 
     def export(function: F) -> F:
@@ -93,10 +91,7 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
         function.__module__ = "pybullet"
         documentation = f"{function.__name__}{signature}\n--\n\n{_documentation(function)}"
         definition = _MethodDefinition(
-            function.__name__.encode(),
-            vectorcall,
-            _METH_FASTCALL_WITH_KEYWORDS,
-            documentation.encode(),
+            function.__name__.encode(), vectorcall, _METH_FASTCALL_WITH_KEYWORDS, documentation.encode()
         )
         _definitions.append(definition)
         builtin = _new_builtin(ctypes.byref(definition), function, "pybullet")

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from carom.description.pose import Quaternion, Vector3
+from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
+from carom.description.transform import quaternion_from_matrix, rotation_matrix
 from pybullet._calls.arguments import rotation, vector3, vector4
 from pybullet._calls.errors import warn_once
 
@@ -16,13 +17,7 @@ from pybullet._calls.errors import warn_once
 def optional_vector3(values: Any, problem: str, name: str) -> Vector3 | None:
     """Three finite numbers; None if not given or, with a warning, if the length is not three.
 
-    Args:
-        values: The argument.
-        problem: PyBullet's error message if one of three items is not a finite number.
-        name: Name of the argument.
-
-    Raises:
-        pybullet.error: There are three items, and one is not a finite number.
+    Raises `pybullet.error` if there are three items, and one is not a finite number.
     """
     return vector3(values, problem, name) if has_length(values, 3, name) else None
 
@@ -35,6 +30,17 @@ def optional_vector4(values: Any, problem: str, name: str) -> tuple[float, float
 def optional_rotation(values: Any, problem: str, name: str) -> Quaternion | None:
     """A quaternion (x, y, z, w) that can be normalised, or None as from `optional_vector3`."""
     return rotation(values, problem, name) if has_length(values, 4, name) else None
+
+
+def optional_pose(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
+    """A pose from two arguments, whose names begin with `prefix`; the identity for those that are None."""
+    if position is None and orientation is None:
+        return IDENTITY
+    place = optional_vector3(position, problem, f"{prefix}Position") or IDENTITY.position
+    turn = optional_rotation(orientation, problem, f"{prefix}Orientation")
+    if turn is None:
+        return Pose(place)
+    return Pose(place, quaternion_from_matrix(rotation_matrix(turn)))
 
 
 def has_length(values: Any, count: int, name: str) -> bool:

@@ -59,12 +59,9 @@ itself), by the name of the function. `carom.native.quick_calls.Parameter` expla
 
 
 class _Installed:
-    """The state of the quick calls in this process.
+    """The state of the quick calls in this process: None before they are installed, or if unavailable.
 
-    Attributes:
-        calls: The quick calls; None before they are installed, or if they are not available.
-        tried: Whether installing them has been tried.
-        is_paused: Whether all calls that name a connection are left to Python.
+    `is_paused`: whether all calls that name a connection are left to Python.
     """
 
     calls: QuickCalls | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from pybullet._calls.constants import (
 from pybullet._calls.errors import fail
 from pybullet._calls.optional_vectors import has_length
 from pybullet._clients.clients import Client, client_of
-from pybullet._maths.camera_maths import Z_UP, Matrix16, frustum, look_at, orbit
+from pybullet._maths.camera_maths import Z_UP, Matrix16, look_at, orbit, window_lens
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,6 +28,12 @@ __all__ = ["getCameraImage"]
 
 _FAILED = "getCameraImage failed."
 _BODY_BITS = (1 << 24) - 1
+_COEFFICIENTS = {
+    "lightDistance": "distance",
+    "lightAmbientCoeff": "ambient",
+    "lightDiffuseCoeff": "diffuse",
+    "lightSpecularCoeff": "specular",
+}
 
 
 @exported
@@ -94,6 +100,7 @@ def getCameraImage(
         >>> colour.shape, depth.shape, bodies.shape
         ((48, 64, 4), (48, 64), (48, 64))
     """
+    given = locals()
     client = client_of(physicsClientId)
     columns, rows = integer(width, "width"), integer(height, "height")
     options = max(integer(flags, "flags"), 0)
@@ -115,18 +122,7 @@ def getCameraImage(
             projector = product(cast, place)
     with client.lock:
         appearance = appearance_of(client.world)
-        light = _changed_light(
-            appearance.light,
-            lightDirection,
-            lightColor,
-            {
-                "distance": real(lightDistance, "lightDistance"),
-                "ambient": real(lightAmbientCoeff, "lightAmbientCoeff"),
-                "diffuse": real(lightDiffuseCoeff, "lightDiffuseCoeff"),
-                "specular": real(lightSpecularCoeff, "lightSpecularCoeff"),
-            },
-            integer(shadow, "shadow"),
-        )
+        light = _changed_light(appearance.light, given)
         try:
             image = renderer_of(client.world).draw(
                 client.world, view, projection, columns, rows, light, projector
@@ -144,13 +140,14 @@ def getCameraImage(
 
 
 def _matrix(values: Any, name: str) -> NDArray[np.float64] | None:
-    """4 x 4 matrix from 16 numbers, column after column; None if not given or, with a warning, not 16."""
+    """A matrix as from `square`; None if not given or, with a warning, without 16 items."""
     if not has_length(values, 16, name):
         return None
-    return _square(numbers(values, _FAILED, name))
+    return square(numbers(values, _FAILED, name))
 
 
-def _square(columns: Sequence[float]) -> NDArray[np.float64]:
+def square(columns: Sequence[float]) -> NDArray[np.float64]:
+    """4 x 4 matrix from 16 numbers, column after column."""
     import numpy as np
 
     return np.array(columns).reshape(4, 4).T
@@ -160,38 +157,36 @@ def view_of_window(client: Client) -> NDArray[np.float64]:
     """View matrix of the window's camera; without a window that of PyBullet's default camera."""
     width, _, view = client.window.camera_info()[:3]
     if width and isinstance(view, tuple):
-        return _square(view)
+        return square(view)
     target = (0.0, 0.0, 0.0)
     eye, up = orbit(target, 1.5, -80.0, -10.0, 0.0, Z_UP)
     default: Matrix16 | None = look_at(eye, target, up)
     assert default is not None
-    return _square(default)
+    return square(default)
 
 
 def _projection_of_window(client: Client) -> NDArray[np.float64]:
     """Projection matrix of the window's camera; without a window that of PyBullet's default camera."""
     width, _, _, projection = client.window.camera_info()[:4]
     if width and isinstance(projection, tuple):
-        return _square(projection)
-    near, far, aspect = 0.01, 1000.0, 4.0 / 3.0
-    return _square(frustum(-aspect * near, aspect * near, -near, near, near, far))
+        return square(projection)
+    return square(window_lens(4.0 / 3.0))
 
 
-def _changed_light(
-    light: Light,
-    direction: Any,
-    colour: Any,
-    coefficients: dict[str, float],
-    shadow: int,
-) -> Light:
-    """The light with the given changes; None and negative numbers stand for no change."""
-    changes: dict[str, Any] = {name: value for name, value in coefficients.items() if value >= 0.0}
-    if has_length(direction, 3, "lightDirection"):
-        changes["direction"] = vector3(direction, _FAILED, "lightDirection")
+def _changed_light(light: Light, given: Mapping[str, Any]) -> Light:
+    """The light with the changes of a call's arguments; None and negative numbers stand for no change."""
+    changes: dict[str, Any] = {}
+    for argument, name in _COEFFICIENTS.items():
+        value = real(given[argument], argument)
+        if value >= 0.0:
+            changes[name] = value
+    shadow = integer(given["shadow"], "shadow")
+    if has_length(given["lightDirection"], 3, "lightDirection"):
+        changes["direction"] = vector3(given["lightDirection"], _FAILED, "lightDirection")
         if not any(changes["direction"]):
             fail(_FAILED, "lightDirection has length 0.")
-    if has_length(colour, 3, "lightColor"):
-        changes["colour"] = vector3(colour, _FAILED, "lightColor")
+    if has_length(given["lightColor"], 3, "lightColor"):
+        changes["colour"] = vector3(given["lightColor"], _FAILED, "lightColor")
     if shadow >= 0:
         changes["shadow"] = shadow != 0
     return replace(light, **changes)

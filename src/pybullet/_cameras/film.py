@@ -12,8 +12,8 @@ from carom.camera import DAYLIGHT, NOTHING
 from carom.recording.recorder import Film
 from carom.recording.video import VideoFile
 from carom.render.renderer import renderer_of
-from pybullet._cameras.camera import view_of_window
-from pybullet._maths.camera_maths import frustum
+from pybullet._cameras.camera import square, view_of_window
+from pybullet._maths.camera_maths import window_lens
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client
@@ -25,7 +25,6 @@ PICTURES_PER_SECOND = 60.0
 _WIDTH, _HEIGHT = 640, 480
 # PyBullet's background.
 _BACKGROUND = (0.7, 0.7, 0.8)
-_NEAR, _FAR = 0.01, 1000.0
 
 
 def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Film:
@@ -41,9 +40,7 @@ def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Fil
     """
     width, height = (int(size) for size in client.window.camera_info()[:2] if isinstance(size, int))
     width, height = width or _WIDTH, height or _HEIGHT
-    aspect = width / height
-    lens = frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR)
-    projection = np.array(lens).reshape(4, 4).T
+    projection = square(window_lens(width / height))
 
     def picture() -> NDArray[np.uint8]:
         world = client.world

@@ -34,47 +34,20 @@ class Client:
     """One connection and its world.
 
     Attributes:
-        logs: Logs of states that are being written.
         method: Connection method: `DIRECT`, `GUI`, ...
-        world: The world of the connection.
         bodies: Direct access to the state of bodies, by id; made on first use and dropped whenever bodies are
             added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
-        plugins: Plugins the script has loaded.
         real_time: `useRealTimeSimulation` as the script set it.
         server: The server for other processes, if there is one.
-        search_path: Additional search directory of this connection.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all
             connections, and keeps it when they end.
-        shapes: Shapes the script has created.
-        states: States the script has saved, by id.
-        window: The graphical interface.
         clock: Steps the world in real time; None if that is not enabled.
         deformable: Whether the last `resetSimulation` had a flag for deformable worlds.
         lock: Held during a step and while bodies are added, removed or change shape. Getters and setters of
             the state do not need it: they read and write single numbers.
     """
-
-    __slots__ = (
-        "_report_analytics",
-        "bodies",
-        "clock",
-        "deformable",
-        "lock",
-        "logs",
-        "method",
-        "origins",
-        "plugins",
-        "real_time",
-        "search_path",
-        "server",
-        "shapes",
-        "states",
-        "time_step",
-        "window",
-        "world",
-    )
 
     latest_search_path: ClassVar[Path | None] = None
 
@@ -150,11 +123,7 @@ remote_clients: dict[int, RemoteClient] = {}
 
 
 def living_client(physics_client_id: Any) -> Client | None:
-    """The client with an id; None if there is none, or if its window was closed, which ends the connection.
-
-    Raises:
-        TypeError: The id is not an integer.
-    """
+    """The client with an id, an integer; None if there is none, or its window was closed, which ends it."""
     number = integer(physics_client_id, "physicsClientId")
     client = clients.get(number)
     if client is not None and not client.window.is_open():
@@ -172,12 +141,7 @@ def why_not_connected(physics_client_id: Any) -> str:
 
 
 def client_of(physics_client_id: Any) -> Client:
-    """The client with an id.
-
-    Raises:
-        pybullet.error: There is no such client.
-        TypeError: The id is not an integer.
-    """
+    """The client with an id; raises `pybullet.error` if there is none, `TypeError` if it is no integer."""
     client = clients.get(physics_client_id) if type(physics_client_id) is int else None
     if client is None or not client.window.is_open():
         client = living_client(physics_client_id)
@@ -187,11 +151,7 @@ def client_of(physics_client_id: Any) -> Client:
 
 
 def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
-    """The client with an id, local or remote; None if there is none, or its server or window is gone.
-
-    Raises:
-        TypeError: The id is not an integer.
-    """
+    """The client with an id, local or remote; None if there is none, or its server or window is gone."""
     number = integer(physics_client_id, "physicsClientId")
     client = remote_clients.get(number)
     if client is not None and not client.is_open():

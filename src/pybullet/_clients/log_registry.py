@@ -4,22 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from carom.scene.observers import SubstepObserver
+from carom.scene.observers import Observer, SubstepObserver
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
 
-class StateLog(Protocol):
-    """Interface of a log: it is called before and after every step, and closed at the end."""
-
-    def before_step(self) -> None:
-        """Called before a step."""
-        ...
-
-    def after_step(self) -> None:
-        """Called after a step."""
-        ...
+class StateLog(Observer, Protocol):
+    """Interface of a log: an observer of the world's steps that is closed at the end."""
 
     def close(self) -> None:
         """Finish the file."""

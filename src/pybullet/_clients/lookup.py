@@ -30,17 +30,7 @@ def no_joint(body: Body, index: int) -> str:
 
 
 def body_of(client: Client, body_id: Any, problem: str) -> Body:
-    """The body with an id.
-
-    Args:
-        client: The connection.
-        body_id: The body.
-        problem: PyBullet's error message if there is no such body.
-
-    Raises:
-        pybullet.error: There is no such body.
-        TypeError: The id is not an integer.
-    """
+    """The body with an id; raises `pybullet.error` with the text `problem` if there is none."""
     body = client.body(body_id)
     if body is None:
         fail(problem, no_body(body_id))
@@ -48,18 +38,7 @@ def body_of(client: Client, body_id: Any, problem: str) -> Body:
 
 
 def link_of(body: Body, link_index: Any, name: str, problem: str) -> int:
-    """The index of a link, -1 for the base.
-
-    Args:
-        body: The body.
-        link_index: The link.
-        name: Name of the argument, for the message.
-        problem: PyBullet's error message if there is no such link.
-
-    Raises:
-        pybullet.error: There is no such link.
-        TypeError: The index is not an integer.
-    """
+    """The index of a link, -1 for the base; raises `pybullet.error` with `problem` if there is none."""
     link = integer(link_index, name)
     if not BASE <= link < body.joint_count:
         fail(problem, f"{name}: body {body.id} ({body.name}) has no link {link}.")
@@ -67,17 +46,7 @@ def link_of(body: Body, link_index: Any, name: str, problem: str) -> int:
 
 
 def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str) -> tuple[Body, int] | None:
-    """A body and the index of one of its links; None, with a warning, if there is no such body or link.
-
-    Args:
-        client: The connection.
-        body_id: The body.
-        link_index: The link, from 0; -1 for the base.
-        function: Name of the called function, for the warning.
-
-    Raises:
-        TypeError: The id or the index is not an integer.
-    """
+    """A body and the index of its link, -1 for the base; None, with a warning, if one does not exist."""
     body, link = client.body(body_id), integer(link_index, "linkIndex")
     if body is None:
         logger.warning("%s: %s", function, no_body(body_id))
@@ -89,18 +58,7 @@ def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str
 
 
 def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: str = "") -> BodyAccess:
-    """Access to a body.
-
-    Args:
-        body_id: The body.
-        physics_client_id: The connection.
-        problem: PyBullet's error message if there is no such body.
-        negative: PyBullet's error message for negative ids, if it has one.
-
-    Raises:
-        pybullet.error: Not connected, or there is no such body.
-        TypeError: An id is not an integer.
-    """
+    """Access to a body; `pybullet.error` with `problem`, or `negative` for negative ids, if there is none."""
     client = client_of(physics_client_id)
     number = integer(body_id, "bodyUniqueId")
     if number not in client.world.bodies:
@@ -109,12 +67,7 @@ def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: st
 
 
 def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint to set it.
-
-    Raises:
-        pybullet.error: Not connected, or there is no such body or joint.
-        TypeError: An id or index is not an integer.
-    """
+    """Access to a joint to set it; raises `pybullet.error` if there is no such body or joint."""
     access = body_access(body_id, physics_client_id, OUT_OF_RANGE)
     index = integer(joint_index, "jointIndex")
     if index not in access.joints:
@@ -123,12 +76,7 @@ def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> Join
 
 
 def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint to read its state: the slow path, for wrong ids and for integers such as 0-d arrays.
-
-    Raises:
-        pybullet.error: Not connected, or there is no such body or joint.
-        TypeError: An id or index is not an integer.
-    """
+    """Access to a joint to read it: the slow path, for wrong ids and for integers such as 0-d arrays."""
     access = body_access(
         body_id, physics_client_id, "getJointState failed.", "getJointState failed; invalid bodyUniqueId"
     )

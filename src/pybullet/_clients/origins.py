@@ -9,13 +9,9 @@ from carom.record import record
 
 @record(eq=False, hot=True)
 class FileLoad:
-    """A call that loaded a file.
+    """A call that loaded `count` bodies from a file, with its arguments except the file, by name.
 
-    Attributes:
-        function: Name of the function.
-        arguments: Its arguments except the file, by name.
-        takes_pose: Whether the function has arguments for the pose of the body.
-        count: Number of bodies loaded.
+    `takes_pose`: whether the function has arguments for the pose of the body.
     """
 
     function: str

@@ -62,12 +62,7 @@ class Plugins:
             self.remove_place(slot)
 
     def search(self, additional: Path | None, last: Path | None) -> AssetSearch:
-        """The directories and archives that are searched for files.
-
-        Args:
-            additional: The directory of `setAdditionalSearchPath`.
-            last: Directory that is searched last.
-        """
+        """The folders and archives searched for files: `additional`, those of the plugin, and `last`."""
         folders: tuple[Path, ...] = ()
         if self.places:
             places = [self.places[slot] for slot in sorted(self.places)]

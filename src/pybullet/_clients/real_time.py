@@ -29,12 +29,7 @@ class Pace:
         self._simulated_until = now
 
     def steps_due(self, now: float, time_step: float) -> int:
-        """Number of steps due; they then count as done.
-
-        Args:
-            now: Time of the clock [s].
-            time_step: Time step of the simulation [s]; it may change from call to call.
-        """
+        """Number of steps of `time_step` [s] due at a time of the clock [s]; they then count as done."""
         earliest = now - max(_GREATEST_LAG, time_step)
         if self._simulated_until < earliest:
             self._simulated_until = earliest

@@ -13,12 +13,9 @@ Shape = TypeVar("Shape")
 
 @record(frozen=False)
 class CollisionShape:
-    """A shape made by `createCollisionShape`.
+    """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 
-    Attributes:
-        collisions: The collision shapes.
-        visuals: The visual shapes, for links without visual shape.
-        used: Whether a body was made of it.
+    `used`: whether a body was made of it.
     """
 
     collisions: tuple[Collision, ...]
@@ -61,12 +58,7 @@ class ShapeTable(Generic[Shape]):
 
 
 class ShapeRegistry:
-    """The shapes of one client.
-
-    Attributes:
-        collisions: Collision shapes.
-        visuals: Visual shapes; each is a tuple of visuals.
-    """
+    """The shapes of one client: collision shapes, and visual shapes, each a tuple of visuals."""
 
     def __init__(self) -> None:
         self.collisions: ShapeTable[CollisionShape] = ShapeTable()

@@ -25,6 +25,7 @@ from pybullet._calls.constants import (
 )
 from pybullet._calls.detours import add_detour
 from pybullet._calls.errors import fail
+from pybullet._calls.options import Target
 from pybullet._clients.clients import (
     MAX_CLIENTS,
     NOT_CONNECTED,
@@ -39,8 +40,7 @@ from pybullet._clients.clients import (
     remote_clients,
     why_not_connected,
 )
-from pybullet._connections.target import Target
-from pybullet._window.window import NoWindow
+from pybullet._window.window import Window
 
 __all__ = [
     "connect",
@@ -166,7 +166,7 @@ def _new_client(method: int, target: Target) -> Client:
     from carom.world.world import World
     from pybullet._bodies.body_access import BodyTable
 
-    client = Client(method, World(), BodyTable(), NoWindow())
+    client = Client(method, World(), BodyTable(), Window())
     if method in _WITH_WINDOW:
         from pybullet._window.page_window import open_window
 

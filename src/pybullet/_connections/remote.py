@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
 from carom.remote.errors import Malformed, NoServer, ServerGone
@@ -28,22 +28,18 @@ EXCEPTIONS = {
     for kind in (TypeError, ValueError, OverflowError, IndexError, KeyError, OSError, MemoryError)
 }
 
-_alive: WeakSet[RemoteClient] = WeakSet()
+at_work: WeakSet[Any] = WeakSet()
+"""Connections and servers of this process, which a forked process leaves to its parent."""
 
 
 class RemoteClient:
-    """A connection to a world in another process.
-
-    Args:
-        method: Connection method: `SHARED_MEMORY`, `TCP`, ...
-        connection: The connection itself.
-    """
+    """A connection to a world in another process."""
 
     def __init__(self, method: int, connection: Connection) -> None:
         self.method = method
         self._connection = connection
         self._user_data = UserDataView(lambda name, *arguments: self._ask(name, list(arguments), {}))
-        _alive.add(self)
+        at_work.add(self)
 
     def call(self, function: Function, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> Any:
         """Calls a function on the server.
@@ -69,7 +65,8 @@ class RemoteClient:
             raise error(f"{name} cannot be called in another process: {problem}") from None
         if kind == RESULT:
             return answer[0]
-        _raise(*answer)
+        exception, text = answer
+        raise EXCEPTIONS.get(exception, error)(text)
 
     def set_timeout(self, seconds: float) -> None:
         """Sets how long to wait for answers [s]."""
@@ -89,11 +86,7 @@ class RemoteClient:
 
 
 def join_server(method: int, address: Address) -> RemoteClient | None:
-    """Connects to a server.
-
-    Returns:
-        The connection; None if there is no server or it does not accept the key; the reason is logged.
-    """
+    """Connects to a server; None if there is none or it does not accept the key, and the reason is logged."""
     from carom.remote.connection import Connection
 
     problem: object = address.nobody
@@ -106,14 +99,10 @@ def join_server(method: int, address: Address) -> RemoteClient | None:
     return None
 
 
-def _raise(name: str, text: str) -> NoReturn:
-    raise EXCEPTIONS.get(name, error)(text)
-
-
 def _leave_to_the_parent() -> None:
     # Two processes on one connection would read each other's answers.
-    for client in list(_alive):
-        client.leave_to_the_parent()
+    for connection in list(at_work):
+        connection.leave_to_the_parent()
 
 
 if hasattr(os, "register_at_fork"):

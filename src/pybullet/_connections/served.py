@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from threading import RLock, current_thread, local
 from typing import Any
-from weakref import WeakSet
 
 from carom.remote.connection import Connection
 from carom.remote.errors import Malformed, NoServer, RemoteError
@@ -17,7 +15,7 @@ from pybullet._bodies.user_data_view import UserDataView
 from pybullet._calls.detours import Function, detour_of, functions, remove_detour
 from pybullet._calls.errors import error, fail, logger
 from pybullet._clients.clients import NOT_CONNECTED, Client, living_client
-from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT
+from pybullet._connections.remote import ERROR, EXCEPTIONS, PROBLEM, RESULT, at_work
 from pybullet._connections.server_options import ServerOptions, reachable
 
 # Time limit for an answer when checking whether a server exists [s].
@@ -26,18 +24,11 @@ _CANNOT_START = "Cannot start the physics server:"
 # This function locks the client itself, but not while it waits because the simulation is paused.
 _STEP = "stepSimulation"
 
-_alive: WeakSet[Served] = WeakSet()
-
 
 class Served:
     """A server for the world of a client in this process, used by clients in other processes.
 
     All clients call the same functions, one call at a time. Only user data are copied for each client.
-
-    Args:
-        number: Id of the client in this process.
-        client: The client in this process.
-        options: Addresses and key of the server.
 
     Raises:
         pybullet.error: A server with the same key or port exists, or it cannot listen at an address.
@@ -66,7 +57,7 @@ class Served:
         except (OSError, RemoteError) as problem:
             self.close()
             fail(_CANNOT_START, f"{problem}")
-        _alive.add(self)
+        at_work.add(self)
 
     @property
     def addresses(self) -> list[tuple[str, int]]:
@@ -167,12 +158,3 @@ def _is_taken(name: str) -> bool:
     except NoServer:
         return False
     return True
-
-
-def _leave_to_the_parent() -> None:
-    for server in list(_alive):
-        server.leave_to_the_parent()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_leave_to_the_parent)

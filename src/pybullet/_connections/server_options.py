@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import os
-import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
 from ipaddress import ip_address
@@ -12,18 +11,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from carom.remote.handshake import new_key
+from carom.remote.private_folder import write_private
 from carom.remote.rendezvous import Note, find
-from pybullet._calls.constants import (
-    GRAPHICS_CLIENT,
-    GRAPHICS_SERVER,
-    GRAPHICS_SERVER_MAIN_THREAD,
-    GRAPHICS_SERVER_TCP,
-    SHARED_MEMORY,
-    TCP,
-    UDP,
-)
+from pybullet._calls import constants
 from pybullet._calls.errors import fail
-from pybullet._connections.target import Target
+from pybullet._calls.options import Target
 
 KEY_VARIABLE = "CAROM_SERVER_KEY"
 """Environment variable with the key of a server."""
@@ -58,12 +50,7 @@ class Meeting(NamedTuple):
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """Options of a server.
-
-    Attributes:
-        meetings: The addresses at which it can be reached.
-        key: The key that clients need.
-    """
+    """Options of a server: the addresses at which it can be reached, and the key that clients need."""
 
     meetings: tuple[Meeting, ...]
     key: bytes
@@ -86,13 +73,9 @@ class Address(NamedTuple):
 
 
 def server_options(method: int, target: Target) -> ServerOptions:
-    """The addresses and the key of a server.
-
-    Raises:
-        pybullet.error: A port is not valid, or the key cannot be used.
-    """
+    """The addresses and the key of a server; raises `pybullet.error` for a wrong port or an unusable key."""
     bind = target.option("bind") or _LOOPBACK
-    graphics = method in (GRAPHICS_SERVER, GRAPHICS_SERVER_MAIN_THREAD)
+    graphics = method in (constants.GRAPHICS_SERVER, constants.GRAPHICS_SERVER_MAIN_THREAD)
     meetings = [Meeting(_GRAPHICS if graphics else _SHARED_MEMORY, _LOOPBACK, 0, target.key)]
     for kind, usual in _DEFAULT_PORTS.items():
         port = target.option(kind)
@@ -103,17 +86,13 @@ def server_options(method: int, target: Target) -> ServerOptions:
 
 
 def address_of(method: int, target: Target) -> Address:
-    """The address of the server for a client's arguments of `connect`.
-
-    Raises:
-        pybullet.error: The file with the key cannot be used.
-    """
-    if method in (SHARED_MEMORY, GRAPHICS_CLIENT):
-        note = find(f"{_SHARED_MEMORY if method == SHARED_MEMORY else _GRAPHICS}-{target.key}")
+    """A server's address for a client's arguments of `connect`; `pybullet.error` for a bad key file."""
+    if method in (constants.SHARED_MEMORY, constants.GRAPHICS_CLIENT):
+        note = find(f"{_SHARED_MEMORY if method == constants.SHARED_MEMORY else _GRAPHICS}-{target.key}")
         nobody = f"No server has the key {target.key}."
         return Address((note,) if note else (), _FOR_EVER, logging.INFO, nobody)
-    assert method in (TCP, UDP, GRAPHICS_SERVER_TCP)
-    kind = _UDP if method == UDP else _TCP
+    assert method in (constants.TCP, constants.UDP, constants.GRAPHICS_SERVER_TCP)
+    kind = _UDP if method == constants.UDP else _TCP
     port = target.port if target.port >= 0 else _DEFAULT_PORTS[kind]
     keys = [_given_key(target)]
     if _is_loopback(target.host):
@@ -160,7 +139,7 @@ def _own_key(target: Target, bind: str) -> bytes:
     if file and not Path(file).exists():
         key = new_key()
         try:
-            _write_private(Path(file), key)
+            write_private(Path(file), key)
         except OSError as problem:
             fail(_CANNOT_START, f"{problem}.")
         return key
@@ -172,19 +151,6 @@ def _own_key(target: Target, bind: str) -> bytes:
             f"set {KEY_VARIABLE}.",
         )
     return given or new_key()
-
-
-def _write_private(file: Path, key: bytes) -> None:
-    # Other users must never be able to read the key: the file of `mkstemp` is private, and it is moved to its
-    # place when it is complete.
-    handle, draft = tempfile.mkstemp(dir=file.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(key)
-        os.replace(draft, file)
-    except OSError:
-        Path(draft).unlink(missing_ok=True)
-        raise
 
 
 def _fit(text: str, origin: str) -> bytes:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, quaternion_from_matrix, rotation_matrix
+from carom.model.body_spec import BodySpec, LinkSpec
 from pybullet._calls.arguments import integer
 from pybullet._calls.errors import logger
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
@@ -19,8 +20,9 @@ from pybullet._clients.clients import Client
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
-    from carom.model.body_spec import BodySpec
-    from pybullet._bodies.link_rows import Place
+
+Place = tuple[int, int]
+"""A body and one of its links."""
 
 BARE_LINK = -2
 """Link index that is reported for a shape without a body."""
@@ -28,13 +30,7 @@ BARE_LINK = -2
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """One side of a query: a link, or a shape without a body.
-
-    Attributes:
-        place: The body and link that are reported.
-        spec: A fixed body with its shapes.
-        pose: Pose of its link frame in the world.
-    """
+    """One side of a query, by its reported place: a fixed body with shapes, and its link frame's pose."""
 
     place: Place
     spec: BodySpec
@@ -44,22 +40,12 @@ class Thing:
 def bare_shape(
     client: Client, number: Any, body_id: int, position: Any, orientation: Any, side: str
 ) -> Thing | None:
-    """A collision shape at a pose; None, with a warning, if there is no such shape.
+    """A collision shape at a pose [m]; None, with a warning, if there is no such shape.
 
-    Args:
-        client: The connection.
-        number: Id of the shape.
-        body_id: Body id given by the script, which is reported.
-        position: Position of the shape [m]; None for the origin.
-        orientation: Its orientation (x, y, z, w); None for no rotation.
-        side: A or B, for error messages.
-
-    Raises:
-        pybullet.error: The position or orientation has a number that is not finite, or the orientation has
-            length 0.
+    `body_id` is the body that is reported, and `side`, A or B, is for error messages: an unusable pose raises
+    `pybullet.error`.
     """
     from carom.layouts.flags import LoadFlags
-    from carom.model.body_spec import BodySpec, LinkSpec
 
     problem = "getClosestPoints failed."
     name = f"collisionShape{side}"
@@ -77,8 +63,6 @@ def bare_shape(
 
 def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
     """One link of a body, or with `BARE_LINK` all; an empty list if there is no such body or link."""
-    from carom.model.body_spec import BodySpec
-
     body = client.world.bodies.get(body_id)
     if body is None:
         return []

@@ -9,10 +9,7 @@ from pybullet._calls.arguments import integer
 from pybullet._calls.builtin import exported
 from pybullet._clients.clients import client_of
 
-__all__ = [
-    "getContactPoints",
-    "performCollisionDetection",
-]
+__all__ = ["getContactPoints", "performCollisionDetection"]
 
 _ANY_BODY = -1
 _ANY_LINK = -2

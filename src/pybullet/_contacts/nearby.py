@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from pybullet._bodies.link_rows import Place, places
 from pybullet._calls.arguments import bound, integer, vector3
 from pybullet._calls.builtin import exported
 from pybullet._clients.clients import client_of
@@ -70,10 +69,8 @@ def getClosestPoints(
     body_a, body_b = integer(bodyA, "bodyA"), integer(bodyB, "bodyB")
     reach = bound(distance, "distance")
     link_a, link_b = integer(linkIndexA, "linkIndexA"), integer(linkIndexB, "linkIndexB")
-    shape_a, shape_b = (
-        integer(collisionShapeA, "collisionShapeA"),
-        integer(collisionShapeB, "collisionShapeB"),
-    )
+    shape_a = integer(collisionShapeA, "collisionShapeA")
+    shape_b = integer(collisionShapeB, "collisionShapeB")
     if shape_a >= 0 or shape_b >= 0:
         from pybullet._contacts.bare_shapes import bare_shape, links_of, nearest_points
 
@@ -84,19 +81,14 @@ def getClosestPoints(
         ):
             bare = bare_shape(client, shape, body, position, orientation, side) if shape >= 0 else None
             sides.append([*([] if bare is None else [bare]), *links_of(client, body, link)])
-        return tuple(
-            [
-                _contact_point(*a, *b, on_a, on_b, normal, gap)
-                for a, b, on_a, on_b, normal, gap in nearest_points(sides[0], sides[1], reach)
-            ]
-        )
+        return tuple([_contact_point(*row) for row in nearest_points(sides[0], sides[1], reach)])
     with client.lock:
         links_a, links_b = _rows(client, body_a, link_a), _rows(client, body_b, link_b)
         bodies, links = world.link_columns
         found = world.queries().nearest(links_a, links_b, reach)
     return tuple(
         [
-            _contact_point(bodies[a], links[a], bodies[b], links[b], on_a, on_b, normal, gap)
+            _contact_point((bodies[a], links[a]), (bodies[b], links[b]), on_a, on_b, normal, gap)
             for a, b, on_a, on_b, normal, gap in found
         ]
     )
@@ -114,22 +106,15 @@ def _rows(client: Client, body_id: int, link: int) -> range:
 
 
 def _contact_point(
-    body_a: int,
-    link_a: int,
-    body_b: int,
-    link_b: int,
-    on_a: Vector3,
-    on_b: Vector3,
-    normal: Vector3,
-    distance: float,
+    a: tuple[int, int], b: tuple[int, int], on_a: Vector3, on_b: Vector3, normal: Vector3, gap: float
 ) -> ContactPoint:
-    return 0, body_a, body_b, link_a, link_b, on_a, on_b, normal, distance, 0.0, 0.0, _NONE, 0.0, _NONE
+    return 0, a[0], b[0], a[1], b[1], on_a, on_b, normal, gap, 0.0, 0.0, _NONE, 0.0, _NONE
 
 
 @exported
 def getOverlappingObjects(
     aabbMin: Sequence[float], aabbMax: Sequence[float], physicsClientId: int = 0
-) -> tuple[Place, ...] | None:
+) -> tuple[tuple[int, int], ...] | None:
     """The links whose bounding boxes overlap an axis-aligned box.
 
     Args:
@@ -151,5 +136,6 @@ def getOverlappingObjects(
     lower = vector3(aabbMin, _BAD_CORNER, "aabbMin")
     upper = vector3(aabbMax, _BAD_CORNER, "aabbMax")
     with client.lock:
-        found = places(client.world, client.world.queries().overlapping(lower, upper))
-    return tuple(sorted(place for place in found if place is not None)) or None
+        places = client.world.link_places
+        found = [places[row] for row in client.world.queries().overlapping(lower, upper)]
+    return tuple(sorted(found)) or None

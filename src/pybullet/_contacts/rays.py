@@ -57,10 +57,8 @@ def rayTest(
     client = client_of(physicsClientId)
     start = vector3(rayFromPosition, _BAD_ITEM, "rayFromPosition")
     end = vector3(rayToPosition, _BAD_ITEM, "rayToPosition")
-    mask, number = (
-        integer(collisionFilterMask, "collisionFilterMask"),
-        integer(reportHitNumber, "reportHitNumber"),
-    )
+    mask = integer(collisionFilterMask, "collisionFilterMask")
+    number = integer(reportHitNumber, "reportHitNumber")
     with client.lock:
         hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
     client.window.show_rays((start,), (end,), (hit,))

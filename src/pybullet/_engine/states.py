@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from carom.errors import CaromError
 from pybullet._calls.arguments import integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -70,9 +71,6 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
     """
     client = client_of(physicsClientId)
     number = integer(stateId, "stateId")
-
-    from carom.errors import CaromError
-
     with client.lock:
         if number >= 0 or fileName is None:
             if number not in client.states:
@@ -160,9 +158,6 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
     """
     client = client_of(physicsClientId)
     path = find_file(client, text(bulletFileName, "bulletFileName"), _CANNOT_LOAD)
-
-    from carom.errors import CaromError
-
     with client.lock:
         client.bodies.forget_all()
         try:

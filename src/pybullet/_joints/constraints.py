@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose
+from carom.layouts.codes import UserConstraintKind
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_FIXED, JOINT_GEAR, JOINT_POINT2POINT, JOINT_PRISMATIC
@@ -16,7 +16,6 @@ from pybullet._clients.lookup import link_of, no_body
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
-    from carom.layouts.codes import UserConstraintKind
     from carom.model.soft_arrays import Anchor
     from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
@@ -107,7 +106,7 @@ def createConstraint(
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     with client.lock:
         constraint = client.world.tie(
-            _kind(kind),
+            UserConstraintKind(kind),
             parent,
             parent_link,
             child,
@@ -370,13 +369,6 @@ def _body(client: Client, number: int, name: str) -> Body:
     if body is None:
         fail(_FAILED, f"{name}: {no_body(number)}")
     return body
-
-
-@cache
-def _kind(joint_type: int) -> UserConstraintKind:
-    from carom.layouts.codes import UserConstraintKind
-
-    return UserConstraintKind(joint_type)
 
 
 def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: int) -> None:

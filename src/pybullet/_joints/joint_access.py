@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 Wrench = tuple[float, ...]
 JointState = tuple[float, float, Wrench, float]
 MultiDofState = tuple[tuple[float, ...], tuple[float, ...], Wrench, tuple[float, ...]]
+Gain = float | Sequence[float]
+MultiDofCommand = tuple[Sequence[float], Sequence[float], Sequence[float], Gain, Gain, float, Gain]
+"""Target position and velocity, maximum force, kp, kd, maximum velocity and damping.
+
+Each sequence has one number for each dof (a position may be a quaternion); one of the wrong length counts as
+not given.
+"""
 
 NO_WRENCH = (0.0,) * 6
 _DOUBLE = 8
@@ -87,23 +94,11 @@ class JointAccess:
 
     def add_torques(self, torques: Sequence[float]) -> None:
         """Add to the torques of the next step; ignored unless there is one for each degree of freedom."""
+        if torques and len(torques) == self.body.velocity_count[self.index]:
+            self.motor.add_torques(torques)
 
-    def command_multi_dof(
-        self,
-        mode: int,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float | Sequence[float],
-        kd: float | Sequence[float],
-        clamp: float,
-        damping: float | Sequence[float],
-    ) -> None:
-        """Set the motor or the PD controller, as the functions for joints with several dofs do.
-
-        Each sequence has one number for each dof (a position may be a quaternion). A sequence of the wrong
-        length counts as not given.
-        """
+    def command_multi_dof(self, mode: int, command: MultiDofCommand) -> None:
+        """Set the motor or the PD controller, as the functions for joints with several dofs do."""
 
 
 class AxisJoint(JointAccess):
@@ -136,21 +131,8 @@ class AxisJoint(JointAccess):
         position, velocity, reaction, torque = self.state()
         return ((position,), (velocity,), reaction, (torque,))
 
-    def add_torques(self, torques: Sequence[float]) -> None:
-        if len(torques) == 1:
-            self.motor.add_torques(torques)
-
-    def command_multi_dof(
-        self,
-        mode: int,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float | Sequence[float],
-        kd: float | Sequence[float],
-        clamp: float,
-        damping: float | Sequence[float],
-    ) -> None:
+    def command_multi_dof(self, mode: int, command: MultiDofCommand) -> None:
+        position, velocity, force, kp, kd, clamp, _ = command
         has_position, has_velocity = len(position) == 1, len(velocity) == 1
         if has_position or has_velocity:
             self.motor.command(
@@ -158,8 +140,8 @@ class AxisJoint(JointAccess):
                 position[0] if has_position else 0.0,
                 velocity[0] if has_velocity else 0.0,
                 force[0] if len(force) == 1 else _UNSTATED_FORCE,
-                _first_gain(kp, 1, has_position),
-                _first_gain(kd, 1, has_velocity),
+                _first(kp, (1,), _UNSTATED_GAIN if has_position else 0.0),
+                _first(kd, (1,), _UNSTATED_GAIN if has_velocity else 0.0),
                 clamp,
             )
         elif clamp > 0.0:
@@ -181,12 +163,7 @@ class MultiDofJoint(JointAccess):
         self.motor = kind(client.world, client, self.u)
 
     def state(self) -> JointState:
-        return (
-            self.positions[self.q],
-            self.velocities[self.u],
-            self._reaction(),
-            0.0,
-        )
+        return (self.positions[self.q], self.velocities[self.u], self._reaction(), 0.0)
 
     def multi_dof_state(self) -> MultiDofState:
         q, u, time_step = self.q, self.u, self.client.time_step
@@ -197,24 +174,11 @@ class MultiDofJoint(JointAccess):
             tuple([impulse / time_step for impulse in self.impulses[u : u + self.dofs].tolist()]),
         )
 
-    def add_torques(self, torques: Sequence[float]) -> None:
-        if len(torques) == self.body.velocity_count[self.index]:
-            self.motor.add_torques(torques)
-
-    def command_multi_dof(
-        self,
-        mode: int,
-        position: Sequence[float],
-        velocity: Sequence[float],
-        force: Sequence[float],
-        kp: float | Sequence[float],
-        kd: float | Sequence[float],
-        clamp: float,
-        damping: float | Sequence[float],
-    ) -> None:
+    def command_multi_dof(self, mode: int, command: MultiDofCommand) -> None:
         motor = self.motor
         if mode != POSITION or not isinstance(motor, SphericalMotor):
             return
+        position, velocity, force, kp, kd, clamp, damping = command
         has_position, has_velocity = len(position) == 4, len(velocity) == 3
         if not (has_position or has_velocity):
             return
@@ -226,9 +190,9 @@ class MultiDofJoint(JointAccess):
             # Unless forces, kp and kd are all given for each axis, one value of each holds for all axes.
             greatest = force[0] if len(force) in (1, 3) else _UNSTATED_FORCE
             forces = (greatest,) * 3
-            kps = (_first_gain(kp, 3, has_position),) * 3
-            kds = (_first_gain(kd, 3, has_velocity),) * 3
-        dampings = damping if _is_triple(damping) else (_first_damping(damping),) * 3
+            kps = (_first(kp, (1, 3), _UNSTATED_GAIN if has_position else 0.0),) * 3
+            kds = (_first(kd, (1, 3), _UNSTATED_GAIN if has_velocity else 0.0),) * 3
+        dampings = damping if _is_triple(damping) else (_first(damping, (1,), 1.0),) * 3
         motor.aim_at_orientation(target, rate, forces, kps, kds, dampings, clamp)
 
 
@@ -240,20 +204,12 @@ def joint_access(client: Client, body: Body, index: int) -> JointAccess:
     return MultiDofJoint(client, body, index) if freedoms else JointAccess(client, body, index)
 
 
-def _is_triple(values: float | Sequence[float]) -> TypeGuard[Sequence[float]]:
+def _is_triple(values: Gain) -> TypeGuard[Sequence[float]]:
     return not isinstance(values, (int, float)) and len(values) == 3
 
 
-def _first_gain(gain: float | Sequence[float], dofs: int, targeted: bool) -> float:
-    """The gain of the first degree of freedom; a sequence of the wrong length counts as not given."""
-    if isinstance(gain, (int, float)):
-        return gain
-    if len(gain) in (1, dofs):
-        return gain[0]
-    return _UNSTATED_GAIN if targeted else 0.0
-
-
-def _first_damping(damping: float | Sequence[float]) -> float:
-    if isinstance(damping, (int, float)):
-        return damping
-    return damping[0] if len(damping) == 1 else 1.0
+def _first(values: Gain, lengths: tuple[int, ...], otherwise: float) -> float:
+    """The number of the first degree of freedom; `otherwise` for a sequence of another length."""
+    if isinstance(values, (int, float)):
+        return values
+    return values[0] if len(values) in lengths else otherwise

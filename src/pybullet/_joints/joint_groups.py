@@ -27,10 +27,7 @@ class JointGroup:
     def command(self, mode: int, *lists: Iterable[float] | None) -> None:
         """Set the motor of each joint as `setJointMotorControl2` does. After an error nothing has been set.
 
-        Args:
-            mode: Velocity, torque or position control.
-            *lists: Positions, velocities, forces, position gains and velocity gains; a number for each joint,
-                or None for the defaults.
+        The lists are positions, velocities, forces, position gains and velocity gains; None for defaults.
 
         Raises:
             ValueError: Some joints are neither revolute nor prismatic, the mode is another one, or a number

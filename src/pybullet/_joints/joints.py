@@ -142,7 +142,10 @@ def getJointStates(
         joints = clients[physicsClientId].bodies[bodyUniqueId].joints
         return tuple([joints[index].state() for index in jointIndices]) or None
     except (KeyError, TypeError, ValueError):
-        requested = _requested(bodyUniqueId, jointIndices, physicsClientId)
+        client_of(physicsClientId)
+        if integer(bodyUniqueId, "bodyUniqueId") < 0:
+            body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+        requested = indices(jointIndices, NO_INDICES, "jointIndices")
         if not requested:
             return None
         access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
@@ -335,14 +338,6 @@ def resetJointStatesMultiDof(
     with client.lock:
         for joint, position, velocity in resets:
             _reset(joint, position, velocity)
-
-
-def _requested(body_id: int, joint_indices: Indices, physics_client_id: int) -> tuple[int, ...]:
-    """The joint indices of a query, after checks of the connection and of the sign of the body id."""
-    client_of(physics_client_id)
-    if integer(body_id, "bodyUniqueId") < 0:
-        body_access(body_id, physics_client_id, _NO_STATE, _NEGATIVE_BODY)
-    return indices(joint_indices, NO_INDICES, "jointIndices")
 
 
 def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:

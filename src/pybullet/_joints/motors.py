@@ -27,11 +27,7 @@ from pybullet._clients.lookup import joint_access
 from pybullet._joints.joints import NO_INDICES
 from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
-__all__ = [
-    "setJointMotorControl",
-    "setJointMotorControl2",
-    "setJointMotorControlArray",
-]
+__all__ = ["setJointMotorControl", "setJointMotorControl2", "setJointMotorControlArray"]
 
 _ILLEGAL_MODE = "Illegal control mode."
 _UNPARSED = "Error parsing arguments in setJointControl."
@@ -140,10 +136,12 @@ def setJointMotorControl2(
     required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
     joint = joint_access(body, jointIndex, physicsClientId)
     mode = integer(controlMode, "controlMode")
+    # A torque has to be finite, the maximum force of a motor may be infinite.
+    checked_force = real if mode == TORQUE_CONTROL else bound
     command = (
         quantity(targetPosition, "targetPosition"),
         quantity(targetVelocity, "targetVelocity"),
-        _force(force, mode, "force"),
+        checked_force(force, "force"),
         quantity(positionGain, "positionGain"),
         quantity(velocityGain, "velocityGain"),
         bound(maxVelocity, "maxVelocity"),
@@ -342,11 +340,6 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
     joint.motor.command(
         mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP
     )
-
-
-def _force(value: Any, mode: int, name: str) -> float:
-    """A checked force: a torque has to be finite, the maximum force of a motor may be infinite."""
-    return real(value, name) if mode == TORQUE_CONTROL else bound(value, name)
 
 
 def _one_each(

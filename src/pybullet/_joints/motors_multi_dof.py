@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import chain
 from math import inf
-from typing import TYPE_CHECKING, Any, SupportsFloat
+from typing import Any, SupportsFloat
 
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
@@ -27,17 +27,12 @@ from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no
 from pybullet._joints.joints import NO_INDICES
 from pybullet._joints.motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
-if TYPE_CHECKING:
-    from carom.scene.body import Body
-
-__all__ = [
-    "setJointMotorControlMultiDof",
-    "setJointMotorControlMultiDofArray",
-]
+__all__ = ["setJointMotorControlMultiDof", "setJointMotorControlMultiDofArray"]
 
 _ILLEGAL_MODE = "Illegal control mode."
 _NO_CLAMP = -1.0
 _NO_DAMPING = 1.0
+_LISTS = ("targetPositions", "targetVelocities", "forces", "positionGains", "velocityGains")
 _USUAL_LISTS = frozenset((list, tuple))
 _QUATERNION = 4
 _USUAL_NUMBERS = frozenset((float, int))
@@ -99,7 +94,7 @@ def setJointMotorControlMultiDof(
     elif mode == POSITION_CONTROL:
         if len(position) == _QUATERNION:
             _check_rotation(position)
-        joint.command_multi_dof(mode, position, velocity, forces, kp, kd, clamp, damped)
+        joint.command_multi_dof(mode, (position, velocity, forces, kp, kd, clamp, damped))
     else:
         fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
 
@@ -147,18 +142,13 @@ def setJointMotorControlMultiDofArray(
         ...     arm, [2, 3], p.POSITION_CONTROL, targetPositions=[[0.1], [0.5]], forces=[[200], [200]]
         ... )
     """
+    given = locals()
     client = client_of(physicsClientId)
     mode = integer(controlMode, "controlMode")
     if mode not in (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of such joints.")
     requested = indices(jointIndices, NO_INDICES, "jointIndices")
-    lists = {
-        "targetPositions": _entries(targetPositions, "targetPositions"),
-        "targetVelocities": _entries(targetVelocities, "targetVelocities"),
-        "forces": _entries(forces, "forces"),
-        "positionGains": _entries(positionGains, "positionGains"),
-        "velocityGains": _entries(velocityGains, "velocityGains"),
-    }
+    lists = {name: _entries(given[name], name) for name in _LISTS}
     count = len(requested)
     if count == 0 or any(entries and len(entries) != count for entries in lists.values()):
         return
@@ -177,7 +167,11 @@ def setJointMotorControlMultiDofArray(
         if len(position) == _QUATERNION:
             _check_rotation(position)
     if mode == STABLE_PD_CONTROL:
-        _stable_pd(access.body, requested, positions, velocities, bounds, kps, kds, client.time_step)
+        from carom.algorithms.stable_pd import stable_pd_torques
+
+        body, columns = access.body, zip(positions, velocities, bounds, kps, kds, strict=True)
+        torques = stable_pd_torques(body, dict(zip(requested, columns, strict=True)), client.time_step)
+        body.world.joint_torque[body.first_velocity :][: len(torques)] += torques
         return
     for joint, position, velocity, force, kp, kd in zip(
         joints, positions, velocities, bounds, kps, kds, strict=True
@@ -185,26 +179,7 @@ def setJointMotorControlMultiDofArray(
         if mode == TORQUE_CONTROL:
             joint.add_torques(force)
         else:
-            joint.command_multi_dof(mode, position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING)
-
-
-def _stable_pd(
-    body: Body,
-    joints: Sequence[int],
-    positions: Sequence[Sequence[float]],
-    velocities: Sequence[Sequence[float]],
-    forces: Sequence[Sequence[float]],
-    kps: Sequence[float],
-    kds: Sequence[float],
-    time_step: float,
-) -> None:
-    """Add the torques of a stable PD controller to those of the next step."""
-    from carom.algorithms.stable_pd import stable_pd_torques
-
-    columns = zip(positions, velocities, forces, kps, kds, strict=True)
-    torques = stable_pd_torques(body, dict(zip(joints, columns, strict=True)), time_step)
-    first = body.first_velocity
-    body.world.joint_torque[first : first + len(torques)] += torques
+            joint.command_multi_dof(mode, (position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING))
 
 
 def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[Sequence[float]]:

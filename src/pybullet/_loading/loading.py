@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from carom.description import Pose
+from carom.errors import CaromError
 from pybullet._calls.arguments import Vector, by_name, integer, moderate, real, rotation, text, vector3
 from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.errors import fail
@@ -13,10 +14,7 @@ from pybullet._clients.clients import client_of
 from pybullet._clients.origins import FileLoad
 from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
 
-__all__ = [
-    "loadURDF",
-    "setAdditionalSearchPath",
-]
+__all__ = ["loadURDF", "setAdditionalSearchPath"]
 
 _CANNOT_LOAD = "Cannot load URDF file."
 _LEGACY_POSE = ("startPosX", "startPosY", "startPosZ", "startOrnX", "startOrnY", "startOrnZ", "startOrnW")
@@ -123,7 +121,6 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         fail("Empty filename, method expects 1, 4 or 8 arguments.")
     warn_of_coordinates("loadURDF", maximal)
 
-    from carom.errors import CaromError
     from carom.formats.search import path_of
     from carom.soft.from_urdf import urdf_body
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from carom.errors import CaromError
 from pybullet._calls.arguments import integer, moderate, real, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
@@ -121,8 +122,6 @@ def _load(
     client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
 ) -> tuple[int, ...]:
     """Load all bodies of a file into the world of a client, or none if there is an error."""
-    from carom.errors import CaromError
-
     try:
         bodies = read(client.search())
     except CaromError as error:

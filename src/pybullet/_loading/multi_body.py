@@ -9,6 +9,7 @@ from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose
 from carom.description.joint import NEEDS_AXIS
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
+from carom.errors import CaromError
 from pybullet._calls.arguments import (
     Indices,
     Vector,
@@ -23,7 +24,7 @@ from pybullet._calls.arguments import (
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLUTE, JOINT_SPHERICAL
 from pybullet._calls.errors import fail, logger
-from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import ShapeTable
 from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
@@ -43,9 +44,6 @@ JOINT_TYPES = {
     JOINT_SPHERICAL: JointType.SPHERICAL,
     JOINT_FIXED: JointType.FIXED,
 }
-
-_ORIGIN = (0.0, 0.0, 0.0)
-_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 @overload
@@ -177,38 +175,23 @@ def createMultiBody(
         >>> p.getNumJoints(pendulum)
         1
     """
+    given = locals()
     client = client_of(physicsClientId)
     maximal, bits = integer(useMaximalCoordinates, "useMaximalCoordinates"), integer(flags, "flags")
-    position = optional_vector3(basePosition, _FAILED, "basePosition") or _ORIGIN
-    orientation = _rotation(optional_rotation(baseOrientation, _FAILED, "baseOrientation"), "baseOrientation")
-    lists = _link_lists(
-        linkMasses=linkMasses,
-        linkCollisionShapeIndices=linkCollisionShapeIndices,
-        linkVisualShapeIndices=linkVisualShapeIndices,
-        linkPositions=linkPositions,
-        linkOrientations=linkOrientations,
-        linkInertialFramePositions=linkInertialFramePositions,
-        linkInertialFrameOrientations=linkInertialFrameOrientations,
-        linkParentIndices=linkParentIndices,
-        linkJointTypes=linkJointTypes,
-        linkJointAxis=linkJointAxis,
-    )
+    pose = optional_pose(basePosition, baseOrientation, _FAILED, "base")
+    lists = _link_lists({name: values for name, values in given.items() if name.startswith("link")})
     places = None if batchPositions is None else sequence(batchPositions, _FAILED, "batchPositions")
     batch = [vector3(place, _FAILED, "batchPositions") for place in places or ()]
-    base_frame = Pose(
-        optional_vector3(baseInertialFramePosition, _FAILED, "baseInertialFramePosition") or _ORIGIN,
-        _rotation(
-            optional_rotation(baseInertialFrameOrientation, _FAILED, "baseInertialFrameOrientation"),
-            "baseInertialFrameOrientation",
-        ),
-    )
+    inertial = baseInertialFramePosition, baseInertialFrameOrientation
+    base_frame = optional_pose(*inertial, _FAILED, "baseInertialFrame")
     base = _link(
         client, 0, _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
     )
     links = [base, *_links(client, lists)]
     warn_of_coordinates("createMultiBody", maximal)
     spec = _assembled(Robot("", tuple(links), tuple(_joints(lists))), max(bits, 0))
-    ids = add_bodies(client, [(spec, Pose(place, orientation)) for place in batch or [position]], _FAILED)
+    poses = [Pose(place, pose.orientation) for place in batch or [pose.position]]
+    ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
         shape = client.shapes.collisions.get(integer(number, "collision shape"))
         if shape is not None:
@@ -216,7 +199,7 @@ def createMultiBody(
     return ids if batch else ids[0]
 
 
-def _link_lists(**lists: Any) -> dict[str, tuple[Any, ...]]:
+def _link_lists(lists: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
     """The link lists by name, after a check that their lengths are equal."""
     items = {
         name: () if values is None else sequence(values, "expected a sequence", name)
@@ -232,7 +215,7 @@ def _link_lists(**lists: Any) -> dict[str, tuple[Any, ...]]:
 def _links(client: Client, lists: dict[str, tuple[Any, ...]]) -> list[Link]:
     columns = zip(
         _each(lists, "linkMasses", _mass),
-        _each(lists, "linkInertialFramePositions", lambda values, name: vector3(values, _FAILED, name)),
+        _each(lists, "linkInertialFramePositions", _vector),
         _each(lists, "linkInertialFrameOrientations", _rotation),
         lists["linkCollisionShapeIndices"],
         lists["linkVisualShapeIndices"],
@@ -250,12 +233,16 @@ def _joints(lists: dict[str, tuple[Any, ...]]) -> list[Joint]:
     columns = zip(
         parents,
         _each(lists, "linkJointTypes", _joint_type),
-        _each(lists, "linkPositions", lambda values, name: vector3(values, _FAILED, name)),
+        _each(lists, "linkPositions", _vector),
         _each(lists, "linkOrientations", _rotation),
-        _each(lists, "linkJointAxis", lambda values, name: vector3(values, _FAILED, name)),
+        _each(lists, "linkJointAxis", _vector),
         strict=True,
     )
     return [_joint(number, *column) for number, column in enumerate(columns, start=1)]
+
+
+def _vector(values: Any, name: str) -> Vector3:
+    return vector3(values, _FAILED, name)
 
 
 def _each(lists: dict[str, tuple[Any, ...]], name: str, convert: Callable[[Any, str], Any]) -> list[Any]:
@@ -270,8 +257,6 @@ def _mass(value: Any, name: str) -> float:
 
 
 def _rotation(values: Any, name: str) -> Quaternion:
-    if values is None:
-        return _UPRIGHT
     return quaternion_from_matrix(rotation_matrix(rotation(values, _FAILED, name)))
 
 
@@ -333,7 +318,6 @@ def _joint(
 
 
 def _assembled(robot: Robot, flags: int) -> BodySpec:
-    from carom.errors import CaromError
     from carom.layouts.flags import LoadFlags
     from carom.model.assemble import assemble
 

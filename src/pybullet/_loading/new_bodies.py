@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from carom.description import Mesh
+from carom.errors import CaromError
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import Client
 from pybullet._clients.origins import FileLoad, Origin
@@ -24,27 +26,13 @@ def warn_of_coordinates(function: str, use_maximal: int) -> None:
 
 
 def add_bodies(
-    client: Client,
-    bodies: Sequence[tuple[BodySpec, Pose]],
-    problem: str,
-    load: FileLoad | None = None,
+    client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str, load: FileLoad | None = None
 ) -> tuple[int, ...]:
-    """Add bodies to the world of a client.
+    """Add bodies to the world of a client, each with the pose of its base's link frame; returns their ids.
 
-    Args:
-        client: The client.
-        bodies: The description of each body, and the world pose of its base's link frame.
-        problem: PyBullet's error message if a body cannot be created.
-        load: The call that loads the bodies, if they come from a file.
-
-    Returns:
-        The ids of the bodies.
-
-    Raises:
-        pybullet.error: The file of a mesh cannot be used. The world is then unchanged.
+    `load` is the call that loads them from a file. If the file of a mesh cannot be used, `pybullet.error` is
+    raised, with `problem` first, and the world is unchanged.
     """
-    from carom.errors import CaromError
-
     try:
         with client.lock:
             client.bodies.forget_all()
@@ -66,7 +54,6 @@ def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
 
     Otherwise the first image reads them, because they are larger than a robot's other files.
     """
-    from carom.description import Mesh
     from carom.formats.files import is_fresh
 
     paths = {

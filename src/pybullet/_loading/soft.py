@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from carom.description import Pose
+from carom.errors import CaromError
 from pybullet._calls.arguments import Vector, integer, moderate, real, rotation, text, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -13,14 +15,28 @@ from pybullet._clients.clients import Client, client_of
 from pybullet._clients.origins import FileLoad
 from pybullet._loading.new_bodies import add_bodies
 
-if TYPE_CHECKING:
-    from carom.model.body_spec import BodySpec
-    from carom.soft.materials import NeoHookean, Springs
-
 __all__ = ["loadSoftBody"]
 
 _CANNOT_LOAD = "Cannot load soft body."
 _DEFAULT_MASS, _DEFAULT_MARGIN = 1.0, 0.02
+# Arguments that are numbers, and their conversion.
+_PARAMETERS: dict[str, Callable[[Any, str], Any]] = {
+    "scale": real,
+    "mass": real,
+    "collisionMargin": real,
+    "useMassSpring": integer,
+    "useBendingSprings": integer,
+    "useNeoHookean": integer,
+    "springElasticStiffness": real,
+    "springDampingStiffness": real,
+    "springDampingAllDirections": integer,
+    "springBendingStiffness": real,
+    "NeoHookeanMu": real,
+    "NeoHookeanLambda": real,
+    "NeoHookeanDamping": real,
+    "frictionCoeff": real,
+    "useSelfCollision": integer,
+}
 
 
 @exported
@@ -92,116 +108,60 @@ def loadSoftBody(
         >>> p.getDynamicsInfo(cloth, -1)[10]
         3
     """
+    given = locals()
     name, simulated = text(fileName, "fileName"), text(simFileName, "simFileName")
     position, orientation = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
     if basePosition is not None:
         position = vector3(basePosition, "Cannot convert basePosition.", "basePosition")
     if baseOrientation is not None:
         orientation = rotation(baseOrientation, "Cannot convert baseOrientation.", "baseOrientation")
-    factor, weight = real(scale, "scale"), real(mass, "mass")
-    margin, friction = real(collisionMargin, "collisionMargin"), real(frictionCoeff, "frictionCoeff")
-    stiffness, bending = (
-        real(springElasticStiffness, "springElasticStiffness"),
-        real(springBendingStiffness, "springBendingStiffness"),
-    )
-    damping = real(springDampingStiffness, "springDampingStiffness")
-    solid_numbers = (
-        real(NeoHookeanMu, "NeoHookeanMu"),
-        real(NeoHookeanLambda, "NeoHookeanLambda"),
-        real(NeoHookeanDamping, "NeoHookeanDamping"),
-    )
+    numbers = {parameter: convert(given[parameter], parameter) for parameter, convert in _PARAMETERS.items()}
     real(repulsionStiffness, "repulsionStiffness")
     integer(useFaceContact, "useFaceContact")
-    all_directions = integer(springDampingAllDirections, "springDampingAllDirections") != 0
-    with_springs, bends = (
-        integer(useMassSpring, "useMassSpring"),
-        integer(useBendingSprings, "useBendingSprings"),
-    )
-    is_solid, collides = (
-        integer(useNeoHookean, "useNeoHookean"),
-        integer(useSelfCollision, "useSelfCollision"),
-    )
     client = client_of(physicsClientId)
     if not name:
         return -1
-
-    from carom.soft.materials import NeoHookean, Springs
-
-    springs = solid = None
-    if with_springs:
-        springs = Springs(stiffness, damping, bending if bends else 0.0, all_directions)
-    if is_solid:
-        solid = NeoHookean(*solid_numbers)
-    spec = _spec(
-        client,
-        name,
-        simulated,
-        moderate(factor, _CANNOT_LOAD, "scale") if factor > 0.0 else 1.0,
-        weight if weight > 0.0 else _DEFAULT_MASS,
-        margin if margin > 0.0 else _DEFAULT_MARGIN,
-        friction,
-        springs,
-        solid,
-        self_collision=collides != 0,
-    )
-    arguments: dict[str, float | str] = {
-        "scale": factor,
-        "mass": weight,
-        "collisionMargin": margin,
-        "useMassSpring": with_springs,
-        "useBendingSprings": bends,
-        "useNeoHookean": is_solid,
-        "springElasticStiffness": stiffness,
-        "springDampingStiffness": damping,
-        "springDampingAllDirections": int(all_directions),
-        "springBendingStiffness": bending,
-        "NeoHookeanMu": solid_numbers[0],
-        "NeoHookeanLambda": solid_numbers[1],
-        "NeoHookeanDamping": solid_numbers[2],
-        "frictionCoeff": friction,
-        "useSelfCollision": collides,
-        "simFileName": simulated,
+    factor, weight, margin = numbers["scale"], numbers["mass"], numbers["collisionMargin"]
+    sizes = {
+        "scale": moderate(factor, _CANNOT_LOAD, "scale") if factor > 0.0 else 1.0,
+        "mass": weight if weight > 0.0 else _DEFAULT_MASS,
+        "margin": margin if margin > 0.0 else _DEFAULT_MARGIN,
     }
-    load = FileLoad("loadSoftBody", arguments, takes_pose=True)
-    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD, load)[0]
-
-
-def _spec(
-    client: Client,
-    name: str,
-    simulated: str,
-    scale: float,
-    mass: float,
-    margin: float,
-    friction: float,
-    springs: Springs | None,
-    solid: NeoHookean | None,
-    *,
-    self_collision: bool,
-) -> BodySpec:
-    from carom.errors import CaromError
-    from carom.soft.files import soft_body_from_file
-    from carom.soft.older import older_cloth_from_file
-
     path = _found(client, name)
     # As in PyBullet, the mesh for the simulation may be in the folder of the visible mesh.
     inside = _found(client, simulated, path.parent) if simulated else None
+
+    from carom.soft.files import soft_body_from_file
+    from carom.soft.older import older_cloth_from_file
+
     try:
         if client.deformable:
-            return soft_body_from_file(
-                path,
-                scale=scale,
-                mass=mass,
-                margin=margin,
-                friction=friction,
-                springs=springs,
-                solid=solid,
-                self_collision=self_collision,
-                simulated=inside,
-            )
-        return older_cloth_from_file(inside or path, scale=scale, mass=mass, margin=margin)
+            spec = soft_body_from_file(path, simulated=inside, **sizes, **_material(numbers))
+        else:
+            spec = older_cloth_from_file(inside or path, **sizes)
     except CaromError as problem:
         fail(_CANNOT_LOAD, str(problem))
+    load = FileLoad("loadSoftBody", {**numbers, "simFileName": simulated}, takes_pose=True)
+    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD, load)[0]
+
+
+def _material(numbers: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of `soft_body_from_file` for the material."""
+    from carom.soft.materials import NeoHookean, Springs
+
+    springs = solid = None
+    if numbers["useMassSpring"]:
+        bending = numbers["springBendingStiffness"] if numbers["useBendingSprings"] else 0.0
+        stiffness, damping = numbers["springElasticStiffness"], numbers["springDampingStiffness"]
+        springs = Springs(stiffness, damping, bending, numbers["springDampingAllDirections"] != 0)
+    if numbers["useNeoHookean"]:
+        solid = NeoHookean(numbers["NeoHookeanMu"], numbers["NeoHookeanLambda"], numbers["NeoHookeanDamping"])
+    return {
+        "friction": numbers["frictionCoeff"],
+        "springs": springs,
+        "solid": solid,
+        "self_collision": numbers["useSelfCollision"] != 0,
+    }
 
 
 def _found(client: Client, name: str, beside: Path | None = None) -> Path:

@@ -45,14 +45,7 @@ _SIZES = struct.Struct("<IQ")
 
 
 class Command(NamedTuple):
-    """One call.
-
-    Attributes:
-        name: Name of the function, one of `COMMANDS`.
-        arguments: Positional arguments.
-        keywords: Keyword arguments.
-        result: The result of the call; None for steps.
-    """
+    """One call: the name of a function, one of `COMMANDS`, its arguments, and its result; None for steps."""
 
     name: str
     arguments: list[Any]
@@ -65,11 +58,6 @@ class CommandLog:
 
     Each call is written to the file when it returns, so the log of a killed process is complete. Calls that
     raise an exception are not recorded: they change nothing.
-
-    Args:
-        number: Id of the client.
-        client: The client.
-        path: The file; an existing one is replaced.
 
     Raises:
         OSError: The file cannot be written.

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pybullet._calls.constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
+from pybullet._contacts.contacts import getContactPoints
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -29,12 +30,7 @@ ANY_BODY = -1
 
 
 class BinaryLog:
-    """Base class of binary logs.
-
-    Args:
-        path: The file; an existing one is replaced.
-        columns: Names of the columns.
-        types: Type of each column.
+    """Base class of binary logs: named columns, each of one type.
 
     Raises:
         OSError: The file cannot be written.
@@ -90,17 +86,10 @@ class BinaryLog:
 
 
 class RobotLog(BinaryLog):
-    """A log of the bases and joints of bodies.
+    """A log of the bases and joints of bodies; without ids, of all bodies.
 
-    For a body with more joints than columns, or with a spherical or planar joint, only the marker is written,
-    as in PyBullet.
-
-    Args:
-        path: The file.
-        world: The world.
-        bodies: Ids of the bodies; empty for all.
-        room: Number of joints that have columns.
-        flags: `STATE_LOG_JOINT_MOTOR_TORQUES` and `STATE_LOG_JOINT_USER_TORQUES`, added up.
+    For a body with more joints than have columns (`room`), or with a spherical or planar joint, only the
+    marker is written, as in PyBullet. `flags` are `STATE_LOG_JOINT_*`, added up.
     """
 
     def __init__(self, path: Path, world: World, bodies: frozenset[int], room: int, flags: int) -> None:
@@ -165,14 +154,7 @@ class RobotLog(BinaryLog):
 
 
 class ContactLog(BinaryLog):
-    """A log of the contacts after each substep.
-
-    Args:
-        path: The file.
-        client_id: The connection.
-        world: Its world.
-        sides: For each of the two sides, body (-1 for any) and link (-2 for any).
-    """
+    """A log of the contacts after each substep, of two sides: body (-1 for any) and link (-2 for any)."""
 
     def __init__(
         self, path: Path, client_id: int, world: World, sides: tuple[tuple[int, int], tuple[int, int]]
@@ -189,8 +171,6 @@ class ContactLog(BinaryLog):
 
     def after_substep(self) -> None:
         """Writes a record for each contact."""
-        from pybullet._contacts.contacts import getContactPoints
-
         for contact in getContactPoints(physicsClientId=self._client_id):
             flag, a, b, link_a, link_b, on_a, on_b, normal, distance, force = contact[:10]
             if self._asked_for((a, link_a), (b, link_b)):
@@ -222,11 +202,7 @@ class ControllerLog(BinaryLog):
 class TimingLog:
     """A timing profile for Chrome or Perfetto, of steps and of zones named by scripts.
 
-    Args:
-        path: The file; `_0.json` is appended, since PyBullet appends the number of the thread.
-
-    Raises:
-        OSError: The file cannot be written.
+    `_0.json` is appended to its path, since PyBullet appends the number of the thread.
     """
 
     def __init__(self, path: Path) -> None:

@@ -6,18 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pybullet._calls import constants
 from pybullet._calls.arguments import by_name, integer, sequence, text
 from pybullet._calls.builtin import exported, exported_as
-from pybullet._calls.constants import (
-    STATE_LOGGING_ALL_COMMANDS,
-    STATE_LOGGING_CONTACT_POINTS,
-    STATE_LOGGING_GENERIC_ROBOT,
-    STATE_LOGGING_MINITAUR,
-    STATE_LOGGING_PROFILE_TIMINGS,
-    STATE_LOGGING_VIDEO_MP4,
-    STATE_LOGGING_VR_CONTROLLERS,
-    STATE_REPLAY_ALL_COMMANDS,
-)
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
 
@@ -106,38 +97,38 @@ def startStateLogging(
 
     log: StateLog | None = None
     try:
-        if kind == STATE_LOGGING_GENERIC_ROBOT:
+        if kind == constants.STATE_LOGGING_GENERIC_ROBOT:
             room = _DEFAULT_ROOM if room < 0 else room
             log = files.RobotLog(Path(path), client.world, frozenset(bodies), room, flags)
-        elif kind == STATE_LOGGING_MINITAUR:
+        elif kind == constants.STATE_LOGGING_MINITAUR:
             from pybullet._logs.minitaur_log import MinitaurLog, minitaur_motors
 
             robot = minitaur_motors(client.world, bodies)
             if robot is not None:
                 log = MinitaurLog(Path(path), *robot)
-        elif kind == STATE_LOGGING_CONTACT_POINTS:
+        elif kind == constants.STATE_LOGGING_CONTACT_POINTS:
             log = files.ContactLog(Path(path), physicsClientId, client.world, sides)
-        elif kind == STATE_LOGGING_PROFILE_TIMINGS:
+        elif kind == constants.STATE_LOGGING_PROFILE_TIMINGS:
             log = files.TimingLog(Path(path))
-        elif kind == STATE_LOGGING_VR_CONTROLLERS:
+        elif kind == constants.STATE_LOGGING_VR_CONTROLLERS:
             log = files.ControllerLog(Path(path))
-        elif kind == STATE_LOGGING_VIDEO_MP4:
+        elif kind == constants.STATE_LOGGING_VIDEO_MP4:
             from pybullet._cameras.film import film_of
 
             log = film_of(client, Path(path))
-        elif kind in (STATE_LOGGING_ALL_COMMANDS, STATE_REPLAY_ALL_COMMANDS):
+        elif kind in (constants.STATE_LOGGING_ALL_COMMANDS, constants.STATE_REPLAY_ALL_COMMANDS):
             from pybullet._logs.command_log import CommandLog, replay
 
-            if kind == STATE_REPLAY_ALL_COMMANDS:
+            if kind == constants.STATE_REPLAY_ALL_COMMANDS:
                 replay(physicsClientId, client, Path(path))
             elif not any(isinstance(other, CommandLog) for other in client.logs.by_id.values()):
                 log = CommandLog(physicsClientId, client, Path(path))
     except (OSError, ValueError, ImportError) as reason:
         fail(problem, f"{reason}.")
-    if log is None and kind != STATE_REPLAY_ALL_COMMANDS:
-        if kind == STATE_LOGGING_MINITAUR:
+    if log is None and kind != constants.STATE_REPLAY_ALL_COMMANDS:
+        if kind == constants.STATE_LOGGING_MINITAUR:
             logger.warning("startStateLogging: the first of objectUniqueIds is no Minitaur.")
-        elif kind == STATE_LOGGING_ALL_COMMANDS:
+        elif kind == constants.STATE_LOGGING_ALL_COMMANDS:
             logger.warning("startStateLogging: commands are being logged already.")
         else:
             logger.warning("startStateLogging: logs of type %d are not available.", kind)

@@ -28,13 +28,7 @@ _MODE = 6
 
 
 class MinitaurLog(BinaryLog):
-    """A log of roll, pitch and yaw of the base, position and torque of each motor, and the speed along x.
-
-    Args:
-        path: The file.
-        body: The robot.
-        motors: Indices of its motors, as `minitaur_motors` finds them.
-    """
+    """A log of roll, pitch and yaw of the base, position and torque of each motor, and the speed along x."""
 
     def __init__(self, path: Path, body: Body, motors: Sequence[int]) -> None:
         numbers = [f"{letter}{motor}" for letter in "qu" for motor in range(len(motors))]

@@ -21,6 +21,8 @@ __all__ = [
 Matrix16 = tuple[float, ...]
 
 Y_UP, Z_UP = 1, 2
+# The planes of the window's camera [m].
+_NEAR, _FAR = 0.01, 1000.0
 
 
 def cross(a: Vector3, b: Vector3) -> Vector3:
@@ -50,16 +52,7 @@ def look_at(eye: Vector3, target: Vector3, up: Vector3) -> Matrix16 | None:
 def orbit(
     target: Vector3, distance: float, yaw: float, pitch: float, roll: float, up_axis: int
 ) -> tuple[Vector3, Vector3]:
-    """Eye and up vector of a camera that orbits a target.
-
-    Args:
-        target: Point that the camera looks at [m].
-        distance: Distance from the target [m].
-        yaw: About the upward axis [degrees].
-        pitch: Upwards [degrees].
-        roll: About the viewing direction [degrees].
-        up_axis: The upward axis: 1 for y, 2 for z.
-    """
+    """Eye and up vector of a camera that orbits a target [m]; angles [degrees]; `up_axis` 1 is y, 2 is z."""
     if up_axis == Z_UP:
         turn = _rotation_zyx(radians(yaw), radians(roll), radians(pitch))
         forward, up = (0.0, -distance, 0.0), (0.0, 0.0, 1.0)
@@ -80,6 +73,11 @@ def frustum(left: float, right: float, bottom: float, top: float, near: float, f
         *((right + left) / width, (top + bottom) / height, -(far + near) / depth, -1.0),
         *(0.0, 0.0, -2.0 * far * near / depth, 0.0),
     )
+
+
+def window_lens(aspect: float) -> Matrix16:
+    """Projection matrix of the window's camera; `aspect` is the image's width divided by its height."""
+    return frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR)
 
 
 def _rotation_zyx(z: float, y: float, x: float) -> tuple[Vector3, Vector3, Vector3]:

@@ -8,6 +8,7 @@ used only where it decides between two results. The native library, which tries 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from carom.description.pose import Quaternion, Vector3
 from carom.native.turns import worked_out
@@ -53,7 +54,7 @@ def getQuaternionFromEuler(eulerAngles: Vector, physicsClientId: int = 0) -> Qua
         [0.0, 0.0, 0.7071, 0.7071]
     """
     problem = "Euler angles need a 3 coordinates [roll, pitch, yaw]."
-    return _four("quaternion_from_euler", vector3(eulerAngles, problem, "eulerAngles"))
+    return _computed("quaternion_from_euler", vector3(eulerAngles, problem, "eulerAngles"), 4)
 
 
 @exported
@@ -77,7 +78,7 @@ def getEulerFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> Vect
         [0.0, 0.0, 1.287]
     """
     problem = "Quaternion need a 4 components [x,y,z,w]."
-    return _three("euler_from_quaternion", vector4(quaternion, problem, "quaternion"))
+    return _computed("euler_from_quaternion", vector4(quaternion, problem, "quaternion"), 3)
 
 
 @exported
@@ -99,7 +100,7 @@ def getMatrixFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> tup
         [0.28, -0.96, 0.0, 0.96, 0.28, 0.0, 0.0, 0.0, 1.0]
     """
     problem = "Couldn't convert quaternion [x,y,z,w]."
-    return _numbers("matrix_from_quaternion", rotation(quaternion, problem, "quaternion"), 9)
+    return _computed("matrix_from_quaternion", rotation(quaternion, problem, "quaternion"), 9)
 
 
 @exported
@@ -188,7 +189,7 @@ def rotateVector(quaternion: Vector, vector: Vector, physicsClientId: int = 0) -
     """
     problem = "Require quaternion with 4 components [x,y,z,w] and a vector [x,y,z]."
     turn = vector4(quaternion, problem, "quaternion")
-    return _three("rotate_vector", (*turn, *vector3(vector, problem, "vector")))
+    return _computed("rotate_vector", (*turn, *vector3(vector, problem, "vector")), 3)
 
 
 @exported
@@ -212,7 +213,7 @@ def getQuaternionFromAxisAngle(axis: Vector, angle: float, physicsClientId: int 
     """
     problem = "Require axis [x,y,z] and angle."
     direction = vector3(axis, problem, "axis")
-    return _four("quaternion_from_axis_angle", (*direction, real(angle, "angle")))
+    return _computed("quaternion_from_axis_angle", (*direction, real(angle, "angle")), 4)
 
 
 @exported
@@ -238,7 +239,7 @@ def getAxisAngleFromQuaternion(quaternion: Vector, physicsClientId: int = 0) -> 
     """
     problem = "Require a quaternion with 4 components [x,y,z,w]."
     turn = vector4(quaternion, problem, "quaternion")
-    x, y, z, angle = _four("axis_angle_from_quaternion", turn)
+    x, y, z, angle = _computed("axis_angle_from_quaternion", turn, 4)
     return (x, y, z), angle
 
 
@@ -268,7 +269,7 @@ def getQuaternionSlerp(
     a = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     b = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
     fraction = quantity(interpolationFraction, "interpolationFraction")
-    return _four("quaternion_slerp", (*a, *b, fraction))
+    return _computed("quaternion_slerp", (*a, *b, fraction), 4)
 
 
 @exported
@@ -294,7 +295,7 @@ def getDifferenceQuaternion(
     """
     start = vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     end = vector4(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
-    return _four("difference_quaternion", (*start, *end))
+    return _computed("difference_quaternion", (*start, *end), 4)
 
 
 @exported
@@ -320,7 +321,7 @@ def getAxisDifferenceQuaternion(
     """
     start = rotation(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     end = rotation(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
-    return _three("axis_difference_quaternion", (*start, *end))
+    return _computed("axis_difference_quaternion", (*start, *end), 3)
 
 
 @exported
@@ -349,17 +350,16 @@ def calculateVelocityQuaternion(
     start = vector4(quaternionStart, _TWO_QUATERNIONS, "quaternionStart")
     end = vector4(quaternionEnd, _TWO_QUATERNIONS, "quaternionEnd")
     duration = real(deltaTime, "deltaTime")
-    velocity = worked_out("velocity_quaternion", (*start, *end, duration), 3)
+    velocity: Any = worked_out("velocity_quaternion", (*start, *end, duration), 3)
     if velocity is None:
         if duration == 0.0:
             fail("deltaTime has to be different from 0.")
         fail(f"deltaTime is {duration:g}, which is too small.")
-    x, y, z = velocity
-    return (x, y, z)
+    return velocity
 
 
-def _numbers(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, ...]:
-    """The results of a kernel that has results for all numbers."""
+def _computed(kernel: str, numbers: Sequence[float], count: int) -> Any:
+    """The results, so many, of a kernel that has results for all numbers."""
     # From now on builtins call the native library directly, if possible.
     install()
     result = worked_out(kernel, numbers, count)
@@ -367,16 +367,6 @@ def _numbers(kernel: str, numbers: Sequence[float], count: int) -> tuple[float, 
     return result
 
 
-def _three(kernel: str, numbers: Sequence[float]) -> Vector3:
-    x, y, z = _numbers(kernel, numbers, 3)
-    return (x, y, z)
-
-
-def _four(kernel: str, numbers: Sequence[float]) -> Quaternion:
-    x, y, z, w = _numbers(kernel, numbers, 4)
-    return (x, y, z, w)
-
-
 def _pose(kernel: str, numbers: Sequence[float]) -> tuple[Vector3, Quaternion]:
-    x, y, z, qx, qy, qz, qw = _numbers(kernel, numbers, 7)
-    return (x, y, z), (qx, qy, qz, qw)
+    result = _computed(kernel, numbers, 7)
+    return result[:3], result[3:]

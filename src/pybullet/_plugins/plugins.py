@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import integer, real, sequence, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import AddFileIOAction, PosixFileIO, RemoveFileIOAction, ZipFileIO
@@ -151,7 +152,6 @@ def _file_command(client: Client, name: str, action: int, kind: int) -> int:
         logger.warning("executePluginCommand: fileIOPlugin cannot do [%d, %d].", action, kind)
         return _FAILED
 
-    from carom.errors import DescriptionError
     from carom.formats.archives import Archive
 
     path = Path(name) if kind == PosixFileIO else client.search().find(name)

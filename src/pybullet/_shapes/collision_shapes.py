@@ -7,25 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
 from carom.description.pose import IDENTITY
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, real, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_FORCE_CONCAVE_TRIMESH, GEOM_HEIGHTFIELD, GEOM_MESH
 from pybullet._calls.errors import fail, logger
+from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import CollisionShape
-from pybullet._shapes.shape_arguments import (
-    PRIMITIVES,
-    find_file,
-    frame,
-    points,
-    primitive,
-    scale_of,
-    triangles,
-)
+from pybullet._shapes.heightfields import heightfield, heights_from_data, heights_from_file, replace_heights
+from pybullet._shapes.shape_arguments import PRIMITIVES, find_file, points, primitive, scale_of, triangles
 from pybullet._shapes.shape_columns import ShapeColumns
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
 
 __all__ = ["createCollisionShape", "createCollisionShapeArray", "removeCollisionShape"]
 
@@ -100,22 +98,12 @@ def createCollisionShape(
     """
     client = client_of(physicsClientId)
     kind, bits = integer(shapeType, "shapeType"), integer(flags, "flags")
-    pose = frame(collisionFramePosition, collisionFrameOrientation, _FAILED, "collisionFrame")
+    pose = optional_pose(collisionFramePosition, collisionFrameOrientation, _FAILED, "collisionFrame")
     is_framed = collisionFramePosition is not None or collisionFrameOrientation is not None
     name = None if fileName is None else text(fileName, "fileName")
     if kind in PRIMITIVES:
-        shape = _placed(
-            primitive(
-                kind,
-                _FAILED,
-                radius=radius,
-                length=height,
-                half_extents=halfExtents,
-                normal=planeNormal,
-                length_name="height",
-            ),
-            pose,
-        )
+        sizes = radius, height, halfExtents, planeNormal
+        shape = _placed(primitive(kind, _FAILED, *sizes, length_name="height"), pose)
     elif kind == GEOM_MESH and vertices is not None:
         shape = _mesh_from_data(vertices, indices, scale_of(meshScale, _FAILED), pose)
     elif kind == GEOM_MESH and name is not None:
@@ -124,12 +112,12 @@ def createCollisionShape(
         fail(_FAILED, "A mesh needs fileName or vertices.")
     elif kind == GEOM_HEIGHTFIELD:
         real(heightfieldTextureScaling, "heightfieldTextureScaling")
-        rows = integer(numHeightfieldRows, "numHeightfieldRows")
-        columns = integer(numHeightfieldColumns, "numHeightfieldColumns")
+        heights = _heights(client, name, heightfieldData, numHeightfieldRows, numHeightfieldColumns)
         replaced = integer(replaceHeightfieldIndex, "replaceHeightfieldIndex")
-        shape = _heightfield(client, name, heightfieldData, rows, columns, meshScale, replaced)
-        if shape is None:
+        if replaced >= 0:
+            replace_heights(client, replaced, heights, _FAILED)
             return replaced
+        shape = _placed(heightfield(heights, scale_of(meshScale, _FAILED), _FAILED), IDENTITY)
     else:
         fail(_FAILED, f"There is no type of shape {kind}.")
     _check_pieces(shape, _FAILED)
@@ -182,21 +170,9 @@ def createCollisionShapeArray(
         ... )
         >>> snowman = p.createMultiBody(1, shape, basePosition=[0, 2, 1])
     """
+    given = locals()
     client = client_of(physicsClientId)
-    columns = ShapeColumns(
-        "createCollisionShapeArray",
-        "collision",
-        kinds=shapeTypes,
-        radii=radii,
-        half_extents=halfExtents,
-        lengths=lengths,
-        file_names=fileNames,
-        mesh_scales=meshScales,
-        plane_normals=planeNormals,
-        flags=flags,
-        positions=collisionFramePositions,
-        orientations=collisionFrameOrientations,
-    )
+    columns = ShapeColumns("createCollisionShapeArray", "collision", given)
     is_part = len(columns.kinds) > 1 or columns.is_framed
 
     def part(index: int, kind: int) -> CollisionShape:
@@ -270,7 +246,6 @@ def _mesh_from_file(
     client: Client, name: str, mesh_scale: Any, flags: int, pose: Pose, *, is_part: bool, problem: str
 ) -> CollisionShape:
     """The shape of a mesh file; `is_part`: PyBullet would make it part of a compound."""
-    from carom.errors import DescriptionError
     from carom.model.shape_pieces import mesh_geometries
 
     mesh = Mesh(
@@ -291,38 +266,17 @@ def _mesh_from_file(
     return CollisionShape(tuple(collisions), (Visual(replace(mesh, concave=False), pose),))
 
 
-def _heightfield(
-    client: Client,
-    name: str | None,
-    data: Any,
-    rows: int,
-    columns: int,
-    mesh_scale: Any,
-    replaced: int,
-) -> CollisionShape | None:
-    """A heightfield; None if its heights replace those of the shape `replaced`."""
-    from pybullet._shapes.heightfields import (
-        heightfield,
-        heights_from_data,
-        heights_from_file,
-        replace_heights,
-    )
-
+def _heights(client: Client, name: str | None, data: Any, rows: Any, columns: Any) -> NDArray[np.float64]:
+    row_count, column_count = integer(rows, "numHeightfieldRows"), integer(columns, "numHeightfieldColumns")
     if name is not None:
-        heights = heights_from_file(find_file(client, name, _FAILED), _FAILED)
-    elif data is not None and rows > 0 and columns > 0:
-        heights = heights_from_data(data, rows, columns, _FAILED)
-    else:
-        fail(_FAILED, "A heightfield needs fileName, or heightfieldData and its numbers of rows and columns.")
-    if replaced >= 0:
-        replace_heights(client, replaced, heights, _FAILED)
-        return None
-    return _placed(heightfield(heights, scale_of(mesh_scale, _FAILED), _FAILED), IDENTITY)
+        return heights_from_file(find_file(client, name, _FAILED), _FAILED)
+    if data is not None and row_count > 0 and column_count > 0:
+        return heights_from_data(data, row_count, column_count, _FAILED)
+    fail(_FAILED, "A heightfield needs fileName, or heightfieldData and its numbers of rows and columns.")
 
 
 def _check_pieces(shape: CollisionShape, problem: str) -> None:
     """Prepare the shape for collision detection now, so that errors are raised here."""
-    from carom.errors import DescriptionError
     from carom.model.shape_pieces import shape_pieces
 
     for collision in shape.collisions:

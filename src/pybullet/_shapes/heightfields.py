@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Heightfield, Visual
 from carom.description.pose import Vector3
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import sequence
 from pybullet._calls.errors import fail
 
@@ -21,16 +23,9 @@ _WRONG_SIZE = "Size of heightfieldData doesn't match numHeightfieldColumns*numHe
 
 
 def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDArray[np.float64]:
-    """Heights from a sequence of numbers, with x varying fastest.
+    """Heights (columns along y, rows along x) from rows * columns numbers, with x varying fastest.
 
-    Args:
-        values: rows * columns numbers.
-        rows: Number of points along x.
-        columns: Number of points along y.
-        problem: PyBullet's error message if the values cannot be used.
-
-    Returns:
-        (columns, rows) heights, rounded to single precision as in PyBullet.
+    They are rounded to single precision, as in PyBullet.
     """
     import numpy as np
 
@@ -44,17 +39,12 @@ def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDA
 
 
 def heights_from_file(path: Path, problem: str) -> NDArray[np.float64]:
-    """Heights from a text file of comma-separated numbers, or from the red channel (0 to 1) of an image.
+    """Heights (points along y, along x) from the numbers of a text or the red channel (0 to 1) of an image.
 
     As in PyBullet, the numbers of a text are taken column by column and fill rows along x: if there are as
     many lines as columns, each line is a row along y. An image is a view from above, mirrored along x.
-
-    Returns:
-        (points along y, points along x) heights.
     """
     import numpy as np
-
-    from carom.errors import DescriptionError
 
     if path.suffix.lower() != ".txt":
         from carom.render.images import read_image
@@ -99,13 +89,9 @@ def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> H
 
 
 def replace_heights(client: Client, number: int, heights: NDArray[np.float64], problem: str) -> None:
-    """Replace the heights of a heightfield, and of all bodies made of it; its position does not change.
+    """Replace the heights (points along y, points along x) of a shape, and of all bodies made of it.
 
-    Args:
-        client: The connection.
-        number: Id of the collision shape.
-        heights: (points along y, points along x) heights, as many as before.
-        problem: PyBullet's error message if this is not possible.
+    Their number and the position of the heightfield do not change.
     """
     shape = client.shapes.collisions.get(number)
     if shape is None:
@@ -124,8 +110,6 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
 
 
 def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
-    from dataclasses import replace
-
     from carom.layouts.flags import LoadFlags
     from carom.render.appearance import appearance_of
 

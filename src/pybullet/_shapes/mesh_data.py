@@ -39,10 +39,7 @@ def soft_corners(body: Body, flags: int) -> tuple[int, tuple[Vector3, ...]]:
 def hull_corners(body: Body, link: int, index: int) -> tuple[Vector3, ...]:
     """Corners of a link's convex hulls in its inertial frame [m].
 
-    Args:
-        body: The body.
-        link: The link; -1 is the base.
-        index: Index of the shape, if the link has several, and of the group in an OBJ file; negative for all.
+    `index` is that of the shape, if the link has several, and of the group in an OBJ file; negative for all.
     """
     spec = body.link_spec(link)
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)

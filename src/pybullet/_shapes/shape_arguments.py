@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Pose, Sphere
-from carom.description.pose import IDENTITY, Vector3
-from carom.description.transform import quaternion_from_matrix, rotation_matrix
+from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
+from carom.description.pose import Vector3
 from carom.formats.shipped import advice
 from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real, sequence
 from pybullet._calls.constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
 from pybullet._calls.errors import fail
-from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+from pybullet._calls.optional_vectors import optional_vector3
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,18 +26,11 @@ _GREATEST_SIZE = 1e15
 
 
 def primitive(
-    kind: int, problem: str, *, radius: Any, length: Any, half_extents: Any, normal: Any, length_name: str
+    kind: int, problem: str, radius: Any, length: Any, half_extents: Any, normal: Any, *, length_name: str
 ) -> Geometry:
-    """A sphere, box, cylinder, plane or capsule.
+    """A sphere, box, cylinder, plane or capsule from the arguments of a call; sizes in metres.
 
-    Args:
-        kind: `GEOM_*`, one of `PRIMITIVES`.
-        problem: PyBullet's error message if the shape cannot be created.
-        radius: Of a sphere, cylinder or capsule [m].
-        length: Of a cylinder, or of the part of a capsule between its two hemispheres [m].
-        half_extents: Half the size of a box along x, y and z [m]; required for a box.
-        normal: Normal of a plane; None for the z axis.
-        length_name: Name of the argument `length`.
+    `length` is that of a cylinder, or between the two hemispheres of a capsule. A box needs `half_extents`.
 
     Raises:
         pybullet.error: A size is missing, negative or not finite.
@@ -70,24 +62,6 @@ def primitive(
 def _check_size(is_allowed: bool, greatest: float, problem: str, particulars: str) -> None:
     if not is_allowed or greatest > _GREATEST_SIZE:
         fail(problem, f"{particulars} It has to be from 0 to {_GREATEST_SIZE:g} m.")
-
-
-def frame(position: Any, orientation: Any, problem: str, prefix: str) -> Pose:
-    """The frame of a shape in its link; None stands for the origin and for no rotation.
-
-    Args:
-        position: Three numbers or None.
-        orientation: Four numbers or None.
-        problem: PyBullet's error message for other values.
-        prefix: First part of the names of both arguments, such as `visualFrame`.
-    """
-    if position is None and orientation is None:
-        return IDENTITY
-    place = optional_vector3(position, problem, f"{prefix}Position") or IDENTITY.position
-    turn = optional_rotation(orientation, problem, f"{prefix}Orientation")
-    if turn is None:
-        return Pose(place)
-    return Pose(place, quaternion_from_matrix(rotation_matrix(turn)))
 
 
 def scale_of(values: Any, problem: str) -> Vector3:

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from carom.description import Geometry, Pose
 from pybullet._calls.arguments import integer, sequence
 from pybullet._calls.errors import error, fail, logger
-from pybullet._shapes.shape_arguments import frame, primitive
+from pybullet._calls.optional_vectors import optional_pose
+from pybullet._shapes.shape_arguments import primitive
 
 Made = TypeVar("Made")
 
 
 class Column:
-    """One list argument.
-
-    Args:
-        values: The list; None if it is not given.
-        name: Name of the argument.
-        words: Name of its items in PyBullet's error message for an argument that is not a sequence.
-    """
+    """One list argument; `words` name its items in PyBullet's error message for one that is no sequence."""
 
     def __init__(self, values: Any, name: str, words: str) -> None:
         self.is_given = values is not None
@@ -33,22 +28,20 @@ class Column:
         return self._items[index] if index < len(self._items) else default
 
 
-class ShapeColumns:
-    """The list arguments that both functions have.
+# Names of the items of each argument in PyBullet's error messages for arguments that are not sequences.
+_ITEMS = {
+    "radii": "radii",
+    "halfExtents": "half extents",
+    "lengths": "lengths",
+    "fileNames": "filename",
+    "meshScales": "mesh scale",
+    "planeNormals": "plane normal",
+    "flags": "flags",
+}
 
-    Args:
-        function: Name of the function.
-        frame_of: `collision` or `visual`.
-        kinds: The argument `shapeTypes`.
-        radii: The argument `radii`.
-        half_extents: The argument `halfExtents`.
-        lengths: The argument `lengths`.
-        file_names: The argument `fileNames`.
-        mesh_scales: The argument `meshScales`.
-        plane_normals: The argument `planeNormals`.
-        flags: The argument `flags`.
-        positions: The argument `collisionFramePositions` or `visualFramePositions`.
-        orientations: The argument `collisionFrameOrientations` or `visualFrameOrientations`.
+
+class ShapeColumns:
+    """The list arguments that both functions have; `frame_of` is `collision` or `visual`.
 
     Attributes:
         problem: PyBullet's error message if no shape can be created.
@@ -62,40 +55,22 @@ class ShapeColumns:
         TypeError: A shape type is not an integer.
     """
 
-    def __init__(
-        self,
-        function: str,
-        frame_of: str,
-        *,
-        kinds: Any,
-        radii: Any,
-        half_extents: Any,
-        lengths: Any,
-        file_names: Any,
-        mesh_scales: Any,
-        plane_normals: Any,
-        flags: Any,
-        positions: Any,
-        orientations: Any,
-    ) -> None:
+    def __init__(self, function: str, frame_of: str, given: Mapping[str, Any]) -> None:
         self.problem = f"{function} failed."
         self._function = function
         self._frame = f"{frame_of}Frame"
         self.kinds = [
             integer(kind, "shapeTypes")
-            for kind in sequence(kinds, "expected a sequence of shape types", "shapeTypes")
+            for kind in sequence(given["shapeTypes"], "expected a sequence of shape types", "shapeTypes")
         ]
-        self._radii = Column(radii, "radii", "radii")
-        self._half_extents = Column(half_extents, "halfExtents", "half extents")
-        self._lengths = Column(lengths, "lengths", "lengths")
-        self.files = Column(file_names, "fileNames", "filename")
-        self.scales = Column(mesh_scales, "meshScales", "mesh scale")
-        self._normals = Column(plane_normals, "planeNormals", "plane normal")
-        self.flags = Column(flags, "flags", "flags")
-        self._positions = Column(positions, f"{self._frame}Positions", f"{frame_of} frame positions")
-        self._orientations = Column(
-            orientations, f"{self._frame}Orientations", f"{frame_of} frame orientations"
-        )
+        items = {
+            **_ITEMS,
+            f"{self._frame}Positions": f"{frame_of} frame positions",
+            f"{self._frame}Orientations": f"{frame_of} frame orientations",
+        }
+        columns = [Column(given[name], name, words) for name, words in items.items()]
+        self._radii, self._half_extents, self._lengths, self.files, self.scales, *rest = columns
+        self._normals, self.flags, self._positions, self._orientations = rest
 
     @property
     def is_framed(self) -> bool:
@@ -104,28 +79,26 @@ class ShapeColumns:
 
     def frame(self, index: int) -> Pose:
         """The frame of a shape in the link frame."""
-        return frame(self._positions.item(index), self._orientations.item(index), self.problem, self._frame)
+        return optional_pose(
+            self._positions.item(index), self._orientations.item(index), self.problem, self._frame
+        )
 
     def primitive(self, index: int) -> Geometry:
         """The geometry of a shape whose type is one of `PRIMITIVES`."""
         return primitive(
             self.kinds[index],
             self.problem,
-            radius=self._radii.item(index, 0.0),
-            length=self._lengths.item(index, 0.0),
-            half_extents=self._half_extents.item(index, (1.0, 1.0, 1.0)),
-            normal=self._normals.item(index),
+            self._radii.item(index, 0.0),
+            self._lengths.item(index, 0.0),
+            self._half_extents.item(index, (1.0, 1.0, 1.0)),
+            self._normals.item(index),
             length_name="lengths",
         )
 
     def each(self, make: Callable[[int, int], Made]) -> list[Made]:
-        """Create all shapes; as in PyBullet, shapes that cannot be created are left out, with a warning.
+        """Create all shapes by `make(index, type)`; those that cannot be made are left out, with a warning.
 
-        Args:
-            make: Creates a shape from its index and type.
-
-        Raises:
-            pybullet.error: No shape can be created.
+        Raises `pybullet.error` if no shape can be created.
         """
         made, reasons = [], []
         for index, kind in enumerate(self.kinds):

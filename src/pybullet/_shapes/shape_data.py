@@ -45,8 +45,6 @@ CollisionData = tuple[int, int, int, Vector3, bytes, Vector3, Quaternion]
 _NO_COLLISION_DATA = "Error receiving collision shape info"
 _NO_AABB = "getAABB failed."
 _NO_MESH = "getMeshData failed"
-# The file name and the dimensions that PyBullet reports for meshes whose file it does not store.
-_UNKNOWN_FILE = (b"unknown_file", (1.0, 1.0, 1.0))
 
 
 @exported
@@ -235,21 +233,17 @@ def _collision_geometry(geometry: Geometry, implicit_cylinder: bool) -> tuple[in
     match geometry:
         case Sphere(radius):
             return GEOM_SPHERE, (radius, radius, radius), b""
-        case Box((x, y, z)):
-            return GEOM_BOX, (2.0 * x, 2.0 * y, 2.0 * z), b""
-        case Capsule(radius, length):
-            return GEOM_CAPSULE, (length, radius, 0.0), b""
-        case Cylinder(radius, length) if implicit_cylinder:
-            return GEOM_CYLINDER, (length, radius, 0.0), b""
         case Plane(normal):
             return GEOM_PLANE, normal, b""
-        case Mesh(_, scale):
-            return GEOM_MESH, scale, _file_name(geometry)
+        case Cylinder() if implicit_cylinder:
+            return _visual_geometry(geometry)
+        # What PyBullet reports for meshes whose file it does not store.
         case Cylinder() | ConvexHull() | TriangleMesh():
-            file, dimensions = _UNKNOWN_FILE
-            return GEOM_MESH, dimensions, file
+            return GEOM_MESH, (1.0, 1.0, 1.0), b"unknown_file"
         case Heightfield() | SignedDistanceField():
             return None
+        case _:
+            return _visual_geometry(geometry)
 
 
 def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
@@ -266,7 +260,8 @@ def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
         case Plane():
             return GEOM_PLANE, (0.0, 0.0, 0.0), b""
         case Mesh(_, scale):
-            return GEOM_MESH, scale, _file_name(geometry)
+            # The name that a script gave, or the path of a file that a robot file names.
+            return GEOM_MESH, scale, (geometry.asked_for or str(geometry.path)).encode()
         case ConvexHull(scale=scale) | TriangleMesh(scale=scale):
             return GEOM_MESH, scale, b""
         case Heightfield():
@@ -277,8 +272,3 @@ def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
 
 _SIGNED_DISTANCE_FIELD = 8
 """PyBullet's type of a signed distance field; PyBullet has no constant for it."""
-
-
-def _file_name(mesh: Mesh) -> bytes:
-    """The file of a mesh: the name that a script gave, or the path of a file that a robot file names."""
-    return (mesh.asked_for or str(mesh.path)).encode()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import Vector, integer, sequence, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import VISUAL_SHAPE_DOUBLE_SIDED
@@ -50,7 +51,6 @@ def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
     client = client_of(physicsClientId)
     name = text(textureFilename, "textureFilename")
 
-    from carom.errors import DescriptionError
     from carom.render.appearance import appearance_of
     from carom.render.images import read_image
 
@@ -203,16 +203,7 @@ def resetVisualShapeData(
         >>> p.getVisualShapeData(cube)[0][7]
         (0.0, 1.0, 0.0, 1.0)
     """
-    changeVisualShape(
-        objectUniqueId,
-        linkIndex,
-        shapeIndex,
-        textureUniqueId,
-        rgbaColor,
-        specularColor,
-        flags,
-        physicsClientId,
-    )
+    changeVisualShape(**locals())
 
 
 def _pixels(values: Any, columns: int, rows: int) -> NDArray[np.uint8]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from carom.errors import CaromError
 from pybullet._calls.arguments import integer, real, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
@@ -22,6 +23,15 @@ _DEFAULT_CONCAVITY, _DEFAULT_THRESHOLD = 0.001, 0.05
 _DEFAULT_RESOLUTION, _DEFAULT_GRID = 1_000_000, 50
 _DEFAULT_VERTICES = 64
 _THRESHOLDS, _GRIDS, _LEAST_VERTICES = (0.01, 1.0), (20, 100), 4
+# Arguments without effect.
+_NUMBERS_OF_VHACD = ("alpha", "beta", "gamma", "minVolumePerCH")
+_INTEGERS_OF_VHACD = (
+    "depth",
+    "planeDownsampling",
+    "convexhullDownsampling",
+    "mode",
+    "convexhullApproximation",
+)
 
 
 @exported
@@ -77,27 +87,18 @@ def vhacd(
         >>> duck = pybullet_data.getDataPath() + "/duck.obj"
         >>> p.vhacd(duck, folder + "/pieces.obj", folder + "/log.txt")  # doctest: +SKIP
     """
+    given = locals()
     source, target = text(fileNameIn, "fileNameIn"), text(fileNameOut, "fileNameOut")
     log = text(fileNameLogging, "fileNameLogging")
     softness, voxels = real(concavity, "concavity"), integer(resolution, "resolution")
     corners, aligned = integer(maxNumVerticesPerCH, "maxNumVerticesPerCH"), integer(pca, "pca")
-    without_effect = {
-        "alpha": real(alpha, "alpha"),
-        "beta": real(beta, "beta"),
-        "gamma": real(gamma, "gamma"),
-        "minVolumePerCH": real(minVolumePerCH, "minVolumePerCH"),
-        "depth": integer(depth, "depth"),
-        "planeDownsampling": integer(planeDownsampling, "planeDownsampling"),
-        "convexhullDownsampling": integer(convexhullDownsampling, "convexhullDownsampling"),
-        "mode": integer(mode, "mode"),
-        "convexhullApproximation": integer(convexhullApproximation, "convexhullApproximation"),
-    }
+    without_effect = {name: real(given[name], name) for name in _NUMBERS_OF_VHACD}
+    without_effect |= {name: integer(given[name], name) for name in _INTEGERS_OF_VHACD}
     integer(physicsClientId, "physicsClientId")
     named = [name for name, value in without_effect.items() if value >= 0]
     if named:
         logger.warning("vhacd: %s: no effect with CoACD.", ", ".join(named))
 
-    from carom.errors import CaromError
     from carom.formats.mesh import read_mesh
     from carom.geometry.decomposition import DecompositionOptions, decompose
     from carom.model.shape_pieces import joined_parts

@@ -5,21 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
+from carom.errors import DescriptionError
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import GEOM_MESH
 from pybullet._calls.errors import error, fail, logger
-from pybullet._calls.optional_vectors import optional_vector3, optional_vector4
+from pybullet._calls.optional_vectors import optional_pose, optional_vector3, optional_vector4
 from pybullet._clients.clients import Client, client_of
-from pybullet._shapes.shape_arguments import (
-    PRIMITIVES,
-    find_file,
-    frame,
-    points,
-    primitive,
-    scale_of,
-    triangles,
-)
+from pybullet._shapes.shape_arguments import PRIMITIVES, find_file, points, primitive, scale_of, triangles
 from pybullet._shapes.shape_columns import Column, ShapeColumns
 
 if TYPE_CHECKING:
@@ -92,21 +85,14 @@ def createVisualShape(
     client = client_of(physicsClientId)
     kind = integer(shapeType, "shapeType")
     integer(flags, "flags")
-    pose = frame(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
+    pose = optional_pose(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
     material = Material(
         rgba=optional_vector4(rgbaColor, _FAILED, "rgbaColor") or _WHITE,
         specular=optional_vector3(specularColor, _FAILED, "specularColor") or _HIGHLIGHT,
     )
     if kind in PRIMITIVES:
-        geometry = primitive(
-            kind,
-            _FAILED,
-            radius=radius,
-            length=length,
-            half_extents=halfExtents,
-            normal=planeNormal,
-            length_name="length",
-        )
+        sizes = radius, length, halfExtents, planeNormal
+        geometry = primitive(kind, _FAILED, *sizes, length_name="length")
     elif kind == GEOM_MESH and vertices is not None and indices is not None:
         geometry = _mesh_from_data(vertices, indices, normals, uvs, scale_of(meshScale, _FAILED))
     elif kind == GEOM_MESH and fileName is not None:
@@ -165,21 +151,9 @@ def createVisualShapeArray(
         ...     visualFramePositions=[[0, 0, 0], [0, 0, 0.3]],
         ... )
     """
+    given = locals()
     client = client_of(physicsClientId)
-    columns = ShapeColumns(
-        "createVisualShapeArray",
-        "visual",
-        kinds=shapeTypes,
-        radii=radii,
-        half_extents=halfExtents,
-        lengths=lengths,
-        file_names=fileNames,
-        mesh_scales=meshScales,
-        plane_normals=planeNormals,
-        flags=flags,
-        positions=visualFramePositions,
-        orientations=visualFrameOrientations,
-    )
+    columns = ShapeColumns("createVisualShapeArray", "visual", given)
     colours = Column(rgbaColors, "rgbaColors", "rgba color")
 
     def part(index: int, kind: int) -> Visual:
@@ -202,7 +176,6 @@ def createVisualShapeArray(
 
 def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
     """The mesh of a file. If the file cannot be used, an empty mesh, as in PyBullet, and a logged warning."""
-    from carom.errors import DescriptionError
     from carom.formats.files import is_fresh
     from carom.formats.mesh import read_mesh
 
@@ -217,14 +190,11 @@ def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) ->
             read_mesh_visual(mesh.path)
     except (error, DescriptionError) as reason:
         logger.warning("%s", reason)
-        return _nothing()
+
+        import numpy as np
+
+        return TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
     return mesh
-
-
-def _nothing() -> TriangleMesh:
-    import numpy as np
-
-    return TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
 
 
 def _mesh_from_data(

@@ -27,11 +27,7 @@ __all__ = [
 
 @exported
 def addUserDebugParameter(
-    paramName: str,
-    rangeMin: float = 0,
-    rangeMax: float = 1,
-    startValue: float = 0,
-    physicsClientId: int = 0,
+    paramName: str, rangeMin: float = 0, rangeMax: float = 1, startValue: float = 0, physicsClientId: int = 0
 ) -> int:
     """Adds a slider to the window, or a button.
 

@@ -4,51 +4,42 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from math import hypot
+from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
 from carom.description.transform import subtracted
-from pybullet._maths.camera_maths import Y_UP, Z_UP, cross, frustum, look_at, orbit, unit
+from pybullet._maths.camera_maths import Y_UP, cross, look_at, orbit, unit, window_lens
 
-_NEAR, _FAR = 0.01, 1000.0
+if TYPE_CHECKING:
+    from carom.viewer.camera import Orbit
+
 # Length of the image's edges as `getDebugVisualizerCamera` reports them, for rays through its pixels.
 _RAY_PLANE = 20000.0
 
 
-@dataclass(slots=True)
-class DebugCamera:
-    """The camera of the window, which orbits a target [m]; angles in degrees, image size in pixels."""
-
-    width: int = 0
-    height: int = 0
-    distance: float = 0.0
-    yaw: float = 0.0
-    pitch: float = 0.0
-    target: Vector3 = (0.0, 0.0, 0.0)
-    up_axis: int = Z_UP
-
-    def info(self) -> tuple[int | float | tuple[float, ...], ...]:
-        """The 12 fields of `getDebugVisualizerCamera`."""
-        aspect = self.width / self.height
-        eye, _ = orbit(self.target, self.distance, self.yaw, self.pitch, 0.0, self.up_axis)
-        up = (0.0, 1.0, 0.0) if self.up_axis == Y_UP else (0.0, 0.0, 1.0)
-        forward = unit(subtracted(self.target, eye)) or (1.0, 0.0, 0.0)
-        # When it looks straight up or down, any horizontal direction will do.
-        right = unit(cross(forward, up)) or (1.0, 0.0, 0.0)
-        upward = cross(right, forward)
-        return (
-            self.width,
-            self.height,
-            look_at(eye, self.target, up) or look_at(eye, self.target, upward) or (0.0,) * 16,
-            frustum(-aspect * _NEAR, aspect * _NEAR, -_NEAR, _NEAR, _NEAR, _FAR),
-            up,
-            forward,
-            _scaled(right, _RAY_PLANE * aspect),
-            _scaled(upward, _RAY_PLANE / hypot(*upward)),
-            self.yaw,
-            self.pitch,
-            self.distance,
-            self.target,
-        )
+def camera_info(camera: Orbit, up_axis: int) -> tuple[int | float | tuple[float, ...], ...]:
+    """The 12 fields of `getDebugVisualizerCamera`; `up_axis` is the upward axis: 1 for y, 2 for z."""
+    aspect = camera.width / camera.height
+    eye, _ = orbit(camera.target, camera.distance, camera.yaw, camera.pitch, 0.0, up_axis)
+    up = (0.0, 1.0, 0.0) if up_axis == Y_UP else (0.0, 0.0, 1.0)
+    forward = unit(subtracted(camera.target, eye)) or (1.0, 0.0, 0.0)
+    # When it looks straight up or down, any horizontal direction will do.
+    right = unit(cross(forward, up)) or (1.0, 0.0, 0.0)
+    upward = cross(right, forward)
+    return (
+        camera.width,
+        camera.height,
+        look_at(eye, camera.target, up) or look_at(eye, camera.target, upward) or (0.0,) * 16,
+        window_lens(aspect),
+        up,
+        forward,
+        _scaled(right, _RAY_PLANE * aspect),
+        _scaled(upward, _RAY_PLANE / hypot(*upward)),
+        camera.yaw,
+        camera.pitch,
+        camera.distance,
+        camera.target,
+    )
 
 
 @dataclass(slots=True)

@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
 from carom.viewer.items import DebugItem, Slider
+from pybullet._calls.constants import COV_ENABLE_Y_AXIS_UP
 from pybullet._calls.errors import fail
 from pybullet._calls.options import named_values
-from pybullet._window.options import DebugCamera, VisualizerOptions
-from pybullet._window.recording_window import RecordingWindow
+from pybullet._maths.camera_maths import Y_UP, Z_UP
+from pybullet._window.options import VisualizerOptions, camera_info
+from pybullet._window.window import Window
 
 if TYPE_CHECKING:
     import numpy as np
@@ -37,20 +39,25 @@ _GOES_ON = "The simulation continues."
 _DEFAULT_SHADE = 0.8
 
 
-class PageWindow(RecordingWindow):
-    """A window that shows the script's items in a viewer.
+class PageWindow(Window):
+    """A window that shows the world and the items of a client in a viewer.
 
-    Args:
-        viewer: The viewer.
-        client: The connection whose world it shows.
+    Attributes:
+        viewer: The viewer that serves the page.
+        items: Lines, texts and points by id.
+        sliders: Sliders and buttons by id; ids are shared with `items`.
+        colours: Wireframe colours by body and link.
+        options: The options set by `configureDebugVisualizer`.
     """
 
     def __init__(self, viewer: Viewer, client: Client) -> None:
-        super().__init__(viewer.camera.orbit.width, viewer.camera.orbit.height)
-        self._viewer = viewer
+        self.viewer = viewer
         self._client = client
         self.items = viewer.drawings.items
         self.sliders = viewer.controls.sliders
+        self.colours: dict[tuple[int, int], Vector3] = {}
+        self.options = VisualizerOptions()
+        self._next_item = 0
         # Simulated time at which the script last read user input.
         self._asked = -1.0
         self.held = viewer.held
@@ -60,95 +67,100 @@ class PageWindow(RecordingWindow):
         self._profiles = 0
         self._profile_log: int | None = None
 
-    @property
-    def viewer(self) -> Viewer:
-        """The viewer that serves the page."""
-        return self._viewer
-
     def is_open(self) -> bool:
-        return self._viewer.is_open
+        return self.viewer.is_open
 
     def close(self) -> None:
-        self._viewer.close()
+        self.viewer.close()
 
     @property
     def speed(self) -> float | None:
-        return self._viewer.pause_control.speed
+        return self.viewer.pause_control.speed
 
     def wait_for_turn(self) -> bool:
-        return self._viewer.wait_for_turn(listening=self._asked == self._viewer.time)
+        return self.viewer.wait_for_turn(listening=self._asked == self.viewer.time)
 
     def has_turn(self) -> bool:
-        return self._viewer.has_turn()
+        return self.viewer.has_turn()
 
     def draw(self, item: DebugItem, replaced: int) -> int:
-        self._viewer.drawings.expire()
-        identifier = super().draw(item, replaced)
-        self._viewer.drawings.draw(identifier, item)
+        self.viewer.drawings.expire()
+        identifier = replaced if replaced >= 0 else self._new_identifier()
+        self.viewer.drawings.draw(identifier, item)
         return identifier
 
     def add_slider(self, slider: Slider) -> int:
-        identifier = super().add_slider(slider)
-        self._viewer.controls.add(identifier, slider)
+        identifier = self._new_identifier()
+        self.viewer.controls.add(identifier, slider)
         return identifier
 
     def remove(self, item: int) -> None:
-        self._viewer.drawings.remove(item)
-        self._viewer.controls.remove(item)
+        self.viewer.drawings.remove(item)
+        self.viewer.controls.remove(item)
 
     def remove_drawings(self) -> None:
-        self._viewer.drawings.clear()
-        super().remove_drawings()
+        self.viewer.drawings.clear()
+        # Ids start again after those of sliders, which are kept.
+        self._next_item = max(self.sliders, default=-1) + 1
 
     def remove_sliders(self) -> None:
         for item in list(self.sliders):
-            self._viewer.controls.remove(item)
+            self.viewer.controls.remove(item)
 
     def colour_link(self, body: int, link: int, colour: Vector3 | None) -> None:
-        super().colour_link(body, link, colour)
+        if colour is None:
+            self.colours.pop((body, link), None)
+        else:
+            self.colours[body, link] = colour
         self._show_options()
 
     def slider_value(self, item: int) -> float | None:
-        self._asked = self._viewer.time
-        return super().slider_value(item)
+        self._asked = self.viewer.time
+        slider = self.sliders.get(item)
+        return None if slider is None else slider.value
 
     def key_events(self) -> dict[int, int]:
-        self._asked = self._viewer.time
-        return self._viewer.key_events()
+        self._asked = self.viewer.time
+        return self.viewer.key_events()
 
     def mouse_events(self) -> Sequence[tuple[int, float, float, int, int]]:
-        self._asked = self._viewer.time
-        return self._viewer.mouse.events()
+        self._asked = self.viewer.time
+        return self.viewer.mouse.events()
 
     def configure(self, changes: VisualizerOptions) -> None:
-        super().configure(changes)
+        self.options.flags.update(changes.flags)
+        for option in fields(changes):
+            value = getattr(changes, option.name)
+            if option.name != "flags" and value is not None:
+                setattr(self.options, option.name, value)
+        self.background = self.options.background
         self._show_options()
 
     def draw_now(self) -> None:
-        self._viewer.draw_now()
+        self.viewer.draw_now()
 
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
-        self._viewer.camera.move(distance, yaw, pitch, target)
+        self.viewer.camera.move(distance, yaw, pitch, target)
 
     def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
-        if self._viewer.rays.wanted:
-            self._viewer.rays.tell(starts, ends, hits)
+        if self.viewer.rays.wanted:
+            self.viewer.rays.tell(starts, ends, hits)
 
     def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
-        if self._viewer.page_count:
-            self._viewer.previews.show(image, camera)
+        if self.viewer.page_count:
+            self.viewer.previews.show(image, camera)
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
-        orbit = self._viewer.camera.orbit
-        return DebugCamera(
-            orbit.width,
-            orbit.height,
-            orbit.distance,
-            orbit.yaw,
-            orbit.pitch,
-            orbit.target,
-            self.camera.up_axis,
-        ).info()
+        return camera_info(self.viewer.camera.orbit, self._up_axis)
+
+    @property
+    def _up_axis(self) -> int:
+        return Y_UP if self.options.flags.get(COV_ENABLE_Y_AXIS_UP) else Z_UP
+
+    def _new_identifier(self) -> int:
+        identifier = self._next_item
+        self._next_item += 1
+        return identifier
 
     def _hold(self, held: bool) -> None:
         self.held = held
@@ -176,15 +188,11 @@ class PageWindow(RecordingWindow):
     def _show_options(self) -> None:
         options = {field.name: getattr(self.options, field.name) for field in fields(self.options)}
         colours = [[body, link + 1, colour] for (body, link), colour in self.colours.items()]
-        self._viewer.configure({**options, "up_axis": self.camera.up_axis, "colours": colours})
+        self.viewer.configure({**options, "up_axis": self._up_axis, "colours": colours})
 
 
 def open_window(client: Client, options: str) -> PageWindow:
-    """Opens a window that shows the world of a client.
-
-    Args:
-        client: The connection.
-        options: Options of `connect` for the window.
+    """Opens a window that shows the world of a client, with options of `connect`.
 
     Raises:
         pybullet.error: The server cannot listen at the address, or the video cannot be written.

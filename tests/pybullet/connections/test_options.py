@@ -1,7 +1,6 @@
 """Options of `connect`."""
 
-from pybullet._calls.options import named_values
-from pybullet._connections.target import Target
+from pybullet._calls.options import Target, named_values
 
 
 def test_double_quotes_enclose_spaces() -> None:

@@ -7,7 +7,7 @@ from tests.pybullet.connections.test_servers import ARM, another, until
 
 import pybullet as p
 from pybullet._clients.clients import clients
-from pybullet._window.recording_window import RecordingWindow
+from pybullet._window.page_window import PageWindow
 
 
 @pytest.mark.parametrize("method", [p.GUI_SERVER, p.GRAPHICS_SERVER, p.GRAPHICS_SERVER_MAIN_THREAD])
@@ -21,7 +21,7 @@ def test_there_is_one_window_only(method: int, key: int) -> None:
 def test_what_others_draw_is_in_the_window(key: int) -> None:
     p.connect(p.GUI_SERVER, key, "--port=0")
     window = clients[0].window
-    assert isinstance(window, RecordingWindow)
+    assert isinstance(window, PageWindow)
     with another(key) as process:
         assert process.ask("p.addUserDebugLine([0, 0, 0], [1, 0, 0])") == "0"
         assert list(window.items) == [0]

@@ -18,14 +18,9 @@ _SPEED = 2.0
 
 
 def drive(world: World, body_id: int, joint: int, target: float, *, place: bool) -> None:
-    """Moves a joint to the value of a page's slider; joints without exactly one dof are ignored.
+    """Moves a joint to the value of a page's slider [rad or m]; joints without exactly one dof are ignored.
 
-    Args:
-        world: The world.
-        body_id: Number of the body.
-        joint: Index of the joint.
-        target: Target position of the joint [rad or m].
-        place: Also set the position at once, for a paused world; otherwise only the joint's motor moves it.
+    With `place` it also sets the position at once, for a paused world; otherwise only the motor moves it.
     """
     body = world.bodies.get(body_id)
     if body is None or not 0 <= joint < body.joint_count or not isfinite(target):

@@ -10,39 +10,21 @@ DOWN, TRIGGERED, RELEASED = 1, 2, 4
 # A script that has read the keys within this time is expected to read them again [s].
 _ATTENTION = 1.0
 
-# Keys without a character, by their names in browser events.
-_FUNCTION_KEYS = {f"F{number}": 65279 + number for number in range(1, 16)}
-_NAMED = {
-    "ArrowLeft": 65295,
-    "ArrowRight": 65296,
-    "ArrowUp": 65297,
-    "ArrowDown": 65298,
-    "PageUp": 65299,
-    "PageDown": 65300,
-    "End": 65301,
-    "Home": 65302,
-    "Insert": 65303,
-    "Delete": 65304,
-    "Backspace": 65305,
-    "Shift": 65306,
-    "Control": 65307,
-    "Alt": 65308,
-    "Enter": 65309,
-    "Escape": 27,
-    "Tab": 9,
-    **_FUNCTION_KEYS,
-}
+# Keys without a character, by their names in browser events; those of both rows have successive codes.
+_FUNCTION_KEYS = [f"F{number}" for number in range(1, 16)]
+_OTHER_KEYS = (
+    "ArrowLeft ArrowRight ArrowUp ArrowDown PageUp PageDown End Home Insert Delete "
+    "Backspace Shift Control Alt Enter"
+)
+_NAMED = {name: code for code, name in enumerate([*_FUNCTION_KEYS, *_OTHER_KEYS.split()], 65280)}
+_NAMED |= {"Escape": 27, "Tab": 9}
 
 
 def key_code(key: str, place: str) -> int | None:
     """PyBullet's code of a key; None for keys without a code.
 
     Letters have the code of the lower-case character, and digits that of the digit, regardless of Shift and
-    Caps Lock.
-
-    Args:
-        key: `key` of the browser's event: a name or a character.
-        place: `code` of the event: the physical key of the keyboard.
+    Caps Lock. `key` and `place` are `key` and `code` of the browser's event.
     """
     if key in _NAMED:
         return _NAMED[key]

@@ -11,13 +11,10 @@ _PATIENCE = 1.0
 
 
 class Leaving:
-    """Ends a simulation when the user presses ESC. Safe to use from all threads.
+    """Ends a simulation by `close` when the user presses ESC. Safe to use from all threads.
 
     PyBullet closes its window within a frame of ESC, and a loop that reads keys may see the key before.
-    Here a script that reads keys always gets the key first.
-
-    Args:
-        close: Ends the simulation; may be called more than once.
+    Here a script that reads keys always gets the key first. `close` may be called more than once.
     """
 
     def __init__(self, close: Callable[[], None]) -> None:
@@ -30,11 +27,7 @@ class Leaving:
         return self._timer is not None
 
     def escape(self, *, listening: bool) -> None:
-        """Ends the simulation after the user has pressed ESC.
-
-        Args:
-            listening: Whether the script reads keys, and so has to see the key first.
-        """
+        """Ends the simulation after ESC: at once, or when the script, if `listening`, has seen the key."""
         if not listening:
             self._close()
         elif self._timer is None:

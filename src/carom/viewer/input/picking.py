@@ -46,12 +46,7 @@ class _Hand:
 
 
 class Picking:
-    """The pulls of all pages. For use by one thread; only `apply` changes the world.
-
-    Args:
-        world: The world.
-        lock: Held while the world is stepped or changed.
-    """
+    """The pulls of all pages. For use by one thread; only `apply` changes the world, under its lock."""
 
     def __init__(self, world: World, lock: Any) -> None:
         self._world = world
@@ -79,11 +74,7 @@ class Picking:
             self._released.append(hand.tie)
 
     def apply(self, patience: float = _PATIENCE) -> None:
-        """Makes, moves and removes the constraints; if the world is busy, at the next call.
-
-        Args:
-            patience: How long to wait for a step to end [s].
-        """
+        """Makes, moves and removes the constraints; if no step ends in `patience` [s], at the next call."""
         if not self._released and not any(hand.moved or hand.tie is None for hand in self._picking.values()):
             return
         if not self._world_lock.acquire(timeout=patience):

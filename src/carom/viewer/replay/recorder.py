@@ -116,7 +116,10 @@ class ReplayRecorder:
         """Takes a frame now."""
         blocks = self._details.blocks()
         frame = self._feed.frame({}, blocks)
-        self._take_news()
+        self._take_from(0, self._board, _OF_BODIES)
+        viewer_board = boards.get(self._world)
+        if viewer_board is not None:
+            self._take_from(1, viewer_board, _OF_SCRIPTS)
         if frame is not None:
             self._recording.add(*decoded(frame))
 
@@ -145,13 +148,6 @@ class ReplayRecorder:
 
     def _page(self) -> str:
         return replay_of(self._recording.packed(title=self._title, **self._facts))
-
-    def _take_news(self) -> None:
-        """Records the new messages on the boards."""
-        self._take_from(0, self._board, _OF_BODIES)
-        viewer_board = boards.get(self._world)
-        if viewer_board is not None:
-            self._take_from(1, viewer_board, _OF_SCRIPTS)
 
     def _take_from(self, number: int, board: Board, kept: frozenset[str]) -> None:
         messages, self._told[number] = board.since(self._told[number])

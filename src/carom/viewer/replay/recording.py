@@ -51,11 +51,7 @@ class Recording:
         self.frame_count += 1
 
     def packed(self, **facts: Any) -> bytes:
-        """The packed recording.
-
-        Args:
-            **facts: Further data: `title`, `camera`, `options`.
-        """
+        """The packed recording, with further data: `title`, `camera`, `options`."""
         self._end_run()
         index = json.dumps({"format": FORMAT, **facts, "records": self._records}, separators=(",", ":"))
         text = index.encode()
@@ -77,11 +73,7 @@ class Recording:
 
 
 def unpacked(recording: bytes) -> tuple[dict[str, Any], list[tuple[dict[str, Any], bytes]]]:
-    """The further data of a recording, and its messages in order, as headers and payloads.
-
-    Raises:
-        ValueError: The recording has another format.
-    """
+    """The further data and the messages (header, payload) of a recording; `ValueError` for another format."""
     plain = decompress(recording)
     (length,) = struct.unpack_from("<I", plain)
     facts = json.loads(plain[4 : 4 + length])

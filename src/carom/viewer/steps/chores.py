@@ -13,11 +13,7 @@ _PATIENCE = 0.02
 
 
 class Chores:
-    """A queue of functions that need the lock of a world. Safe to use from all threads.
-
-    Args:
-        lock: Held while the world is stepped or changed.
-    """
+    """A queue of functions that need the lock of a world's steps. Safe to use from all threads."""
 
     def __init__(self, lock: Any) -> None:
         self._world_lock = lock
@@ -33,13 +29,9 @@ class Chores:
             return
         try:
             while self._waiting:
-                self._try(self._waiting.popleft())
+                try:
+                    self._waiting.popleft()()
+                except Exception:
+                    _log.exception("A request from the page has failed.")
         finally:
             self._world_lock.release()
-
-    @staticmethod
-    def _try(chore: Callable[[], None]) -> None:
-        try:
-            chore()
-        except Exception:
-            _log.exception("A request from the page has failed.")

@@ -19,10 +19,6 @@ class Moments:
     """Saved states of a world. Its methods are called between steps.
 
     The start is the state before the first step with the present bodies.
-
-    Args:
-        world: The world.
-        board: The board for the marks.
     """
 
     def __init__(self, world: World, board: Board) -> None:

@@ -62,13 +62,9 @@ class PauseControl:
             self._changed.notify_all()
 
     def wait(self, *, listening: bool = False) -> bool:
-        """Waits until a step may be made, or until there is user input that the script reads.
+        """Waits until a step may be made, or, if `listening`, until `call_back`.
 
-        Args:
-            listening: Return at `call_back`, too.
-
-        Returns:
-            Whether a step may be made; it then counts as made.
+        Returns whether a step may be made; it then counts as made.
         """
         with self._changed:
             calls = self._calls

@@ -14,11 +14,7 @@ if TYPE_CHECKING:
 
 
 class Sleeping:
-    """Whether bodies may fall asleep. Its method is called between steps.
-
-    Args:
-        world: The world.
-    """
+    """Whether bodies may fall asleep. Its method is called between steps."""
 
     def __init__(self, world: World) -> None:
         self._world = world

@@ -12,9 +12,6 @@ class StepLock:
     """Makes each step wait for the viewer and hold its lock; one of `World.observers`.
 
     So pages can pause, pull bodies and go back in time while a script calls `World.step`.
-
-    Args:
-        viewer: The viewer.
     """
 
     def __init__(self, viewer: Viewer) -> None:

@@ -1,8 +1,8 @@
-"""Python code of the calls that create bodies from shapes."""
+"""Python code of the calls that rebuild a scene."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,17 +18,32 @@ from carom.description import (
     JointType,
     Mesh,
     Plane,
+    Pose,
     Sphere,
     TriangleMesh,
 )
 from carom.description.joint import JOINT_CODE
+from carom.description.transform import compose, inverse
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import LinkSpec
+from carom.scene.soft_body import SoftBody
 from pybullet._calls.errors import logger
 from pybullet._loading.multi_body import JOINT_TYPES
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.user_constraints import UserConstraint
+    from pybullet._clients.clients import Client
+    from pybullet._clients.origins import FileLoad
+
+_START = (
+    "import pybullet as p",
+    "",
+    "cin = p.connect(p.SHARED_MEMORY)",
+    "if cin < 0:",
+    "    cin = p.connect(p.GUI)",
+    "bodies = {}",
+)
 
 
 class Raw(str):
@@ -61,13 +76,7 @@ def _joint_type(kind: JointType) -> Raw:
 
 
 def multi_body(body: Body, position: Sequence[float], orientation: Sequence[float]) -> str:
-    """The call of `createMultiBody` that creates a copy of a body, with its shapes.
-
-    Args:
-        body: The body.
-        position: Position of the copy's base link frame in the world [m].
-        orientation: Its orientation (x, y, z, w).
-    """
+    """The call of `createMultiBody` that copies a body to a world pose of its base's link frame."""
     spec = body.spec
     kept = spec.flags & ~LoadFlags.USE_IMPLICIT_CYLINDER | LoadFlags.MAINTAIN_LINK_ORDER
     lists: dict[str, list[Any]] = {}
@@ -193,3 +202,121 @@ def _arguments(geometry: Geometry) -> dict[str, Any]:
             }
         case _:
             return {}
+
+
+def scene_lines(client: Client) -> list[str]:
+    """The lines of a script that rebuilds the scene of a client, which must not change meanwhile."""
+    kind = ["p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)"] if client.deformable else []
+    return [*_START, *kind, *_bodies(client), *_constraints(client), *_parameters(client)]
+
+
+def _bodies(client: Client) -> Iterator[str]:
+    loaded: dict[FileLoad, dict[int, Body]] = {}
+    for body in client.world.bodies.values():
+        origin = client.origins.get(body.id)
+        if origin is not None:
+            loaded.setdefault(origin.load, {})[origin.index] = body
+    for body in client.world.bodies.values():
+        origin = client.origins.get(body.id)
+        if origin is None:
+            pose = _link_pose(body)
+            yield f"bodies[{body.id}] = {multi_body(body, pose.position, pose.orientation)}"
+            yield from _state(body)
+        elif origin.load in loaded:
+            yield from _file(origin.load, loaded.pop(origin.load))
+
+
+def _file(load: FileLoad, bodies: dict[int, Body]) -> Iterator[str]:
+    """The lines that load one file and set its bodies' states; bodies removed since are removed again."""
+    first = next(iter(bodies.values()))
+    assert first.spec.source is not None
+    path = str(first.spec.source.absolute())
+    if load.takes_pose:
+        pose = _link_pose(first)
+        yield f"objects = [{call(load.function, path, pose.position, pose.orientation, **load.arguments)}]"
+    else:
+        yield f"objects = {call(load.function, path, **load.arguments)}"
+    for index in range(load.count):
+        if index in bodies:
+            yield f"bodies[{bodies[index].id}] = objects[{index}]"
+            yield from _state(bodies[index])
+        else:
+            yield f"p.removeBody(objects[{index}])"
+
+
+def _com_pose(body: Body) -> Pose:
+    x, y, z, qx, qy, qz, qw = body.world.position[body.first_position :][:7].tolist()
+    return Pose((x, y, z), (qx, qy, qz, qw))
+
+
+def _link_pose(body: Body) -> Pose:
+    return compose(_com_pose(body), inverse(body.spec.base.inertial_frame))
+
+
+def _state(body: Body) -> Iterator[str]:
+    handle, world = Raw(f"bodies[{body.id}]"), body.world
+    pose = _com_pose(body)
+    yield call("resetBasePositionAndOrientation", handle, pose.position, pose.orientation)
+    velocity = world.velocity[body.first_velocity :][:6].tolist()
+    if any(velocity):
+        yield call("resetBaseVelocity", handle, velocity[3:], velocity[:3])
+    if isinstance(body, SoftBody):
+        yield call("resetMeshData", handle, body.nodes.tolist())
+    for joint in range(body.joint_count):
+        q, u = body.position_index[joint], body.velocity_index[joint]
+        positions = world.position[q:][: body.position_count[joint]].tolist()
+        velocities = world.velocity[u:][: body.velocity_count[joint]].tolist()
+        if len(positions) in (1, 4):
+            yield call("resetJointStateMultiDof", handle, joint, positions, velocities)
+
+
+def _constraints(client: Client) -> Iterator[str]:
+    for constraint in client.world.user_constraints.all:
+        yield from _constraint(constraint)
+    for body in client.world.bodies.values():
+        if isinstance(body, SoftBody):
+            yield from _anchors(body)
+
+
+def _anchors(soft: SoftBody) -> Iterator[str]:
+    handles = {id(body.rows): Raw(f"bodies[{body.id}]") for body in soft.world.bodies.values()}
+    for anchor in soft.anchors:
+        holder = -1 if anchor.body is None else handles[id(anchor.body)]
+        yield call("createSoftBodyAnchor", handles[id(soft.rows)], anchor.node, holder, anchor.link)
+
+
+def _constraint(it: UserConstraint) -> Iterator[str]:
+    made = call(
+        "createConstraint",
+        Raw(f"bodies[{it.parent.id}]"),
+        it.parent_link,
+        -1 if it.child is None else Raw(f"bodies[{it.child.id}]"),
+        it.child_link,
+        int(it.kind),
+        it.axis,
+        it.parent_frame.position,
+        it.child_frame.position,
+        it.parent_frame.orientation,
+        it.child_frame.orientation,
+    )
+    yield f"cid{it.id} = {made}"
+    yield call(
+        "changeConstraint",
+        Raw(f"cid{it.id}"),
+        maxForce=it.max_force,
+        gearRatio=it.gear_ratio,
+        gearAuxLink=it.gear_auxiliary_link,
+        relativePositionTarget=it.relative_position_target,
+        erp=it.erp,
+    )
+
+
+def _parameters(client: Client) -> Iterator[str]:
+    parameters = client.world.parameters
+    yield call("setGravity", *parameters.gravity)
+    yield call(
+        "setPhysicsEngineParameter",
+        fixedTimeStep=parameters.time_step,
+        numSolverIterations=parameters.solver_iterations,
+        numSubSteps=parameters.substeps,
+    )
