@@ -2,34 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from math import hypot
 from pathlib import Path
-from typing import TypeVar
 
-from carom.description import Geometry, Plane
+from carom.description import Plane
 from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
 
-Context = TypeVar("Context", bound=FileContext)
-
 MESH_SUFFIXES = (".obj", ".stl", ".dae")
 FIELD_SUFFIXES = (".cdf",)
+_SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
 
 
-def read_geometry(
-    context: Context, owner: Element, readers: Mapping[str, Callable[[Context, Element], Geometry]]
-) -> Geometry:
-    """The shape of a `<visual>` or `<collision>`.
-
-    Args:
-        context: The reading it belongs to.
-        owner: The `<visual>` or `<collision>`.
-        readers: The function that reads each shape, by the name of its element.
+def shape_element(context: FileContext, owner: Element) -> Element:
+    """The shape element of a `<visual>` or `<collision>`, which has one of the names in `_SHAPES`.
 
     Raises:
-        DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
+        DescriptionError: There is no `<geometry>`, it is empty, or the shape is unknown.
     """
     geometry = owner.first("geometry")
     if geometry is None:
@@ -37,10 +27,9 @@ def read_geometry(
     if not geometry.children:
         raise context.error(geometry, "it holds no shape")
     shape = geometry.children[0]
-    reader = readers.get(shape.tag)
-    if reader is None:
-        raise context.error(shape, f"unknown shape; known are {', '.join(readers)}")
-    return reader(context, shape)
+    if shape.tag not in _SHAPES:
+        raise context.error(shape, f"unknown shape; known are {', '.join(_SHAPES)}")
+    return shape
 
 
 def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:

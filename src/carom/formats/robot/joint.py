@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import hypot
 
 from carom.description import JointLimit, JointType
-from carom.description.joint import NEEDS_LIMIT
+from carom.description.joint import NEEDS_AXIS, NEEDS_LIMIT
+from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
+
+ALONG_X: tuple[Vector3, float] = (1.0, 0.0, 0.0), 1.0
+"""Axis, and its length in the file, of a joint that states none."""
 
 
 def read_joint_type(context: FileContext, element: Element, types: Mapping[str, JointType]) -> JointType:
@@ -23,6 +28,19 @@ def link_index(context: FileContext, element: Element, name: str, link_indices: 
     if name not in link_indices:
         raise context.error(element, f"there is no link {shown(name)}")
     return link_indices[name]
+
+
+def unit_axis(
+    context: FileContext, element: Element, kind: JointType, axis: Vector3
+) -> tuple[Vector3, float]:
+    """Unit axis and the length it had in the file; along x where it has none and the joint needs none."""
+    x, y, z = axis
+    length = hypot(x, y, z)
+    if length != 0.0:
+        return (x / length, y / length, z / length), length
+    if kind in NEEDS_AXIS:
+        raise context.error(element, f"the axis of a {kind.value} joint has no length")
+    return ALONG_X
 
 
 def read_limit(context: FileContext, owner: Element, kind: JointType, scale: float = 1.0) -> JointLimit:

@@ -10,11 +10,12 @@ from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.link import MASSLESS
+from carom.formats.robot.link import MASSLESS, read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
+from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
-from carom.formats.sdf.link import read_sdf_link
+from carom.formats.sdf.material import read_sdf_material
 from carom.formats.xml_element import Element
 
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
@@ -60,7 +61,7 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
     poses: list[Pose] = []
     lines: dict[str, int] = {}
     for element in model.all("link"):
-        link = read_sdf_link(context, element)
+        link = read_link(context, element, read_sdf_geometry, read_sdf_material)
         context.refuse_duplicate(element, link.name, lines)
         links.append(link)
         poses.append(context.pose(element))

@@ -7,13 +7,14 @@ from pathlib import Path
 
 from carom.description import Joint, Link, Material, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
+from carom.formats.robot.context import FileContext
 from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
+from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
-from carom.formats.urdf.link import read_link
-from carom.formats.urdf.material import read_global_materials
+from carom.formats.urdf.material import read_global_materials, read_visual_material
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
@@ -62,7 +63,7 @@ def parse_urdf(
 ) -> tuple[Robot, dict[str, Path | None]]:
     """A robot from the content of a file, and the path that each file name in it was resolved to."""
     element = parse_root(data, file, "robot")
-    context = UrdfContext(file, element, scale, search)
+    context = FileContext(file, element, scale, search)
     name = context.required(element, "name")
     for tag in _SOFT:
         soft = element.first(tag)
@@ -84,7 +85,7 @@ def parse_urdf(
     return robot, context.references
 
 
-def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
+def _soft_robot(context: FileContext, name: str, element: Element) -> Robot:
     """A robot that is a soft body; as in PyBullet its links and joints are ignored."""
     from carom.formats.urdf.deformable import read_deformable
 
@@ -99,11 +100,11 @@ def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
     )
 
 
-def _read_links(context: UrdfContext) -> list[Link]:
+def _read_links(context: FileContext) -> list[Link]:
     links: list[Link] = []
     lines: dict[str, int] = {}
     for element in context.root.all("link"):
-        link = read_link(context, element)
+        link = read_link(context, element, read_urdf_geometry, read_visual_material)
         context.refuse_duplicate(element, link.name, lines)
         links.append(link)
     if not links:
@@ -111,7 +112,7 @@ def _read_links(context: UrdfContext) -> list[Link]:
     return links
 
 
-def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
+def _read_joints(context: FileContext, links: list[Link]) -> list[Joint]:
     link_indices = {link.name: index for index, link in enumerate(links)}
     joints: list[Joint] = []
     lines: dict[str, int] = {}
@@ -122,14 +123,14 @@ def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
     return joints
 
 
-def _with_late_materials(context: UrdfContext, link: Link) -> Link:
+def _with_late_materials(context: FileContext, link: Link) -> Link:
     """The link with its materials, including those that were referred to before their definition."""
     if all(_is_settled(visual.material) for visual in link.visuals):
         return link
     return replace(link, visuals=tuple(_with_late_material(context, visual) for visual in link.visuals))
 
 
-def _with_late_material(context: UrdfContext, visual: Visual) -> Visual:
+def _with_late_material(context: FileContext, visual: Visual) -> Visual:
     material = visual.material
     if material is None or _is_settled(material):
         return visual
