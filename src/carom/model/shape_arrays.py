@@ -157,15 +157,7 @@ class ShapeArrays:
         body = BodyShapes(
             rows, {axis: self.used[axis] for axis in AXES}, row_counts([placed.piece for placed in pieces])
         )
-        body.bounds = [
-            link_bounds(
-                link.collisions,
-                link.inertial_frame,
-                implicit_cylinder=implicit,
-                compound_margin=link.compound_margin,
-            )
-            for link in links
-        ]
+        body.bounds = [link_bounds(link, implicit_cylinder=implicit) for link in links]
         body.own_margin = [has_own_margin(link) for link in links]
         needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
@@ -391,12 +383,7 @@ class ShapeArrays:
                 "its shapes would be of another kind, or have another number of parts or corners"
             )
         self.changes += 1
-        body.bounds[link] = link_bounds(
-            spec.collisions,
-            spec.inertial_frame,
-            implicit_cylinder=implicit_cylinder,
-            compound_margin=spec.compound_margin,
-        )
+        body.bounds[link] = link_bounds(spec, implicit_cylinder=implicit_cylinder)
         numpy = self.table.numpy
         for row, placed in enumerate(pieces, start=shapes.start):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
