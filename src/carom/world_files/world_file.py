@@ -203,7 +203,7 @@ def restore_world(world: World, path: Path) -> None:
 
     def restore() -> None:
         document, reader, _ = _read(path)
-        snapshot = read_state(reader, document.get("state")).snapshot()
+        snapshot = read_state(reader, document.get("state"))
         check_same(snapshot.layout, layout(world))
         check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
         world.restore(snapshot)
