@@ -45,13 +45,7 @@ class Mechanism:
     """
 
     def __init__(self, nodes: Sequence[Node], ends: Sequence[End] = (), *, free: bool) -> None:
-        """Set up the nodes.
-
-        Args:
-            nodes: Parents first, beginning with the base.
-            ends: Links whose Jacobians can be computed, the base first.
-            free: The base moves.
-        """
+        """Set up nodes, parents first, and links for Jacobians, both beginning with the base."""
         self.free = free
         self.joint_dofs: int = sum(len(node.axes) for node in nodes)
         self.dofs: int = self.joint_dofs + (BASE_VELOCITIES if free else 0)
@@ -93,20 +87,13 @@ class Mechanism:
         )
 
     def set_base_motion(self, *motion: float) -> None:
-        """Set the motion of the base, for later queries of forces.
-
-        Args:
-            *motion: Angular velocity, angular acceleration, and acceleration minus gravity.
-        """
+        """Set the angular velocity, its derivative, and acceleration minus gravity, of the base."""
         self._put_base(*motion)
 
     def forces(self, positions: Numbers, rates: Numbers, accelerations: Numbers) -> tuple[float, ...]:
         """Generalized forces, (`dofs`,), that cause a motion; those of a free base are torque, then force.
 
-        Args:
-            positions: Joint positions, (`coordinates`,).
-            rates: Joint rates, (`joint_dofs`,).
-            accelerations: Joint accelerations, (`joint_dofs`,).
+        Positions of joints are (`coordinates`,), their rates and accelerations (`joint_dofs`,).
 
         Raises:
             ValueError: A number is not finite, the forces overflow, or a length is wrong.
@@ -131,16 +118,11 @@ class Mechanism:
         return self._rows(self._matrix)
 
     def jacobian(self, link: int, point: Numbers, positions: Numbers) -> tuple[Rows, Rows]:
-        """Linear and angular Jacobian of a point, each three rows of `dofs` numbers.
+        """Linear and angular Jacobian of a point on a link (-1 is the base), each (3, `dofs`).
 
-        Args:
-            link: Index of the link; -1 is the base.
-            point: Offset from the link frame's origin, for the base from its centre of mass, along the axes
-                of the inertial frame [m].
-            positions: Joint positions, (`coordinates`,).
-
-        Raises:
-            ValueError: There is no such link.
+        The point is an offset from the link frame's origin, for the base from its centre of mass, along the
+        axes of the inertial frame [m]; joint positions are (`coordinates`,). Raises `ValueError` if there is
+        no such link.
         """
         find = self._jacobians.get(link)
         if find is None:

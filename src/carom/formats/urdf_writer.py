@@ -45,9 +45,7 @@ _UNNAMED = "material"
 def urdf_text(robot: Robot, folder: Path) -> str:
     """The URDF text of a robot; `read_urdf` reads the same robot from it, except for rounding errors.
 
-    Args:
-        robot: The robot.
-        folder: Folder of the file: paths of meshes and textures are relative to it.
+    Paths of meshes and textures are relative to the folder of the file.
 
     Raises:
         DescriptionError: It has a shape that URDF does not have, or is a soft body.

@@ -58,13 +58,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
 
 
 def extreme_points(points: Points) -> Points:
-    """The corners of the convex hull of points, without added thickness.
-
-    Args:
-        points: (n, 3) positions, n at least 1.
-
-    Returns:
-        Those of the points that are corners, shape (k, 3).
+    """Those of (n, 3) points that are corners of their convex hull, without added thickness, (k, 3).
 
     Raises:
         ValueError: There are no points, or one is not finite.

@@ -22,16 +22,10 @@ _PARALLEL = 0.999
 def merged_loops(
     vertices: NDArray[np.float64], triangles: list[tuple[int, int, int]], size: float
 ) -> list[list[int]]:
-    """Joins the triangles of a closed convex surface that lie in one plane.
+    """Joins the triangles of a closed convex surface of this size that lie in one plane.
 
-    Args:
-        vertices: (n, 3) positions.
-        triangles: Vertex indices, counter-clockwise from outside.
-        size: Size of the hull.
-
-    Returns:
-        Vertex indices around each polygon, counter-clockwise from outside. Vertices in the middle of an
-        edge are left out.
+    Triangles, and the polygons that are returned, are vertex indices, counter-clockwise from outside.
+    Vertices in the middle of an edge are left out.
     """
     corners = np.array(triangles)
     a, b, c = (vertices[corners[:, side]] for side in range(3))

@@ -70,11 +70,9 @@ def polyhedron(
 
 
 def polyhedron_of_loops(vertices: NDArray[np.float64], loops: list[list[int]]) -> Polyhedron:
-    """A polyhedron from the corners of its faces; vertices no face uses are left out.
+    """A polyhedron from the corners of its faces; vertices (n, 3) that no face uses are left out.
 
-    Args:
-        vertices: (n, 3) positions.
-        loops: Vertex indices around each face, counter-clockwise from outside, nearly in one plane.
+    Each loop goes around a face, counter-clockwise from outside, nearly in one plane.
     """
     counts = np.array([len(loop) for loop in loops], dtype=np.int32)
     corners = np.fromiter((corner for loop in loops for corner in loop), np.int64, counts.sum())
@@ -86,11 +84,9 @@ def polyhedron_of_loops(vertices: NDArray[np.float64], loops: list[list[int]]) -
 
 
 def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np.integer]) -> Polyhedron:
-    """The triangles of a surface; equal vertices become one, triangles without area vanish.
+    """Triangles (m, 3) of a surface, counter-clockwise from outside.
 
-    Args:
-        vertices: (n, 3) positions.
-        triangles: (m, 3) indices, counter-clockwise from outside.
+    Equal vertices become one, triangles without area vanish.
     """
     positions, merged = _distinct(vertices)
     corners = merged[triangles]

@@ -30,11 +30,7 @@ class TriangleHierarchy:
 
 
 def triangle_hierarchy(surface: Polyhedron) -> TriangleHierarchy:
-    """Build the hierarchy of a surface.
-
-    Args:
-        surface: A surface whose faces are all triangles.
-    """
+    """Build the hierarchy of a surface whose faces are all triangles."""
     corners = surface.corners.reshape(-1, 3)
     count = len(corners)
     leaf_count = 1

@@ -57,12 +57,7 @@ class CountingDevice(Device):
 
 
 def check_room(device: Device, count: int, make: Callable[[CountingDevice], Any]) -> None:
-    """Check that the arrays of some worlds fit into the free memory of a device.
-
-    Args:
-        device: The device.
-        count: Number of worlds.
-        make: Makes all their arrays on a device that only counts bytes.
+    """Check that the arrays of some worlds, which `make` makes, fit into the free memory of a device.
 
     Raises:
         MemoryError: The arrays do not fit.

@@ -115,11 +115,7 @@ class StepStepper(_Asked, Stepper):
 
 
 class TaskStepper(_Asked, Stepper):
-    """Runs launches with one thread per world, for some of the worlds.
-
-    Args:
-        worlds: Indices of the worlds; changed in place.
-    """
+    """Runs launches with one thread per world, for some of the worlds, whose indices are changed in place."""
 
     def __init__(self, worlds: np.ndarray) -> None:
         super().__init__(len(worlds))

@@ -45,9 +45,7 @@ class BodyRows:
 def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
     """The rows of a body, made by writing it to empty arrays; None if they are larger than `MOST_BYTES`.
 
-    Args:
-        spec: The body, which is not soft.
-        surfaces: Contact parameters of its links, the base first.
+    The body is not soft; `surfaces` are the contact parameters of its links, the base first.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

@@ -113,11 +113,8 @@ def placed_bounds(
 def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:
     """Bounds of a shape in its own frame, widened by its own margin.
 
-    The margin of a hull counts twice: once in the bounds of its points and once around them.
-
-    Args:
-        geometry: The shape.
-        implicit_cylinder: Cylinders are exact; otherwise they are hulls of their rims.
+    The margin of a hull counts twice: once in the bounds of its points and once around them. Unless cylinders
+    are implicit, they are hulls of their rims.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

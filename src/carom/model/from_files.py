@@ -34,11 +34,8 @@ def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedB
 def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool = True) -> list[PlacedBody]:
     """The bodies of an MJCF file, in the order of the file; raises `DescriptionError`.
 
-    Args:
-        path: The file.
-        search: Folders in which it and the files it refers to are searched.
-        flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
-        as_mujoco: `axisangle` turns bodies, and named classes limit joints; in PyBullet they do not.
+    `flags` are `carom.layouts.flags.LoadFlags`. With `as_mujoco`, `axisangle` turns bodies, and named classes
+    limit joints; in PyBullet they do not.
     """
     from carom.formats.mjcf import read_mjcf
 

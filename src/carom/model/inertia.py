@@ -53,10 +53,7 @@ def inertia_from_shapes(link: LinkSpec, *, implicit_cylinder: bool) -> Vector3:
 
     A single shape that lies exactly in the inertial frame has its own moments. In all other cases, also
     without shapes, the moments are those of the bounding box of all shapes, widened by `compound_margin`.
-
-    Args:
-        link: The link; its own inertia is not used.
-        implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
+    Unless cylinders are implicit, they are hulls of 32 sides.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
@@ -236,19 +233,12 @@ def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose
 
 
 def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vector3, Matrix3]:
-    """Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi rotations.
+    """Eigenvalues of a symmetric matrix, and a matrix with the eigenvectors as columns, by Jacobi rotations.
 
     Each rotation makes the largest off-diagonal entry zero. The eigenvalues are in the order in which they
-    appear on the diagonal, and the matrix of eigenvectors is a rotation, not a reflection.
-
-    Args:
-        tensor: The matrix.
-        threshold: Once the largest off-diagonal entry is at most this fraction of the sum of magnitudes on
-            the diagonal, one last rotation is made.
-        most_steps: Maximum number of rotations.
-
-    Returns:
-        The eigenvalues, and a matrix with the eigenvectors as columns.
+    appear on the diagonal, and the matrix of eigenvectors is a rotation, not a reflection. Once the largest
+    off-diagonal entry is at most `threshold` times the sum of magnitudes on the diagonal, one last rotation
+    is made.
     """
     a = [list(row) for row in tensor]
     v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]

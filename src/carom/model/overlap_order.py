@@ -11,18 +11,10 @@ from carom.layouts.contacts import NO_MANIFOLD
 
 
 def without_shapes(overlaps: np.ndarray, first: int, count: int) -> np.ndarray:
-    """The overlaps that remain when the shapes in rows [first, first + count) are removed.
+    """The overlaps, (n, 4), that remain when the shapes in rows [first, first + count) are removed.
 
     As in Bullet, one shape after the other loses its overlaps, in the order of the pair cache, and the last
-    one moves to the place of each that is removed.
-
-    Args:
-        overlaps: `Contacts.overlap_shapes` of a world, shape (n, 4).
-        first: Row of the first shape.
-        count: Number of shapes.
-
-    Returns:
-        The same of the world without these shapes; rows of later shapes are `count` less.
+    one moves to the place of each that is removed. In the result rows of later shapes are `count` less.
     """
     end = first + count
     pairs = overlaps[:, :2]

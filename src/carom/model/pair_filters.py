@@ -14,11 +14,7 @@ _FIELDS = ("filter_link_a", "filter_link_b", "filter_enabled")
 
 
 class PairFilters:
-    """Rules for pairs of links, kept sorted in the `filter_` fields of `Shapes`.
-
-    Args:
-        table: The table that has these fields.
-    """
+    """Rules for pairs of links, kept sorted in the `filter_` fields of a table of `Shapes`."""
 
     def __init__(self, table: ArrayTable) -> None:
         self._table = table
@@ -36,12 +32,7 @@ class PairFilters:
         return [(a, b, bool(enabled[row])) for row, (a, b) in enumerate(self._pairs)]
 
     def set(self, link_a: int, link_b: int, *, enabled: bool) -> bool:
-        """Enable or disable collisions of two links, overriding their groups and masks.
-
-        Args:
-            link_a: Row of a link.
-            link_b: Row of the other.
-            enabled: Whether they collide.
+        """Enable or disable collisions of two links, by row, overriding their groups and masks.
 
         Returns:
             Whether arrays were replaced.

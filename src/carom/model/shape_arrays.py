@@ -140,10 +140,8 @@ class ShapeArrays:
     def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> bool:
         """Add the shapes of a body whose links were appended to the model just before.
 
-        Args:
-            spec: The body.
-            rows: Rows of its tree; this object is kept, and read again whenever the body changes.
-            surfaces: Contact parameters of its links, the base first.
+        `rows` are those of its tree; this object is kept, and read again whenever the body changes.
+        `surfaces` are the contact parameters of its links, the base first.
 
         Returns:
             Whether arrays were replaced.
@@ -171,12 +169,7 @@ class ShapeArrays:
         return grown
 
     def put(self, known: BodyRows, rows: TreeRows) -> None:
-        """Add the shapes of a body whose rows are known; see `append`.
-
-        Args:
-            known: Its rows.
-            rows: Rows of its tree, which were put into the model just before.
-        """
+        """Add the shapes of a body whose rows are known and are in the model already; see `append`."""
         used, count = self.used, known.shape_count
         needed = {axis: used[axis] + number for axis, number in count.items()}
         self.table.reserve(needed)
@@ -364,11 +357,6 @@ class ShapeArrays:
 
     def replace_pieces(self, link_row: int, spec: LinkSpec, *, implicit_cylinder: bool) -> None:
         """Write a link's shapes again after their data changed; the number of rows is the same.
-
-        Args:
-            link_row: The link.
-            spec: Its shapes now.
-            implicit_cylinder: Cylinders are exact.
 
         Raises:
             ValueError: The number of rows or a kind of shape would change; nothing has changed.

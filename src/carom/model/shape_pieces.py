@@ -84,13 +84,8 @@ class ShapePiece:
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
     """The pieces of a shape for collision detection; all of them share the frame of the shape.
 
-    Args:
-        geometry: The shape.
-        implicit_cylinder: Cylinders are exact; otherwise they are hulls of 32 sides.
-
-    Returns:
-        One piece, or one for each group of an OBJ file; none for a signed distance field, which nothing
-        collides with.
+    There is one piece, or one for each group of an OBJ file; none for a signed distance field, which nothing
+    collides with. Unless cylinders are implicit, they are hulls of 32 sides.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

@@ -52,14 +52,10 @@ def quicksort_order(keys: Sequence[int]) -> list[int]:
 
 
 def batch_islands(tags: Sequence[int], minimum_size: int) -> list[tuple[int, int]]:
-    """Group sorted constraints into the runs that are solved together.
+    """First index and length of each run of sorted constraints that are solved together.
 
-    Args:
-        tags: Island of each constraint, ascending.
-        minimum_size: Islands are joined until a run has more constraints than this.
-
-    Returns:
-        First index and length of each run.
+    `tags` are the islands of the constraints, ascending, which are joined until a run has more constraints
+    than `minimum_size`.
     """
     runs: list[tuple[int, int]] = []
     start = 0

@@ -35,9 +35,7 @@ _MODES = (VELOCITY, TORQUE, POSITION)
 
 
 class MotorGroup:
-    """Revolute and prismatic joints of a world, in any order.
-
-    It is valid until bodies are added or removed.
+    """Revolute and prismatic joints of a world, in any order; valid until bodies are added or removed.
 
     Args:
         world: The world.
@@ -83,11 +81,7 @@ class MotorGroup:
         self._asked: tuple[float, ...] = ()
 
     def record(self, indices: Sequence[int]) -> Record:
-        """The record of these joints for quick calls; valid as long as this object exists.
-
-        Args:
-            indices: Their indices in the body.
-        """
+        """The record of these joints, by index, for quick calls; valid as long as this object exists."""
         commands = self._commands.struct()
         made = Record(
             indices=ctypes.addressof(self._keep(indices)),

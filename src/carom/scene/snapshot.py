@@ -140,18 +140,10 @@ def take(world: World, layout: Layout) -> Snapshot:
 
 
 def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], None]:
-    """Prepare to restore a world from a snapshot.
+    """Prepare to restore a world, which has this layout, from a snapshot.
 
     Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
-    and loaded in another order.
-
-    Args:
-        world: The world.
-        layout: Its layout.
-        snapshot: The state.
-
-    Returns:
-        A function that restores the state; it can be called again if it was interrupted.
+    and loaded in another order. The function that is returned can be called again if it was interrupted.
 
     Raises:
         StateError: The world has other bodies.

@@ -36,20 +36,11 @@ def soft_body_from_file(
     self_collision: bool = False,
     simulated: Path | None = None,
 ) -> BodySpec:
-    """The soft body of a mesh file.
+    """The soft body of a mesh file, `.obj` or `.vtk`; most arguments are those of `soft_body`.
 
-    Only the first object of an OBJ file is used; its triangles are cloth, and `solid` is ignored.
-
-    Args:
-        path: The file, `.obj` or `.vtk`.
-        scale: Factor on all lengths.
-        mass: Total mass of all nodes [kg].
-        springs: Springs along the edges of the cells.
-        solid: Material of tetrahedra.
-        margin: Distance at which nodes rest on other surfaces [m].
-        friction: Coulomb coefficient.
-        self_collision: Its nodes collide with its own faces.
-        simulated: A file with the mesh to simulate; the mesh of `path`, an OBJ file, is then only drawn.
+    Only the first object of an OBJ file is used; its triangles are cloth, and `solid` is ignored. `scale` is
+    a factor on all lengths. If there is a file with another mesh to simulate, that of `path`, an OBJ file, is
+    only drawn.
 
     Raises:
         DescriptionError: The file is missing, damaged or of another kind, or its mesh cannot be used.

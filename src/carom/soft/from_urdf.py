@@ -27,15 +27,10 @@ _CACHED = 64
 def urdf_body(
     path: Path, search: AssetSearch, *, scale: float, flags: int, fixed_base: bool, older: bool = False
 ) -> BodySpec:
-    """The body of a URDF file, rigid or soft.
+    """The body of a URDF file, rigid or soft; `scale` is a factor on all lengths.
 
-    Args:
-        path: The file.
-        search: Folders to search for it and for the files that it refers to.
-        scale: Factor on all lengths.
-        flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
-        fixed_base: Fix the base of a rigid body in the world.
-        older: Make soft bodies as in PyBullet without a deformable world.
+    `flags` are `carom.layouts.flags.LoadFlags`. `fixed_base` fixes the base of a rigid body in the world, and
+    `older` makes soft bodies as in PyBullet without a deformable world.
 
     Raises:
         DescriptionError: The file cannot be used.

@@ -24,11 +24,7 @@ _DAMPING = 0.05
 def older_cloth_from_file(path: Path, *, scale: float, mass: float, margin: float) -> BodySpec:
     """The cloth of an OBJ file; its stiffness, along edges and against bending, is proportional to its mass.
 
-    Args:
-        path: The file.
-        scale: Factor on all lengths.
-        mass: Total mass of all nodes [kg].
-        margin: Distance at which nodes rest on other surfaces [m].
+    The arguments are those of `soft_body_from_file`.
 
     Raises:
         DescriptionError: The file is missing or damaged, holds tetrahedra, or its mesh cannot be used.

@@ -12,11 +12,7 @@ _IN_CUBE = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7)
 
 
 def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A rectangle in the plane z = 0, centred on the origin.
-
-    Args:
-        size: Lengths along x and y [m].
-        cells: Number of cells along x and y.
+    """A rectangle in the plane z = 0, centred on the origin: size [m] and number of cells along x and y.
 
     Returns:
         ((n, 3) nodes, x fastest; (f, 3) triangles with normals along z, two for each cell).
@@ -33,11 +29,7 @@ def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[NDArray[np.
 def box(
     size: tuple[float, float, float], cells: tuple[int, int, int]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A cuboid of tetrahedra centred on the origin, six in each cell.
-
-    Args:
-        size: Lengths along x, y and z [m].
-        cells: Number of cells along x, y and z.
+    """A cuboid centred on the origin: size [m] and number of cells along x, y and z; six tetrahedra in each.
 
     Returns:
         ((n, 3) nodes, x fastest; (t, 4) tetrahedra of positive volume).

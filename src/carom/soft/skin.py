@@ -14,18 +14,11 @@ _CHUNK = 256
 def bind(
     vertices: NDArray[np.float64], nodes: NDArray[np.float64], cells: NDArray[np.int32]
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """The nodes that each vertex follows, and their weights.
+    """The nodes (v, k) that each vertex follows, and their weights (v, k), which add up to 1.
 
-    A vertex keeps its barycentric coordinates in the cell that contains it. A vertex outside of all cells is
-    extrapolated from the nearest cell, as in Bullet.
-
-    Args:
-        vertices: (v, 3) positions at rest [m].
-        nodes: (n, 3) positions at rest [m].
-        cells: (m, 3) triangles or (m, 4) tetrahedra.
-
-    Returns:
-        ((v, k) nodes; (v, k) weights that add up to 1).
+    A vertex keeps its barycentric coordinates in the triangle (m, 3) or tetrahedron (m, 4) that contains it.
+    A vertex outside of all cells is extrapolated from the nearest cell, as in Bullet. Positions (v, 3) and
+    (n, 3) are at rest [m].
     """
     corners = nodes[cells]
     middles = corners.mean(axis=1)

@@ -38,13 +38,8 @@ def mapping_of_file(
 ) -> TextureMapping | None:
     """Texture coordinates and texture that an OBJ file has for its first object.
 
-    Args:
-        file: The file.
-        vertices: (v, 3) vertices of that object, as in the file.
-        triangles: (t, 3) its triangles.
-
-    Returns:
-        None if the file has no texture coordinates, or if they cannot be read, with a warning.
+    Vertices (v, 3) and triangles (t, 3) are those of that object, as in the file. The result is None if the
+    file has no texture coordinates, or if they cannot be read, with a warning.
     """
     try:
         mesh = read_mesh_visual(file)

@@ -77,10 +77,7 @@ def _with_references(path: Path) -> dict[Path, bytes]:
 def restored(records: Any, blocks: memoryview, file: Path) -> list[Path]:
     """Paths of the files of a saved world, unpacked if the originals are missing or have changed.
 
-    Args:
-        records: The list in its document.
-        blocks: The bytes it refers to.
-        file: The saved world, for error messages.
+    They are read from the list in its document and the blocks this refers to; errors name the saved world.
 
     Raises:
         DescriptionError: The list is invalid, or a file cannot be unpacked.

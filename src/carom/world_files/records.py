@@ -95,12 +95,7 @@ class Reader:
         return DescriptionError(f"{where} {reason}", file=self._file)
 
     def read(self, hint: Any, data: Any, where: str) -> Any:
-        """Read a value.
-
-        Args:
-            hint: Its expected type.
-            data: Its JSON form.
-            where: Its place in the document, for error messages.
+        """Read a value of an expected type from its JSON form; `where` is its place, for error messages.
 
         Raises:
             DescriptionError: The value is not of that type.
@@ -134,13 +129,7 @@ class Reader:
     def array(
         self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
     ) -> np.ndarray:
-        """Read an array.
-
-        Args:
-            data: Its JSON form.
-            dtype: Expected type of its entries.
-            shape: Expected shape; None instead of a length, or of the shape, allows any.
-            where: Its place in the document, for error messages.
+        """Read an array; in the shape, and instead of it, None allows any.
 
         Raises:
             DescriptionError: The array has another type or shape, or contains NaN.

@@ -112,13 +112,10 @@ def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
 
 
 def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: bool) -> None:
-    """Set bodies that were just loaded to the state in which they were saved.
+    """Set bodies that were just loaded, in the order they were saved, to their state in a snapshot.
 
-    Args:
-        world: Their world.
-        bodies: The loaded bodies, which are the last of the world, in the order they were saved.
-        snapshot: The state.
-        whole: The world has no other bodies, so contacts, time and impulses of constraints are set as well.
+    They are the last of the world. If they are the `whole` of it, contacts, time and impulses of constraints
+    are set as well.
 
     Raises:
         ValueError: The state does not fit the bodies.
@@ -142,12 +139,7 @@ def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: 
 
 
 def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:
-    """Check that the arrays of a snapshot from a file fit its bodies in this world.
-
-    Args:
-        world: The world.
-        bodies: The bodies of the snapshot, as the world has them, in its order.
-        snapshot: The snapshot.
+    """Check that the arrays of a snapshot from a file fit its bodies, in its order, in this world.
 
     Raises:
         ValueError: They do not fit, or a value is out of range.

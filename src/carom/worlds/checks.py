@@ -14,13 +14,9 @@ Mask = NDArray[np.bool_]
 
 
 def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bool = True) -> Array:
-    """Broadcast `value` to an array of doubles; one value can be for all worlds, or for all joints.
+    """Broadcast a user's value to an array of doubles; one value can be for all worlds, or for all joints.
 
-    Args:
-        value: The user's value; numbers on another device stay there, and are not checked.
-        shape: The shape of the result, worlds first.
-        name: Its name in messages.
-        finite: Whether infinities raise an error; NaN always does.
+    Numbers on another device stay there, and are not checked. `finite` refuses infinities; NaN always is.
 
     Raises:
         ValueError: `value` does not broadcast to that shape, or a number is not finite.
@@ -44,11 +40,7 @@ def _spread(array: Any, shape: tuple[int, ...], name: str) -> Array:
 
 
 def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
-    """Indices of the chosen worlds.
-
-    Args:
-        where: A mask (count,), indices of worlds, or None for all.
-        count: Number of worlds.
+    """Indices of the chosen worlds: those of a mask (count,), the given ones, or with None all.
 
     Raises:
         ValueError: A mask has the wrong length, or the indices are not integers.

@@ -46,12 +46,7 @@ def collada_reader(data: bytes, file: Path) -> ColladaReader:
 
 
 class ColladaReader:
-    """Reads the geometries in the scene of a COLLADA document.
-
-    Args:
-        root: The `<COLLADA>` element.
-        file: Named in errors.
-    """
+    """Reads the geometries in the scene of a document, from its `<COLLADA>` element."""
 
     def __init__(self, root: Element, file: Path) -> None:
         self.root = root

@@ -69,12 +69,9 @@ class _Content:
 
 
 class ModelReader:
-    """Makes one robot from a body or geom of the world.
+    """Makes one robot, with the name of all robots of the file, from a body or geom of the world.
 
-    Args:
-        context: The reading it belongs to.
-        number: Number of models in the file before it.
-        name: Name of all robots of the file.
+    `number` is that of models in the file before it.
     """
 
     def __init__(self, context: MjcfContext, number: int, name: str) -> None:

@@ -97,13 +97,7 @@ class _Inclusion:
         self.elements = 0
 
     def expand(self, parent: Element, file: Path, including: tuple[Path, ...]) -> None:
-        """Replaces every `<include>` below an element.
-
-        Args:
-            parent: The element.
-            file: The file that contains it.
-            including: That file and those by which it is included.
-        """
+        """Replaces every `<include>` below an element; `including` are its file and those around that."""
         children: list[Element] = []
         for child in parent.children:
             if child.tag != "include":

@@ -42,17 +42,10 @@ def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:
 
 
 def shape_file(context: FileContext, shape: Element, key: str, name: str, suffixes: tuple[str, ...]) -> Path:
-    """The file of a mesh or distance field.
-
-    Args:
-        context: The reading it belongs to.
-        shape: The element that names it.
-        key: Attribute or child element that contains the file name.
-        name: The file name.
-        suffixes: Accepted suffixes of file names.
+    """The file of a mesh or distance field; `key` is the attribute or child element that contains its name.
 
     Raises:
-        DescriptionError: The suffix is not accepted, or there is no such file.
+        DescriptionError: The suffix of the name is not one of `suffixes`, or there is no such file.
     """
     check_suffix(context, shape, key, name, suffixes)
     path = context.find_file(name)

@@ -28,14 +28,9 @@ class Includes:
         found: Path | None,
         including: tuple[Path, ...],
     ) -> Path:
-        """The absolute path of an included file.
+        """The absolute path of an included file, `found` by the name that the `<include>` element states.
 
-        Args:
-            context: The reading it belongs to.
-            element: The `<include>` element.
-            name: The file name that it states.
-            found: The file of that name; None if it was not found.
-            including: The files by which it is included, outermost first.
+        `including` are the files by which it is included, outermost first.
 
         Raises:
             DescriptionError: There is no such file, it includes itself, or there are too many.

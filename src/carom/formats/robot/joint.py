@@ -44,13 +44,7 @@ def unit_axis(
 
 
 def read_limit(context: FileContext, owner: Element, kind: JointType, scale: float = 1.0) -> JointLimit:
-    """The `<limit>` below an element.
-
-    Args:
-        context: The reading it belongs to.
-        owner: The element.
-        kind: Type of the joint.
-        scale: Factor on lower and upper limit.
+    """The `<limit>` below an element; `scale` is a factor on lower and upper limit.
 
     Raises:
         DescriptionError: A joint of this type needs a limit, or a value is not a number.

@@ -35,11 +35,7 @@ def read_link(
 ) -> Link:
     """The link that a `<link>` element describes, without its pose.
 
-    Args:
-        context: The reading it belongs to.
-        element: The element.
-        read_geometry: Reads the shape of a `<visual>` or `<collision>`.
-        read_material: Reads the material of a `<visual>`.
+    The functions read the shape of a `<visual>` or `<collision>`, and the material of a `<visual>`.
 
     Raises:
         DescriptionError: The name is missing, or something inside is wrong.

@@ -27,11 +27,7 @@ def read_sdf_joint(
 ) -> Joint:
     """The joint that a `<joint>` element describes; its frame is that of the child link.
 
-    Args:
-        context: The reading it belongs to.
-        element: The `<joint>` element.
-        link_indices: Index in `Robot.links` of every link, by name.
-        poses: Poses of the links in the model's frame.
+    Links have indices in `Robot.links`, by name, and poses in the model's frame.
 
     Raises:
         DescriptionError: The name, type or a link is missing or unknown, or something inside is wrong.

@@ -53,12 +53,7 @@ class _Reading:
         self.includes = Includes()
 
     def read(self, file: Path, including: tuple[Path, ...]) -> list[PlacedRobot]:
-        """The robots of a file.
-
-        Args:
-            file: The file.
-            including: The files by which it is included, outermost first.
-        """
+        """The robots of a file; `including` are the files by which it is included, outermost first."""
         data, _ = read_bounded(file, MAX_FILE_BYTES)
         root = parse_root(data, file, "sdf")
         context = SdfContext(file, root, self.scale, self.search)

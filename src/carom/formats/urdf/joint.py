@@ -26,12 +26,7 @@ _TYPES = {kind.value: kind for kind in JointType}
 
 
 def read_joint(context: FileContext, element: Element, link_indices: dict[str, int]) -> Joint:
-    """The joint that a `<joint>` element describes.
-
-    Args:
-        context: The reading it belongs to.
-        element: The `<joint>` element.
-        link_indices: Index in `Robot.links` of every link, by name.
+    """The joint that a `<joint>` element describes; links have indices in `Robot.links`, by name.
 
     Raises:
         DescriptionError: The name, type or a link is missing or unknown, or something inside is wrong.
