@@ -45,11 +45,7 @@ class ExtendedModel:
         self._places = np.array(places)
 
     def mass_matrix(self, position: np.ndarray) -> np.ndarray:
-        """Mass matrix.
-
-        Returns:
-            (size, size); zeros for the fourth coordinate of quaternions.
-        """
+        """Mass matrix, (size, size), with zeros for the fourth coordinate of quaternions."""
         moving = np.array(self._mechanism.mass_matrix(position[BASE_POSITIONS:]))
         turn = np.eye(self._mechanism.dofs)
         turn[:3, :3] = turn[3:6, 3:6] = _rotation(position)

@@ -44,11 +44,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
 
 
 def parse_root(data: bytes, file: Path, *tags: str) -> Element:
-    """The first top-level element of a document that has one of these names.
-
-    Raises:
-        DescriptionError: There is none, or the document is broken.
-    """
+    """The first top-level element with one of these names; raises `DescriptionError` if there is none."""
     root = next((element for element in parse_xml(data, file) if element.tag in tags), None)
     if root is None:
         raise DescriptionError(f"there is no <{tags[0]}> element", file=file)

@@ -42,11 +42,7 @@ class Device(Protocol):
     name: str
 
     def zeros(self, shape: Sequence[int], dtype: np.dtype[Any]) -> Any:
-        """An array of zeros.
-
-        Raises:
-            MemoryError: The device has not enough free memory.
-        """
+        """An array of zeros; raises `MemoryError` if the device has not enough free memory."""
         ...
 
     def struct(self, declared: Any, arrays: Mapping[str, Any]) -> Any:

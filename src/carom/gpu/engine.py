@@ -46,11 +46,7 @@ class DeviceEngine(Engine):
     def like(
         cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
     ) -> DeviceEngine:
-        """An engine of `count` copies, on a device, of a world with these arrays.
-
-        Raises:
-            MemoryError: The device has not enough free memory.
-        """
+        """An engine of copies of a world; raises `MemoryError` if the device has not enough free memory."""
         check_room(device, count, lambda counter: cls.made(counter, arrays, contact_arrays, count).structs())
         return cls.made(device, arrays, contact_arrays, count)
 

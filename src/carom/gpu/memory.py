@@ -57,11 +57,7 @@ class CountingDevice(Device):
 
 
 def check_room(device: Device, count: int, make: Callable[[CountingDevice], Any]) -> None:
-    """Check that the arrays of some worlds, which `make` makes, fit into the free memory of a device.
-
-    Raises:
-        MemoryError: The arrays do not fit.
-    """
+    """Raise `MemoryError` unless the arrays that `make` makes fit into the free memory of a device."""
     free = device.free_memory()
     if free is None:
         return

@@ -56,11 +56,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:
-    """Prepare all shapes for collision detection early, so that errors are raised before bodies are added.
-
-    Raises:
-        DescriptionError: The file of a mesh cannot be used.
-    """
+    """Prepare all shapes for collision detection, so that `DescriptionError` is raised early."""
     for spec, _ in bodies:
         if spec.pattern is not None:
             continue

@@ -137,14 +137,11 @@ class ShapeArrays:
         """A C struct whose fields are views of the arrays."""
         return self.table.struct()
 
-    def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> bool:
+    def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> None:
         """Add the shapes of a body whose links were appended to the model just before.
 
         `rows` are those of its tree; this object is kept, and read again whenever the body changes.
         `surfaces` are the contact parameters of its links, the base first.
-
-        Returns:
-            Whether arrays were replaced.
 
         Raises:
             DescriptionError: The file of a mesh cannot be used; nothing has changed.
@@ -159,14 +156,13 @@ class ShapeArrays:
         body.own_margin = [has_own_margin(link) for link in links]
         needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
-        grown = self.table.reserve(needed)
+        self.table.reserve(needed)
         self._bodies[rows.first["link"]] = body
         self._write_links(body, spec, links)
         self._write_pieces(body, pieces)
         self.used.update(needed)
         for link_row, surface in enumerate(surfaces, start=self.used["link"] - len(links)):
             self.write_surface(link_row, surface)
-        return grown
 
     def put(self, known: BodyRows, rows: TreeRows) -> None:
         """Add the shapes of a body whose rows are known and are in the model already; see `append`."""
@@ -272,11 +268,7 @@ class ShapeArrays:
         return body.first["shape"], body.count["shape"]
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove a body's shapes, while its tree's rows are still present.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
-        """
+        """Prepare to remove a body's shapes, while its tree still has rows; it can be called again."""
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]
         count = {**body.count, "link": link_count}

@@ -242,13 +242,9 @@ _mesh_geometries = _MeshGeometries()
 
 
 def mesh_geometries(mesh: Mesh) -> tuple[MeshGeometry, ...]:
-    """The scaled collision geometries of a mesh file.
+    """A hull for each group of an OBJ file, one for any other file; one triangle mesh if it is concave.
 
-    Returns:
-        A hull for each group of an OBJ file, one for any other file; one triangle mesh if it is concave.
-
-    Raises:
-        DescriptionError: The file cannot be used.
+    They are scaled. Raises `DescriptionError` if the file cannot be used.
     """
     return _mesh_geometries.of(mesh)
 

@@ -229,11 +229,7 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
 
 
 def check_same(saved: Layout, present: Layout) -> None:
-    """Check that the present bodies are those of a saved state.
-
-    Raises:
-        StateError: A body is missing, additional, or has other joints or nodes.
-    """
+    """Raise `StateError` unless the present bodies, their joints and nodes are those of a saved state."""
     before = {body.id: body for body in saved.bodies}
     now = {body.id: body for body in present.bodies}
     for number in sorted(before.keys() | now.keys()):

@@ -70,11 +70,7 @@ def soft_body_from_file(
 
 
 def mesh_of(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """The nodes of a file, and its triangles or tetrahedra.
-
-    Raises:
-        DescriptionError: The file is missing, damaged or of another kind.
-    """
+    """The nodes of a file, and its triangles or tetrahedra; raises `DescriptionError`."""
     suffix = path.suffix.lower()
     if suffix in SOLIDS:
         mesh = read_vtk(path)

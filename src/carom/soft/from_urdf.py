@@ -103,11 +103,7 @@ def _are_unchanged(meshes: Meshes) -> bool:
 def robot_body(
     robot: Robot, *, scale: float = 1.0, flags: int = 0, fixed_base: bool = False, older: bool = False
 ) -> BodySpec:
-    """The body of a description; the arguments are those of `urdf_body`.
-
-    Raises:
-        DescriptionError: A mesh of a soft body cannot be used.
-    """
+    """The body of a description, with the arguments of `urdf_body`; raises `DescriptionError`."""
     if robot.deformable is None:
         return assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
     collides = bool(flags & LoadFlags.USE_SELF_COLLISION)

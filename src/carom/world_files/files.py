@@ -33,11 +33,7 @@ class FileTable:
         self.records: list[dict[str, Any]] = []
 
     def add(self, path: Path) -> int:
-        """Add a file with the files it refers to, and return its number.
-
-        Raises:
-            DescriptionError: A file cannot be read.
-        """
+        """Add a file with the files it refers to, and return its number; raises `DescriptionError`."""
         path = Path(os.path.abspath(path))
         if path not in self._numbers:
             members = _with_references(path) if path.is_file() else {}

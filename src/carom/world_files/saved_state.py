@@ -139,11 +139,7 @@ def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: 
 
 
 def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:
-    """Check that the arrays of a snapshot from a file fit its bodies, in its order, in this world.
-
-    Raises:
-        ValueError: They do not fit, or a value is out of range.
-    """
+    """Raise `ValueError` unless the arrays of a snapshot from a file fit its bodies, in its order."""
     saved = snapshot.layout.bodies
     counts = snapshot.contacts["count_contacts"]
     if counts.ndim != 1 or len(counts) < CONTACT_COLUMNS:

@@ -63,12 +63,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
 
 
 def choose(what: str, names: Sequence[str], key: int | str) -> int:
-    """The index of the joint or link with an index or a name.
-
-    Raises:
-        KeyError: Nothing has that name.
-        IndexError: There is no such index.
-    """
+    """The index of the joint or link with an index (or `IndexError`) or a name (or `KeyError`)."""
     if isinstance(key, str):
         if key not in names:
             raise KeyError(f"no {what} is called {key!r}; there are {', '.join(names)}")

@@ -27,11 +27,7 @@ MAX_PARTS = 4096
 
 
 def read_collada(data: bytes, file: Path) -> list[MeshPart]:
-    """Reads a DAE file.
-
-    Raises:
-        DescriptionError: It is not COLLADA, is broken, or its scene shows no triangles.
-    """
+    """Reads a DAE file; raises `DescriptionError` if it is broken, or its scene shows no triangles."""
     reader = collada_reader(data, file)
     parts = [reader.part(identifier, placement) for identifier, placement in reader.scene()]
     parts = [part for part in parts if len(part.triangles)]

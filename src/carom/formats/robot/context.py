@@ -205,11 +205,7 @@ class FileContext:
         return Pose(position, quaternion_from_rpy(roll, pitch, yaw))
 
     def refuse_duplicate(self, element: Element, name: str, lines: dict[str, int]) -> None:
-        """Record the line of a name in `lines`.
-
-        Raises:
-            DescriptionError: The name is in `lines` already.
-        """
+        """Record the line of a name in `lines`; raises `DescriptionError` if it is there already."""
         if name in lines:
             raise self.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
         lines[name] = element.line

@@ -18,11 +18,7 @@ MAX_FILE_BYTES = 16 << 20
 
 
 def locate(path: Path, search: AssetSearch) -> Path:
-    """The absolute path of a file, looked up with `AssetSearch.find`.
-
-    Raises:
-        DescriptionError: There is none.
-    """
+    """The absolute path that `AssetSearch.find` finds; raises `DescriptionError` if there is none."""
     found = search.find(path)
     if found is None:
         raise DescriptionError(f"no such file: {path}{advice(path, search.places)}", file=path)

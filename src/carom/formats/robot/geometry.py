@@ -16,11 +16,7 @@ _SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
 
 
 def shape_element(context: FileContext, owner: Element) -> Element:
-    """The shape element of a `<visual>` or `<collision>`, which has one of the names in `_SHAPES`.
-
-    Raises:
-        DescriptionError: There is no `<geometry>`, it is empty, or the shape is unknown.
-    """
+    """The element of a shape in a `<visual>` or `<collision>`; `DescriptionError` unless it is known."""
     geometry = owner.first("geometry")
     if geometry is None:
         raise context.error(owner, "<geometry> is missing")

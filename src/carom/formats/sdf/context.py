@@ -38,11 +38,7 @@ class SdfContext(FileContext):
         return [self.parse_number(element, element.tag, word) for word in element.text.split()]
 
     def triple(self, parent: Element, tag: str) -> Vector3 | None:
-        """The first three numbers in the text of a child; None where there is no child.
-
-        Raises:
-            DescriptionError: There are fewer than three.
-        """
+        """The first three numbers in the text of a child; None without it, `DescriptionError` if fewer."""
         child = parent.first(tag)
         if child is None:
             return None

@@ -15,11 +15,7 @@ _CYLINDER_SIZE, _CAPSULE_SIZE = 0.1, 1.0
 
 
 def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:
-    """The shape of a `<visual>` or `<collision>`.
-
-    Raises:
-        DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
-    """
+    """The shape of a `<visual>` or `<collision>`; raises `DescriptionError` if it is incomplete."""
     shape = shape_element(context, owner)
     match shape.tag:
         case "box":

@@ -22,11 +22,7 @@ _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plug
 
 
 def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
-    """The robots of a `<model>`: one for each link that has no parent.
-
-    Raises:
-        DescriptionError: Name or links are missing, or something inside is wrong.
-    """
+    """The robots of a `<model>`, one for each link that has no parent; raises `DescriptionError`."""
     name = context.required(element, "name")
     for child in element.children:
         if child.tag in _IGNORED:

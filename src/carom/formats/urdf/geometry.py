@@ -10,11 +10,7 @@ from carom.formats.xml_element import Element
 
 
 def read_urdf_geometry(context: FileContext, owner: Element) -> Geometry:
-    """The shape of a `<visual>` or `<collision>`.
-
-    Raises:
-        DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
-    """
+    """The shape of a `<visual>` or `<collision>`; raises `DescriptionError` if it is incomplete."""
     shape = shape_element(context, owner)
     match shape.tag:
         case "box":
