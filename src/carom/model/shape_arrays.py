@@ -209,25 +209,25 @@ class ShapeArrays:
             numpy["shape_link"][row] = link
             numpy["shape_tree"][row] = body.rows.tree
             numpy["shape_kind"][row] = piece.kind
-            numpy["shape_size"][row] = piece.size
-            numpy["shape_pose"][row] = placed.pose
-            numpy["shape_rolling"][row] = piece.rolling
-            numpy["shape_flat_faces"][row] = piece.flat_faces
-            numpy["shape_margin"][row] = piece.margin
-            numpy["shape_center"][row] = piece.center
             numpy["shape_columns"][row] = piece.columns
-            numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])
             for axis in ("vertex", "face", "node"):
                 numpy[f"shape_first_{axis}"][row] = at[axis]
             if numpy["link_shape_count"][link] == 0:
                 numpy["link_first_shape"][link] = row
             numpy["link_shape_count"][link] += 1
-            self._write_polyhedron(piece, row, at)
+            self._write_piece(body, placed, at)
             at["shape"] += 1
 
-    def _write_polyhedron(self, piece: ShapePiece, row: int, at: dict[str, int]) -> None:
-        """Write a piece's vertices, faces and nodes, starting at the rows `at`, and advance these."""
-        numpy = self.table.numpy
+    def _write_piece(self, body: BodyShapes, placed: PlacedPiece, at: dict[str, int]) -> None:
+        """Write what can change in a piece, to the rows `at`; those of vertices, faces and nodes advance."""
+        numpy, piece, row = self.table.numpy, placed.piece, at["shape"]
+        numpy["shape_pose"][row] = placed.pose
+        numpy["shape_size"][row] = piece.size
+        numpy["shape_rolling"][row] = piece.rolling
+        numpy["shape_flat_faces"][row] = piece.flat_faces
+        numpy["shape_margin"][row] = piece.margin
+        numpy["shape_center"][row] = piece.center
+        numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])
         polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
         if polyhedron is None:
             return
@@ -367,17 +367,8 @@ class ShapeArrays:
         numpy = self.table.numpy
         for row, placed in enumerate(pieces, start=shapes.start):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
-            face = at["face"]
-            at["corner"] = int(numpy["face_first_corner"][face]) if placed.piece.polyhedron else 0
-            at["shape"] = row
-            numpy["shape_pose"][row] = placed.pose
-            numpy["shape_size"][row] = placed.piece.size
-            numpy["shape_rolling"][row] = placed.piece.rolling
-            numpy["shape_flat_faces"][row] = placed.piece.flat_faces
-            numpy["shape_center"][row] = placed.piece.center
-            numpy["shape_margin"][row] = placed.piece.margin
-            numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[link])
-            self._write_polyhedron(placed.piece, row, at)
+            at["corner"] = int(numpy["face_first_corner"][at["face"]]) if placed.piece.polyhedron else 0
+            self._write_piece(body, placed, at | {"shape": row})
 
     def _fits(self, piece: ShapePiece, row: int) -> bool:
         """Whether a piece has the same kind and the same numbers of rows as the piece in a row."""
