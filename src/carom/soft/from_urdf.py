@@ -115,8 +115,7 @@ def robot_body(
 
 
 def _deformable_body(soft: Deformable, *, scale: float, self_collision: bool, older: bool) -> BodySpec:
-    from carom.soft.files import soft_body_from_file
-    from carom.soft.older import older_cloth_from_file
+    from carom.soft.files import older_cloth_from_file, soft_body_from_file
 
     if older:
         if soft.stiffness_scale is not None:

@@ -180,8 +180,7 @@ def _spec(
     self_collision: bool,
 ) -> BodySpec:
     from carom.errors import CaromError
-    from carom.soft.files import soft_body_from_file
-    from carom.soft.older import older_cloth_from_file
+    from carom.soft.files import older_cloth_from_file, soft_body_from_file
 
     path = _found(client, name)
     # As in PyBullet, the mesh for the simulation may be in the folder of the visible mesh.

@@ -10,8 +10,7 @@ from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, locate
-from carom.formats.robot.includes import Includes
+from carom.formats.robot.file import MAX_FILE_BYTES, Includes, locate
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import MAX_ELEMENTS, Element
 from carom.formats.xml_tree import parse_root

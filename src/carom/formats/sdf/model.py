@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Joint, Link, Pose, Robot
+from carom.description import Joint, Link, Material, Pose, Robot
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import DescriptionError
@@ -15,7 +15,6 @@ from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
-from carom.formats.sdf.material import read_sdf_material
 from carom.formats.xml_element import Element
 
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
@@ -57,13 +56,31 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
     poses: list[Pose] = []
     lines: dict[str, int] = {}
     for element in model.all("link"):
-        link = read_link(context, element, read_sdf_geometry, read_sdf_material)
+        link = read_link(context, element, read_sdf_geometry, _read_material)
         context.refuse_duplicate(element, link.name, lines)
         links.append(link)
         poses.append(context.pose(element))
     if not links:
         raise context.error(model, "there are no links")
     return links, poses
+
+
+def _read_material(context: SdfContext, visual: Element) -> Material | None:
+    """The material of a visual, with the visual's name."""
+    element = visual.first("material")
+    if element is None:
+        return None
+    diffuse = _colour(context, element.first("diffuse"), (4,))
+    specular = _colour(context, element.first("specular"), (3, 4))
+    return Material(
+        visual.attributes.get("name") or "mat",
+        rgba=None if diffuse is None else (diffuse[0], diffuse[1], diffuse[2], diffuse[3]),
+        specular=None if specular is None else (specular[0], specular[1], specular[2]),
+    )
+
+
+def _colour(context: SdfContext, element: Element | None, counts: tuple[int, ...]) -> list[float] | None:
+    return None if element is None else context.parse_components(element, element.tag, element.text, counts)
 
 
 def _refuse_duplicates(context: SdfContext, joints: list[Element]) -> None:

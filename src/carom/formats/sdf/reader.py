@@ -9,8 +9,7 @@ from carom.description.transform import compose
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
-from carom.formats.robot.includes import Includes
+from carom.formats.robot.file import MAX_FILE_BYTES, Includes, check_scale, locate, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
