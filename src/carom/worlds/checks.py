@@ -21,16 +21,12 @@ def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bo
     Raises:
         ValueError: `value` does not broadcast to that shape, or a number is not finite.
     """
-    if isinstance(value, OnDevice):
-        return _spread(value, shape, name)
-    array = np.asarray(value, dtype=np.float64)
-    good = np.isfinite(array).all() if finite else not np.isnan(array).any()
-    if not good:
-        raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, but some entries are not")
-    return _spread(array, shape, name)
-
-
-def _spread(array: Any, shape: tuple[int, ...], name: str) -> Array:
+    array: Any = value
+    if not isinstance(value, OnDevice):
+        array = np.asarray(value, dtype=np.float64)
+        good = np.isfinite(array).all() if finite else not np.isnan(array).any()
+        if not good:
+            raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, but some entries are not")
     try:
         return np.broadcast_to(array, shape)
     except ValueError:
