@@ -14,11 +14,7 @@ _GIGABYTE = 1e9
 
 
 class CountingDevice(Device):
-    """A device that counts the bytes of arrays instead of allocating them. Nothing can be launched on it.
-
-    Attributes:
-        bytes: Size of all arrays made so far.
-    """
+    """A device that counts the bytes of arrays instead of allocating them; it cannot launch anything."""
 
     name = "counting"
 

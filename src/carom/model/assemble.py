@@ -26,17 +26,9 @@ def assemble(
 ) -> BodySpec:
     """Convert a robot to a body for the engine.
 
-    Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in
-    the order of the file, except that a link never comes before its parent.
-
-    Args:
-        robot: The robot.
-        flags: Loading options.
-        fixed_base: The base does not move: its mass becomes zero.
-        compound_margin: `LinkSpec.compound_margin` of every link [m].
-
-    Returns:
-        A body whose base is fixed exactly when its mass is zero.
+    Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in the
+    order of the file, except that a link never comes before its parent. The base is fixed exactly when its
+    mass is zero, to which `fixed_base` sets it; `compound_margin` is that of every link [m].
 
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.

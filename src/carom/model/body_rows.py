@@ -20,10 +20,8 @@ class BodyRows:
     """The rows of a body, with row numbers as if it were alone; its base is at the origin.
 
     Attributes:
-        count: Rows on each axis of model and state.
-        shape_count: Rows on each axis of shapes, that of links included.
-        packed_count: `count` for `RowChanges.put`.
-        packed_shape_count: `shape_count` for `RowChanges.put`.
+        count: Rows on each axis of model and state; `packed_count` is the same for `RowChanges.put`.
+        shape_count: Rows on each axis of shapes, that of links included; `packed_shape_count` likewise.
         rows: Its rows in all arrays of model and state, as `RowChanges.first_rows` returns them.
         shape_rows: Its rows in all arrays of shapes.
         bounds: Bounds of each link; see `BodyShapes`.

@@ -147,12 +147,7 @@ class Clock(Protocol):
 class JointMotor:
     """The motor of one joint of a world: the base class, for joints without a motor.
 
-    It is valid until bodies are added or removed.
-
-    Args:
-        world: The world.
-        clock: Its time step converts forces to impulses.
-        dof: Row of the joint's first velocity.
+    It is valid until bodies are added or removed. The time step of the clock converts forces to impulses.
 
     Attributes:
         lower: Minimum target position [rad or m]; minus infinity without limits.

@@ -37,13 +37,8 @@ _MODES = (VELOCITY, TORQUE, POSITION)
 class MotorGroup:
     """Revolute and prismatic joints of a world, in any order; valid until bodies are added or removed.
 
-    Args:
-        world: The world.
-        dofs: Rows of their velocities.
-        bounds: Minimum and maximum target position of each.
-        force: Default force of motors [N or N m].
-        kp: Default gain.
-        kd: Default gain.
+    They are given by the rows of their velocities; `bounds` are the minimum and maximum target position of
+    each, and `force` [N or N m], `kp` and `kd` the defaults of motors.
     """
 
     def __init__(

@@ -71,9 +71,7 @@ def _with_references(path: Path) -> dict[Path, bytes]:
 
 
 def restored(records: Any, blocks: memoryview, file: Path) -> list[Path]:
-    """Paths of the files of a saved world, unpacked if the originals are missing or have changed.
-
-    They are read from the list in its document and the blocks this refers to; errors name the saved world.
+    """Paths of the files listed in a saved world, unpacked if the originals are missing or have changed.
 
     Raises:
         DescriptionError: The list is invalid, or a file cannot be unpacked.

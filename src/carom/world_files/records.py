@@ -32,12 +32,7 @@ _LARGEST = 2**63
 
 
 class Writer:
-    """Converts values to parts of a document.
-
-    Attributes:
-        blocks: The bytes that the document refers to.
-        files: The files that the document refers to.
-    """
+    """Converts values to parts of a document, which refers to its `blocks` of bytes and its `files`."""
 
     def __init__(self) -> None:
         self.blocks: Blocks = Blocks()
@@ -79,10 +74,7 @@ class Writer:
 class Reader:
     """Converts parts of a document to values of the expected types.
 
-    Args:
-        file: Path of the document's file.
-        blocks: The bytes that the document refers to.
-        files: Paths of the embedded files by their numbers.
+    They refer to blocks of bytes, and to embedded files by their numbers.
     """
 
     def __init__(self, file: Path, blocks: memoryview, files: list[Path]) -> None:

@@ -44,8 +44,7 @@ def open_device(name: str) -> Device:
     """A device by name: "cuda", "cuda:1".
 
     Raises:
-        ValueError: The name is unknown, or this machine has no such device.
-        ImportError: Warp is not installed.
+        ValueError, ImportError: The machine has no such device, or Warp is not installed.
     """
     kind, _, number = name.partition(":")
     if name != _WARP_CPU and (kind != _CUDA or (":" in name and not number.isdigit())):

@@ -35,8 +35,6 @@ def read_link(
 ) -> Link:
     """The link that a `<link>` element describes, without its pose.
 
-    The functions read the shape of a `<visual>` or `<collision>`, and the material of a `<visual>`.
-
     Raises:
         DescriptionError: The name is missing, or something inside is wrong.
     """
