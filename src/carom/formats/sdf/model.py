@@ -35,7 +35,9 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
         links.append(Link(WORLD, inertial=MASSLESS))
         poses.append(IDENTITY)
     joints = [read_sdf_joint(context, joint, indices, poses) for joint in joint_elements]
-    _refuse_duplicates(context, joint_elements)
+    lines: dict[str, int] = {}
+    for joint in joint_elements:
+        context.refuse_duplicate(joint, joint.attributes["name"], lines)
     place, static = context.pose(element), _is_static(context, element)
     carried = {joint.child for joint in joints}
     roots = [index for index in range(len(links)) if index not in carried]
@@ -81,12 +83,6 @@ def _read_material(context: SdfContext, visual: Element) -> Material | None:
 
 def _colour(context: SdfContext, element: Element | None, counts: tuple[int, ...]) -> list[float] | None:
     return None if element is None else context.parse_components(element, element.tag, element.text, counts)
-
-
-def _refuse_duplicates(context: SdfContext, joints: list[Element]) -> None:
-    lines: dict[str, int] = {}
-    for element in joints:
-        context.refuse_duplicate(element, element.attributes["name"], lines)
 
 
 def _is_static(context: SdfContext, model: Element) -> bool:
