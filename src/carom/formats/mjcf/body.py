@@ -243,15 +243,9 @@ class ModelReader:
 
 def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> ContactParameters:
     """Contact parameters of a body's last geom, plus kinds of friction that only earlier geoms state."""
-    return replace(
-        contact,
-        spinning_friction=earlier.spinning_friction
-        if contact.spinning_friction is None
-        else contact.spinning_friction,
-        rolling_friction=earlier.rolling_friction
-        if contact.rolling_friction is None
-        else contact.rolling_friction,
-    )
+    own = {name: getattr(contact, name) for name in ("spinning_friction", "rolling_friction")}
+    kept = {name: getattr(earlier, name) for name, value in own.items() if value is None}
+    return replace(contact, **kept)
 
 
 def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
