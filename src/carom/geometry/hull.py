@@ -39,16 +39,11 @@ _SLAB = 1e-3
 
 
 def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int | None = None) -> Polyhedron:
-    """The convex hull of points; its vertices are some of them.
+    """The convex hull of (n, 3) points; its vertices are some of them. Coplanar triangles are joined.
 
-    Args:
-        points: (n, 3) positions, n at least 1. They may coincide, lie on a line or in a plane: then the
-            hull is a slab around them, 0.2 mm thick or less; of points far apart, a millionth of their size.
-        tolerance: Points outside the hull by less than this fraction of its size are left out.
-        most_vertices: Maximum number of vertices, at least 4; None for no limit.
-
-    Returns:
-        The hull; coplanar triangles are joined to polygons.
+    Points may coincide, lie on a line or in a plane: then the hull is a slab around them, 0.2 mm thick or
+    less; of points far apart, a millionth of their size. Those outside the hull by less than `tolerance`
+    times its size are left out. It has at most `most_vertices`, at least 4; None for no limit.
 
     Raises:
         ValueError: There are no points, one is not finite, or they are too far apart.

@@ -15,14 +15,8 @@ class DeviceTable(ArrayTable):
     """A table whose arrays are on a device only.
 
     `numpy` has the arrays by name, as in any table; writing to them changes the memory on the device. Arrays
-    get exactly the requested length, without room to grow, because every world has each row.
-
-    Args:
-        device: The device.
-        struct: Struct whose fields are all arrays.
-        world_count: Length of the world axis.
-        entry_views: Fields that show the vectors of another field scalar by scalar.
-        lasts: Whether arrays keep their contents when they grow.
+    get exactly the requested length, without room to grow, because every world has each row. Those of a table
+    that `lasts` keep their contents when they grow.
     """
 
     def __init__(

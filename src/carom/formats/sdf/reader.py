@@ -20,19 +20,11 @@ _MODEL_FILE = "model.sdf"
 
 
 def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> list[PlacedRobot]:
-    """Reads and checks an SDF file.
+    """Reads and checks an SDF file, looked up with `AssetSearch.find`; models are in the order of the file.
 
     Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
-    and plugins are ignored.
-
-    Args:
-        path: The file; looked up with `AssetSearch.find`.
-        scale: Factor on lengths: positions, boxes, cylinders, capsules and meshes, but as in PyBullet
-            neither spheres nor limits.
-        search: Folders in which the file and files it refers to are searched.
-
-    Returns:
-        The models of the world, in the order of the file.
+    and plugins are ignored. `scale` is a factor on lengths: positions, boxes, cylinders, capsules and meshes,
+    but as in PyBullet neither spheres nor limits.
 
     Raises:
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.

@@ -27,18 +27,10 @@ _SOFT = ("reduced_deformable", "deformable")
 
 
 def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
-    """Reads and checks a URDF file.
+    """Reads and checks a URDF file, looked up with `AssetSearch.find`; links and joints are in file order.
 
-    Unchanged files are served from a cache; changed files are read again.
-
-    Args:
-        path: The file; looked up with `AssetSearch.find`.
-        scale: Factor on every length (positions, shapes, limits of prismatic joints). Masses and
-            inertia tensors stay as they are.
-        search: Folders in which the file, its meshes and its textures are searched.
-
-    Returns:
-        The robot, its links and joints in file order.
+    Unchanged files are served from a cache; changed files are read again. `scale` is a factor on every length
+    (positions, shapes, limits of prismatic joints); masses and inertia tensors stay as they are.
 
     Raises:
         DescriptionError: The file is missing, broken, or does not describe one tree of links.
