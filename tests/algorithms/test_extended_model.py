@@ -9,7 +9,7 @@ from carom import World
 from carom.algorithms import inverse_dynamics, mass_matrix
 from carom.algorithms.extended_model import ExtendedModel, extended_bias_forces, extended_mass_matrix
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.stable_pd import JointTarget, stable_pd_torques
+from carom.algorithms.stable_pd import stable_pd_torques
 from carom.scene.body import Body
 
 ROBOTS = Path(__file__).parents[1] / "pybullet" / "robots"
@@ -82,7 +82,7 @@ def test_torques_solve_the_equations_of_motion_together_with_the_controller() ->
         q, u = q + count, u + freedoms
     kp, kd, step = 30.0, 4.0, 0.01
     targets = {
-        joint: JointTarget([0.2] if count == 1 else [0.0, 0.0, 0.6, 0.8], [], [], kp, kd)
+        joint: ([0.2] if count == 1 else [0.0, 0.0, 0.6, 0.8], [], [], kp, kd)
         for joint, count in enumerate(body.position_count)
         if count
     }
@@ -96,7 +96,7 @@ def test_torques_solve_the_equations_of_motion_together_with_the_controller() ->
 
 def test_torques_are_bounded_and_other_joints_are_left_alone() -> None:
     body = load("arm.urdf", fixed_base=True)
-    torques = stable_pd_torques(body, {1: JointTarget([1.0], [0.0], [0.5], 1000.0, 1.0)}, 0.01)
+    torques = stable_pd_torques(body, {1: ([1.0], [0.0], [0.5], 1000.0, 1.0)}, 0.01)
     assert torques.tolist() == [0.0] * 7 + [0.5, 0.0]
 
 

@@ -12,8 +12,7 @@ from tests.physics.robots import coordinates, joint_coordinates, let_go, pendulu
 
 from carom import Body, World
 from carom.algorithms import inverse_dynamics, mass_matrix
-from carom.algorithms.mechanism import mechanism_of
-from carom.algorithms.motion import forces_of_motion
+from carom.algorithms.mechanism import forces_of_motion, mechanism_of
 from carom.description.transform import quaternion_from_rpy, rpy_from_quaternion
 from carom.layouts.codes import MOTOR_MAX_IMPULSE
 

@@ -14,6 +14,7 @@ from carom.description import Box, Capsule, Collision, Cylinder, Inertial, Mesh,
 from carom.description.pose import IDENTITY
 from carom.description.transform import quaternion_from_rpy, rotation_matrix
 from carom.layouts.contacts import MARGIN
+from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds, placed_bounds
 from carom.model.inertia import diagonalize, inertia_from_file, inertia_from_shapes
 
@@ -26,7 +27,8 @@ def box_moments(x: float, y: float, z: float) -> tuple[float, float, float]:
 
 
 def moments(*collisions: Collision, frame: Pose = IDENTITY, implicit: bool = False) -> tuple[float, ...]:
-    return inertia_from_shapes(MASS, collisions, frame, implicit_cylinder=implicit)
+    link = LinkSpec("link", mass=MASS, inertial_frame=frame, collisions=collisions)
+    return inertia_from_shapes(link, implicit_cylinder=implicit)
 
 
 FRAMES = [IDENTITY, Pose((0.1, -0.2, 0.3)), Pose((0.1, 0.2, 0.3), quaternion_from_rpy(0.0, 0.0, 0.0))]

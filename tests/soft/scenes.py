@@ -8,7 +8,6 @@ import numpy as np
 
 from carom import World
 from carom.description import Collision, ContactParameters, Geometry
-from carom.description.pose import IDENTITY
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_shapes
@@ -34,17 +33,10 @@ def rigid(
     friction: float = 0.5,
 ) -> Body:
     """A rigid body without damping; massless ones are fixed."""
-    shapes = (Collision(shape),)
-    inertia = (0.0, 0.0, 0.0)
+    contact = ContactParameters(lateral_friction=friction)
+    base = LinkSpec("base", mass=mass, collisions=(Collision(shape),), contact=contact)
     if mass > 0.0:
-        inertia = inertia_from_shapes(mass, shapes, IDENTITY, implicit_cylinder=True, compound_margin=0.001)
-    base = LinkSpec(
-        "base",
-        mass=mass,
-        inertia=inertia,
-        collisions=shapes,
-        contact=ContactParameters(lateral_friction=friction),
-    )
+        base.inertia = inertia_from_shapes(base, implicit_cylinder=True)
     flags = int(LoadFlags.USE_IMPLICIT_CYLINDER)
     body = where.load(BodySpec("rigid", base, fixed_base=mass == 0.0, flags=flags), position)
     body.change_dynamics(-1, linear_damping=0.0, angular_damping=0.0)

@@ -45,11 +45,7 @@ class ExtendedModel:
         self._places = np.array(places)
 
     def mass_matrix(self, position: np.ndarray) -> np.ndarray:
-        """Mass matrix.
-
-        Returns:
-            (size, size); zeros for the fourth coordinate of quaternions.
-        """
+        """Mass matrix, (size, size), with zeros for the fourth coordinate of quaternions."""
         moving = np.array(self._mechanism.mass_matrix(position[BASE_POSITIONS:]))
         turn = np.eye(self._mechanism.dofs)
         turn[:3, :3] = turn[3:6, 3:6] = _rotation(position)
@@ -76,11 +72,8 @@ def base_motion(
 ) -> tuple[float, ...]:
     """Motion of a base at zero acceleration, for `Mechanism.set_base_motion`, as PyBullet computes it.
 
-    Args:
-        orientation: Orientation of the base, a quaternion (x, y, z, w).
-        velocity: Linear velocity in world axes [m/s].
-        omega: Angular velocity in world axes [rad/s].
-        gravity: Gravity in world axes [m/s²].
+    The orientation is a quaternion (x, y, z, w). Velocity [m/s], angular velocity [rad/s] and gravity [m/s²]
+    are in world axes.
     """
     x, y, z, w = orientation
     to_base = transposed(rotation_matrix((x, y, z, w)))
@@ -103,13 +96,9 @@ def _rotation(position: np.ndarray) -> np.ndarray:
 def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
     """Mass matrix of a body in extended coordinates; coordinates without inertia have a 1 on the diagonal.
 
-    Args:
-        body: The body.
-        positions: First position and quaternion of the base, if it is floating; then one number for each
-            joint, or a quaternion (x, y, z, w) for a spherical joint.
-
-    Returns:
-        (n, n) over all extended coordinates, the base's seven first, also for a fixed base.
+    It is (n, n) over all extended coordinates, the base's seven first, also for a fixed base. Positions are
+    first those and the quaternion of the base, if it is floating; then one number for each joint, or a
+    quaternion (x, y, z, w) for a spherical joint.
 
     Raises:
         ValueError: A joint is planar.
@@ -122,21 +111,11 @@ def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
 
 
 def extended_bias_forces(body: Body, positions: Sequence[float], velocities: Sequence[float]) -> np.ndarray:
-    """Forces that keep a body at zero acceleration in extended coordinates.
+    """Forces (n,) that keep a body at zero acceleration, in the coordinates of `extended_mass_matrix`.
 
-    Args:
-        body: The body.
-        positions: As in `extended_mass_matrix`.
-        velocities: As many numbers: first linear and angular velocity of the base and an ignored number, if
-            it is floating; then one rate for each joint, or for a spherical joint its angular velocity and an
-            ignored number.
-
-    Returns:
-        (n,) as in `extended_mass_matrix`.
-
-    Raises:
-        ValueError: A joint is planar.
-        DescriptionError: The file of a collision mesh cannot be used.
+    Velocities are as many numbers as positions: first linear and angular velocity of the base and an ignored
+    number, if it is floating; then one rate for each joint, or for a spherical joint its angular velocity and
+    an ignored number. The errors are those of `extended_mass_matrix`.
     """
     position = _with_base(body, positions, _base_pose(body))
     u = body.first_velocity

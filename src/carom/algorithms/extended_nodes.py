@@ -44,14 +44,9 @@ class _Frame:
 
 
 def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
-    """The nodes of a body.
+    """The nodes of a body, parents before children, the root first.
 
-    Args:
-        body: The body.
-        as_pybullet: Reproduce the differences listed above; otherwise the nodes are those of the body.
-
-    Returns:
-        Parents before children, the root first.
+    With `as_pybullet` they reproduce the differences listed above; otherwise they are those of the body.
 
     Raises:
         ValueError: A joint is planar.

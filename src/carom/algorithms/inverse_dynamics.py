@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
-from carom.description.pose import Vector3
-from carom.description.transform import conjugate, rotation_matrix
+from carom.description.transform import conjugate, rotate
 from carom.layouts.codes import BASE_POSITIONS
 
 if TYPE_CHECKING:
@@ -48,14 +47,12 @@ def inverse_dynamics(
     if body.fixed_base:
         first = body.first_position
         own = body.world.position[first + 3 : first + BASE_POSITIONS]
-        gravity = _gravity_seen_from(body, own if base_orientation is None else base_orientation)
+        x, y, z, w = own if base_orientation is None else base_orientation
+        gravity = rotate(conjugate((x, y, z, w)), gravity)
     mechanism = mechanism_of(body)
     positions_count = mechanism.coordinates + (BASE_POSITIONS if mechanism.free else 0)
-    if (len(positions), len(velocities), len(accelerations)) != (
-        positions_count,
-        mechanism.dofs,
-        mechanism.dofs,
-    ):
+    counts = (positions_count, mechanism.dofs, mechanism.dofs)
+    if (len(positions), len(velocities), len(accelerations)) != counts:
         raise ValueError(
             f"the arguments do not fit the body, which takes {positions_count} positions "
             f"and {mechanism.dofs} velocities"
@@ -63,15 +60,3 @@ def inverse_dynamics(
     if not mechanism.dofs:
         return np.zeros(0)
     return np.array(mechanism.forces_of_motion(gravity, positions, velocities, accelerations))
-
-
-def _gravity_seen_from(body: Body, orientation: Sequence[float] | np.ndarray) -> Vector3:
-    """Gravity in a frame, given the frame's quaternion."""
-    x, y, z, w = orientation
-    gx, gy, gz = body.world.parameters.gravity
-    ex, ey, ez = rotation_matrix(conjugate((x, y, z, w)))
-    return (
-        ex[0] * gx + ex[1] * gy + ex[2] * gz,
-        ey[0] * gx + ey[1] * gy + ey[2] * gz,
-        ez[0] * gx + ez[1] * gy + ez[2] * gz,
-    )

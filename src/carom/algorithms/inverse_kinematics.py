@@ -104,7 +104,7 @@ def inverse_kinematics(
         step = NULL_SPACE
         solver.set_rest(ranges, rest)
     further = iterations if further is None else further
-    return solver.solve(orientations is not None, step, bounded, iterations, further, threshold, patience)
+    return solver.solve((orientations is not None, step, bounded, iterations, further, threshold, patience))
 
 
 class _Solver:
@@ -208,21 +208,13 @@ class _Solver:
             self._rest[:] = rest
             self._given_rest = given
 
-    def solve(
-        self,
-        oriented: bool,
-        step: int,
-        bounded: bool,
-        iterations: int,
-        further: int,
-        threshold: float,
-        patience: float,
-    ) -> tuple[float, ...]:
-        options = (oriented, step, bounded, iterations, further, threshold, patience)
+    def solve(self, options: tuple[bool, int, bool, int, int, float, float]) -> tuple[float, ...]:
+        """The best positions found; the options are arguments of the kernel."""
         if options != self._options:
-            most = _MOST_ITERATIONS
-            limited = (*options[:3], min(iterations, most), min(further, most), *options[5:])
-            for index, value in enumerate(limited, start=_FIRST_OPTION):
+            oriented, step, bounded, *iterations, threshold, patience = options
+            limited = (min(count, _MOST_ITERATIONS) for count in iterations)
+            arguments = (oriented, step, bounded, *limited, threshold, patience)
+            for index, value in enumerate(arguments, start=_FIRST_OPTION):
                 self._launch.replace(index, value)
             self._options = options
         self._launch()

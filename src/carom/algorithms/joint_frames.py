@@ -24,9 +24,7 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 class JointFrames:
     """Poses of joints and links, at position 0, in the frames of their parent joints.
 
-    Args:
-        body: The body.
-        moving: Links whose joints count as moving, parents first.
+    Joints of the links in `moving`, parents first, count as moving.
     """
 
     def __init__(self, body: Body, moving: Sequence[int]) -> None:

@@ -9,14 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.algorithms.ask import Ask
-from carom.algorithms.motion import forces_of_motion
+from carom.algorithms.ask import Ask, asking
 from carom.algorithms.nodes import End, Node, body_nodes
-from carom.layouts.codes import BASE_VELOCITIES, POSITION_COUNT
-from carom.layouts.mechanism import BASE_MOTION, MechanismSizes, MechanismTable
-from carom.native.kernels import Kernel, inverse_dynamics_kernel, jacobian_kernel, mass_matrix_kernel
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
+from carom.layouts.mechanism import BASE_MOTION, POSE, MechanismSizes, MechanismTable
+from carom.native.kernels import (
+    Kernel,
+    inverse_dynamics_kernel,
+    jacobian_kernel,
+    mass_matrix_kernel,
+    motion_kernel,
+)
 from carom.native.launch import Launch
-from carom.native.tables import NUMPY_REAL, ArrayTable
+from carom.native.tables import NUMPY_REAL, ArrayTable, array_view, numbers_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -45,13 +50,7 @@ class Mechanism:
     """
 
     def __init__(self, nodes: Sequence[Node], ends: Sequence[End] = (), *, free: bool) -> None:
-        """Set up the nodes.
-
-        Args:
-            nodes: Parents first, beginning with the base.
-            ends: Links whose Jacobians can be computed, the base first.
-            free: The base moves.
-        """
+        """Set up nodes, parents first, and links for Jacobians, both beginning with the base."""
         self.free = free
         self.joint_dofs: int = sum(len(node.axes) for node in nodes)
         self.dofs: int = self.joint_dofs + (BASE_VELOCITIES if free else 0)
@@ -93,20 +92,13 @@ class Mechanism:
         )
 
     def set_base_motion(self, *motion: float) -> None:
-        """Set the motion of the base, for later queries of forces.
-
-        Args:
-            *motion: Angular velocity, angular acceleration, and acceleration minus gravity.
-        """
+        """Set the angular velocity, its derivative, and acceleration minus gravity, of the base."""
         self._put_base(*motion)
 
     def forces(self, positions: Numbers, rates: Numbers, accelerations: Numbers) -> tuple[float, ...]:
         """Generalized forces, (`dofs`,), that cause a motion; those of a free base are torque, then force.
 
-        Args:
-            positions: Joint positions, (`coordinates`,).
-            rates: Joint rates, (`joint_dofs`,).
-            accelerations: Joint accelerations, (`joint_dofs`,).
+        Positions of joints are (`coordinates`,), their rates and accelerations (`joint_dofs`,).
 
         Raises:
             ValueError: A number is not finite, the forces overflow, or a length is wrong.
@@ -131,16 +123,11 @@ class Mechanism:
         return self._rows(self._matrix)
 
     def jacobian(self, link: int, point: Numbers, positions: Numbers) -> tuple[Rows, Rows]:
-        """Linear and angular Jacobian of a point, each three rows of `dofs` numbers.
+        """Linear and angular Jacobian of a point on a link (-1 is the base), each (3, `dofs`).
 
-        Args:
-            link: Index of the link; -1 is the base.
-            point: Offset from the link frame's origin, for the base from its centre of mass, along the axes
-                of the inertial frame [m].
-            positions: Joint positions, (`coordinates`,).
-
-        Raises:
-            ValueError: There is no such link.
+        The point is an offset from the link frame's origin, for the base from its centre of mass, along the
+        axes of the inertial frame [m]; joint positions are (`coordinates`,). Raises `ValueError` if there is
+        no such link.
         """
         find = self._jacobians.get(link)
         if find is None:
@@ -218,3 +205,31 @@ def mechanism_of(body: Body) -> Mechanism:
     if mechanism is None:
         mechanism = body.derived[Mechanism] = Mechanism(*body_nodes(body), free=not body.fixed_base)
     return mechanism
+
+
+def forces_of_motion(mechanism: Mechanism, *, as_pybullet: bool = False) -> Ask:
+    """A function for the generalized forces of a motion of a mechanism, which has at least one dof.
+
+    With `as_pybullet`, gravity at a free base has the wrong direction that it has in PyBullet, see
+    `turned_back_in_opposite_order`; and positions of spherical joints are roll, pitch and yaw.
+
+    Returns:
+        A function of four arguments: gravity [m/s²], in world axes, or in axes of the base if that is fixed;
+            joint positions, for a free base after its position (3) and quaternion (4); joint rates, for a
+            free base after its angular (3) and linear (3) velocity in its own axes; and the derivatives of
+            these rates. It returns the joint forces, for a free base after the force (3) and torque (3) on it
+            in its own axes. It raises `ValueError` if a number is not finite, a sequence has the wrong
+            length, the quaternion is zero, or the forces overflow; `TypeError` for an argument that is not a
+            sequence; and `struct.error` for an item that is not a number.
+    """
+    positions = mechanism.joint_dofs if as_pybullet else mechanism.coordinates
+    counts = (
+        int(POSE),
+        positions + (BASE_POSITIONS if mechanism.free else 0),
+        mechanism.dofs,
+        mechanism.dofs,
+    )
+    numbers: np.ndarray = np.zeros(sum(counts), dtype=NUMPY_REAL)
+    launch = Launch(motion_kernel, 1, [*mechanism.structs, array_view(numbers), int(as_pybullet)])
+    output = numbers_of(mechanism.arrays["output"])
+    return asking(counts, numbers_of(numbers), launch.brief_function, output, mechanism.dofs)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,25 +30,7 @@ _UNSTATED_FORCE = 100000.0
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
-class JointTarget(NamedTuple):
-    """Target of a joint. Positions and velocities of the wrong length count as not given.
-
-    Attributes:
-        position: One number [rad or m], or a quaternion (x, y, z, w); 0 or no rotation if not given.
-        velocity: One number [rad/s or m/s], or three; 0 if not given.
-        force: Maximum torque of each dof [N m or N]; for dofs beyond the length of this list it is 100000.
-        kp: Torque per position error.
-        kd: Torque per velocity error.
-    """
-
-    position: Sequence[float]
-    velocity: Sequence[float]
-    force: Sequence[float]
-    kp: float
-    kd: float
-
-
-# Plain tuples are accepted as well: named tuples take long to make, and controllers make many.
+# Position, velocity, forces, kp and kd of a joint; see `stable_pd_torques`.
 _Target = tuple[Sequence[float], Sequence[float], Sequence[float], float, float]
 
 
@@ -60,7 +42,10 @@ def stable_pd_torques(body: Body, targets: Mapping[int, _Target], time_step: flo
 
     Args:
         body: The body.
-        targets: Targets by joint index, items as in `JointTarget`; other joints get no torque.
+        targets: By joint index; other joints get no torque. Position: one number [rad or m], or a quaternion
+            (x, y, z, w); 0 or no rotation if it has another length. Velocity: one number [rad/s or m/s], or
+            three; likewise. Maximum torque of each dof [N m or N]; for dofs beyond its length 100000. Torque
+            per position error, and per velocity error.
         time_step: Duration of the next step [s].
 
     Returns:

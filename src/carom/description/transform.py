@@ -82,10 +82,7 @@ def quaternion_from_rpy(roll: float, pitch: float, yaw: float) -> Quaternion:
 def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
     """Roll, pitch and yaw [rad] about the fixed axes x, y and z, as Bullet takes them.
 
-    In gimbal lock (a sine of the pitch of ±0.99999 or beyond) roll is 0.
-
-    Args:
-        quaternion: (x, y, z, w), of unit length.
+    The quaternion has unit length. In gimbal lock (a sine of the pitch of ±0.99999 or beyond) roll is 0.
     """
     x, y, z, w = quaternion
     sine = -2.0 * (x * z - w * y)

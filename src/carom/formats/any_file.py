@@ -15,11 +15,7 @@ MJCF_SUFFIXES = (".xml", ".mjcf")
 
 
 def read_robots(source: Path, *, search: AssetSearch | None = None) -> list[PlacedRobot]:
-    """All robots of a file, and their poses.
-
-    Args:
-        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file.
-        search: Folders in which meshes, and the file if it is not found as named, are searched.
+    """All robots of an SDF, MJCF (`.xml` or `.mjcf`) or URDF file, and their poses.
 
     Raises:
         DescriptionError: The file cannot be used, or its format is not known.

@@ -29,11 +29,8 @@ class Archive:
         path: The file.
         folder: The temporary folder that contains its members.
 
-    Args:
-        path: The file.
-
     Raises:
-        DescriptionError: It is missing, damaged, encrypted or too large.
+        DescriptionError: The file is missing, damaged, encrypted or too large.
     """
 
     def __init__(self, path: Path) -> None:

@@ -91,9 +91,7 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
 class FileCache(Generic[Key, Value]):
     """Values made from files, kept while the files are unchanged; the least recently used are dropped first.
 
-    Args:
-        capacity: Maximum number of values.
-        outlive: Also return values of deleted files.
+    With `outlive` it also returns values of deleted files.
     """
 
     def __init__(self, capacity: int, *, outlive: bool = False) -> None:

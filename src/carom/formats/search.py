@@ -34,11 +34,7 @@ class AssetSearch:
     def find(self, name: str | os.PathLike[str]) -> Path | None:
         """The file that a script names: as named or in a nearby `data` folder, then in `places`.
 
-        Args:
-            name: Path, absolute or relative to one of the searched places.
-
-        Returns:
-            The path of an existing file as it was found, or None.
+        Its path is as it was found; None if there is no such file.
         """
         text = os.fspath(name)
         found = _nearby(text)
@@ -48,18 +44,11 @@ class AssetSearch:
         return found
 
     def find_referenced(self, name: str, source: Path) -> Path | None:
-        """The file that a robot file refers to.
+        """The existing file that a robot file, `source`, refers to by this name, or None.
 
-        `file://`, `package://` and `model://` are removed. Then the working directory, the directory
-        of the robot file, each directory above that, and the two directories above the working
-        directory are tried. The additional directory is not: it is for scripts only.
-
-        Args:
-            name: The reference, as the robot file states it.
-            source: The robot file.
-
-        Returns:
-            The path of an existing file, or None.
+        `file://`, `package://` and `model://` are removed. Then the working directory, the directory of the
+        robot file, each directory above that, and the two directories above the working directory are tried.
+        The additional directory is not: it is for scripts only.
         """
         name = _without_scheme(name)
         if _is_file(name):

@@ -24,9 +24,7 @@ def shipped_folder() -> Path | None:
 def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
     """A suggestion for a file that was not found, as the end of a sentence; empty if there is none.
 
-    Args:
-        name: The name that was searched for.
-        searched: Directories that were searched besides the working directory.
+    `searched` are the directories that were searched besides the working directory.
     """
     folder = shipped_folder()
     near = _near(name, Path(name).parent)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from dataclasses import fields
 from math import copysign, hypot, pi
 from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
@@ -45,9 +46,7 @@ _UNNAMED = "material"
 def urdf_text(robot: Robot, folder: Path) -> str:
     """The URDF text of a robot; `read_urdf` reads the same robot from it, except for rounding errors.
 
-    Args:
-        robot: The robot.
-        folder: Folder of the file: paths of meshes and textures are relative to it.
+    Paths of meshes and textures are relative to the folder of the file.
 
     Raises:
         DescriptionError: It has a shape that URDF does not have, or is a soft body.
@@ -187,23 +186,13 @@ def _inertial(inertial: Inertial) -> Iterator[str]:
 
 
 def _contact(contact: ContactParameters) -> Iterator[str]:
-    values = {
-        name: getattr(contact, name)
-        for name in (
-            "lateral_friction",
-            "rolling_friction",
-            "spinning_friction",
-            "restitution",
-            "stiffness",
-            "damping",
-            "inertia_scaling",
-        )
-        if getattr(contact, name) is not None
-    }
-    if not values and not contact.friction_anchor:
+    values = {field.name: getattr(contact, field.name) for field in fields(contact)}
+    values.pop("friction_anchor")
+    stated = {name: value for name, value in values.items() if value is not None}
+    if not stated and not contact.friction_anchor:
         return
     yield "    <contact>"
-    for name, value in values.items():
+    for name, value in stated.items():
         yield f'      <{name} value="{value!r}"/>'
     if contact.friction_anchor:
         yield "      <friction_anchor/>"

@@ -15,16 +15,10 @@ from carom.formats.xml_element import DOCTYPE_REFUSED, Element, TreeBuilder
 
 
 def parse_xml(data: bytes, file: Path) -> list[Element]:
-    """Reads a document.
+    """The elements at the top level: one for a well-formed document, perhaps more for other ones.
 
-    Entity declarations and external entities are refused; nothing but `data` is ever read.
-
-    Args:
-        data: Content of the file in UTF-8; content that is not valid UTF-8 is read as Latin-1.
-        file: Named in errors.
-
-    Returns:
-        The elements at the top level: one for a well-formed document, perhaps more for other ones.
+    Content that is not valid UTF-8 is read as Latin-1. Entity declarations and external entities are refused;
+    nothing but `data` is ever read.
 
     Raises:
         DescriptionError: The document has an error that PyBullet refuses too, or exceeds the limits.
@@ -50,11 +44,7 @@ def parse_xml(data: bytes, file: Path) -> list[Element]:
 
 
 def parse_root(data: bytes, file: Path, *tags: str) -> Element:
-    """The first top-level element of a document that has one of these names.
-
-    Raises:
-        DescriptionError: There is none, or the document is broken.
-    """
+    """The first top-level element with one of these names; raises `DescriptionError` if there is none."""
     root = next((element for element in parse_xml(data, file) if element.tag in tags), None)
     if root is None:
         raise DescriptionError(f"there is no <{tags[0]}> element", file=file)

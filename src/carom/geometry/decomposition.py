@@ -31,12 +31,7 @@ class DecompositionOptions:
 def decompose(
     vertices: NDArray[np.float64], triangles: NDArray[np.int32], options: DecompositionOptions
 ) -> list[tuple[NDArray[np.float64], NDArray[np.int32]]]:
-    """Cuts a solid into convex pieces.
-
-    Args:
-        vertices: (n, 3) positions.
-        triangles: (m, 3) indices into `vertices`, counter-clockwise seen from outside.
-        options: How finely it is cut.
+    """Cuts a solid, (n, 3) vertices and (m, 3) triangles counter-clockwise from outside, into convex pieces.
 
     Returns:
         Vertices and triangles of each piece.

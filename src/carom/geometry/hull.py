@@ -39,16 +39,11 @@ _SLAB = 1e-3
 
 
 def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int | None = None) -> Polyhedron:
-    """The convex hull of points; its vertices are some of them.
+    """The convex hull of (n, 3) points; its vertices are some of them. Coplanar triangles are joined.
 
-    Args:
-        points: (n, 3) positions, n at least 1. They may coincide, lie on a line or in a plane: then the
-            hull is a slab around them, 0.2 mm thick or less; of points far apart, a millionth of their size.
-        tolerance: Points outside the hull by less than this fraction of its size are left out.
-        most_vertices: Maximum number of vertices, at least 4; None for no limit.
-
-    Returns:
-        The hull; coplanar triangles are joined to polygons.
+    Points may coincide, lie on a line or in a plane: then the hull is a slab around them, 0.2 mm thick or
+    less; of points far apart, a millionth of their size. Those outside the hull by less than `tolerance`
+    times its size are left out. It has at most `most_vertices`, at least 4; None for no limit.
 
     Raises:
         ValueError: There are no points, one is not finite, or they are too far apart.
@@ -58,13 +53,7 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
 
 
 def extreme_points(points: Points) -> Points:
-    """The corners of the convex hull of points, without added thickness.
-
-    Args:
-        points: (n, 3) positions, n at least 1.
-
-    Returns:
-        Those of the points that are corners, shape (k, 3).
+    """Those of (n, 3) points that are corners of their convex hull, without added thickness, (k, 3).
 
     Raises:
         ValueError: There are no points, or one is not finite.

@@ -22,16 +22,10 @@ _PARALLEL = 0.999
 def merged_loops(
     vertices: NDArray[np.float64], triangles: list[tuple[int, int, int]], size: float
 ) -> list[list[int]]:
-    """Joins the triangles of a closed convex surface that lie in one plane.
+    """Joins the triangles of a closed convex surface of this size that lie in one plane.
 
-    Args:
-        vertices: (n, 3) positions.
-        triangles: Vertex indices, counter-clockwise from outside.
-        size: Size of the hull.
-
-    Returns:
-        Vertex indices around each polygon, counter-clockwise from outside. Vertices in the middle of an
-        edge are left out.
+    Triangles, and the polygons that are returned, are vertex indices, counter-clockwise from outside.
+    Vertices in the middle of an edge are left out.
     """
     corners = np.array(triangles)
     a, b, c = (vertices[corners[:, side]] for side in range(3))
@@ -45,11 +39,32 @@ def merged_loops(
     }
     loops: list[list[int]] = []
     free = [True] * len(triangles)
+    thin = COPLANAR * size
+
+    def patch(seed: int) -> list[int]:
+        """Take the free triangles that are connected to a seed and lie in its plane."""
+        normal, origin = normals[seed], vertices[triangles[seed][0]]
+        group = [seed]
+        free[seed] = False
+        for number in group:
+            x, y, z = triangles[number]
+            for edge in ((y, x), (z, y), (x, z)):
+                other = owner[edge]
+                if not free[other]:
+                    continue
+                # The two corners on the edge are in the plane already.
+                (apex,) = set(triangles[other]).difference(edge)
+                is_parallel = areas[other] <= thin * thin or dots(normals[other], normal) > _PARALLEL
+                if is_parallel and abs(dots(vertices[apex] - origin, normal)) <= thin:
+                    free[other] = False
+                    group.append(other)
+        return group
+
     # Largest triangles first: their normals are the most accurate, and slivers join them.
     for seed in np.argsort(-areas, kind="stable").tolist():
         if not free[seed]:
             continue
-        group = _patch(seed, vertices, triangles, normals, areas, owner, free, COPLANAR * size)
+        group = patch(seed)
         loop = _outline([triangles[number] for number in group])
         if loop is None:
             loops.extend(list(triangles[number]) for number in group)
@@ -58,36 +73,6 @@ def merged_loops(
     merged = _without_middles(loops)
     # A shape thinner than the tolerance would lose its faces.
     return merged if len(merged) >= LEAST_FACES else [list(triangle) for triangle in triangles]
-
-
-def _patch(
-    seed: int,
-    vertices: NDArray[np.float64],
-    triangles: list[tuple[int, int, int]],
-    normals: NDArray[np.float64],
-    areas: NDArray[np.float64],
-    owner: dict[tuple[int, int], int],
-    free: list[bool],
-    thin: float,
-) -> list[int]:
-    """Take the free triangles that are connected to a seed and lie in its plane."""
-    normal = normals[seed]
-    origin = vertices[triangles[seed][0]]
-    group = [seed]
-    free[seed] = False
-    for number in group:
-        x, y, z = triangles[number]
-        for edge in ((y, x), (z, y), (x, z)):
-            other = owner[edge]
-            if not free[other]:
-                continue
-            # The two corners on the edge are in the plane already.
-            (apex,) = set(triangles[other]).difference(edge)
-            is_parallel = areas[other] <= thin * thin or dots(normals[other], normal) > _PARALLEL
-            if is_parallel and abs(dots(vertices[apex] - origin, normal)) <= thin:
-                free[other] = False
-                group.append(other)
-    return group
 
 
 def _outline(group: list[tuple[int, int, int]]) -> list[int] | None:

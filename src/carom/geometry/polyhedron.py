@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from carom.native.products import dots
 from carom.record import record
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
 
 @record(eq=False)
 class Polyhedron:
@@ -21,31 +24,31 @@ class Polyhedron:
         corners: Indices into `vertices`, counter-clockwise around each face as seen from outside.
     """
 
-    vertices: NDArray[np.float64]
-    planes: NDArray[np.float64]
-    first_corner: NDArray[np.int32]
-    corner_count: NDArray[np.int32]
-    corners: NDArray[np.int32]
+    vertices: Floats
+    planes: Floats
+    first_corner: Ints
+    corner_count: Ints
+    corners: Ints
 
     def __post_init__(self) -> None:
         for array in (self.vertices, self.planes, self.first_corner, self.corner_count, self.corners):
             array.setflags(write=False)
 
-    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest corner of the box around the vertices, shape (3,) each."""
         return self.vertices.min(axis=0), self.vertices.max(axis=0)
 
-    def moved(self, offset: NDArray[np.float64]) -> Polyhedron:
+    def moved(self, offset: Floats) -> Polyhedron:
         """The same shape, every vertex moved by `offset`."""
         planes = self.planes.copy()
         planes[:, 3] += dots(planes[:, :3], offset)
         return Polyhedron(self.vertices + offset, planes, self.first_corner, self.corner_count, self.corners)
 
-    def with_vertices(self, vertices: NDArray[np.float64]) -> Polyhedron:
+    def with_vertices(self, vertices: Floats) -> Polyhedron:
         """The same faces with slightly moved vertices, (n, 3)."""
         return polyhedron(vertices, self.first_corner, self.corner_count, self.corners)
 
-    def face_areas(self) -> NDArray[np.float64]:
+    def face_areas(self) -> Floats:
         """The area of each face, shape (m,) [m²]."""
         normals = _doubled_areas(self.vertices, self.corners, self.first_corner, self.corner_count)
         return 0.5 * np.linalg.norm(normals, axis=1)
@@ -59,22 +62,20 @@ class Polyhedron:
 
 
 def polyhedron(
-    vertices: NDArray[np.float64],
-    first_corner: NDArray[np.int32],
-    corner_count: NDArray[np.int32],
-    corners: NDArray[np.int32],
+    vertices: Floats,
+    first_corner: Ints,
+    corner_count: Ints,
+    corners: Ints,
 ) -> Polyhedron:
     """A polyhedron whose planes are computed from its corners; see `Polyhedron`."""
     planes = _planes(vertices, corners, first_corner, corner_count)
     return Polyhedron(vertices, planes, first_corner, corner_count, corners)
 
 
-def polyhedron_of_loops(vertices: NDArray[np.float64], loops: list[list[int]]) -> Polyhedron:
-    """A polyhedron from the corners of its faces; vertices no face uses are left out.
+def polyhedron_of_loops(vertices: Floats, loops: list[list[int]]) -> Polyhedron:
+    """A polyhedron from the corners of its faces; vertices (n, 3) that no face uses are left out.
 
-    Args:
-        vertices: (n, 3) positions.
-        loops: Vertex indices around each face, counter-clockwise from outside, nearly in one plane.
+    Each loop goes around a face, counter-clockwise from outside, nearly in one plane.
     """
     counts = np.array([len(loop) for loop in loops], dtype=np.int32)
     corners = np.fromiter((corner for loop in loops for corner in loop), np.int64, counts.sum())
@@ -85,12 +86,10 @@ def polyhedron_of_loops(vertices: NDArray[np.float64], loops: list[list[int]]) -
     return polyhedron(kept, firsts, counts, renamed)
 
 
-def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np.integer]) -> Polyhedron:
-    """The triangles of a surface; equal vertices become one, triangles without area vanish.
+def polyhedron_of_triangles(vertices: Floats, triangles: NDArray[np.integer]) -> Polyhedron:
+    """Triangles (m, 3) of a surface, counter-clockwise from outside.
 
-    Args:
-        vertices: (n, 3) positions.
-        triangles: (m, 3) indices, counter-clockwise from outside.
+    Equal vertices become one, triangles without area vanish.
     """
     positions, merged = _distinct(vertices)
     corners = merged[triangles]
@@ -108,7 +107,7 @@ def polyhedron_of_triangles(vertices: NDArray[np.float64], triangles: NDArray[np
     return polyhedron(positions, firsts, counts, flat)
 
 
-def _distinct(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _distinct(rows: Floats) -> tuple[Floats, NDArray[np.int64]]:
     """The distinct rows, sorted, and the index of each row in them; many times faster than np.unique."""
     order = np.lexsort(rows.T)
     arranged = rows[order]
@@ -124,11 +123,11 @@ _THIN = 1e-12
 
 
 def _planes(
-    vertices: NDArray[np.float64],
-    corners: NDArray[np.int32],
-    firsts: NDArray[np.int32],
-    counts: NDArray[np.int32],
-) -> NDArray[np.float64]:
+    vertices: Floats,
+    corners: Ints,
+    firsts: Ints,
+    counts: Ints,
+) -> Floats:
     """Best planes of polygons: normals by Newell's sum, offsets so that no corner lies outside."""
     if not len(firsts):
         return np.empty((0, 4))
@@ -141,11 +140,11 @@ def _planes(
 
 
 def _doubled_areas(
-    vertices: NDArray[np.float64],
-    corners: NDArray[np.int32],
-    firsts: NDArray[np.int32],
-    counts: NDArray[np.int32],
-) -> NDArray[np.float64]:
+    vertices: Floats,
+    corners: Ints,
+    firsts: Ints,
+    counts: Ints,
+) -> Floats:
     """Normals of polygons by Newell's sums, (m, 3); their lengths are twice the areas."""
     following = np.arange(1, len(corners) + 1)
     following[firsts + counts - 1] = firsts
@@ -156,7 +155,7 @@ def _doubled_areas(
     return np.add.reduceat(np.cross(here, there), firsts, axis=0)
 
 
-def _triangle_planes(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def _triangle_planes(corners: Floats) -> Floats:
     """Planes of triangles, from corners (m, 3, 3)."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)

@@ -13,14 +13,9 @@ from carom.record import record
 class TriangleHierarchy:
     """A complete binary tree of boxes over the faces of a surface.
 
-    Node 1 is the root; nodes 2n and 2n + 1 lie below node n; leaf i is node `leaf_count` + i and holds
-    face i. Nodes without faces have a lower corner above their upper one. Node 0 is unused.
-
-    Attributes:
-        surface: The surface, its faces in the order of the leaves.
-        leaf_count: A power of two, not less than the number of faces.
-        lower: (2 * leaf_count, 3) lowest corners.
-        upper: (2 * leaf_count, 3) highest corners.
+    Node 1 is the root; nodes 2n and 2n + 1 lie below node n; leaf i is node `leaf_count` + i and holds face i
+    of `surface`. Nodes without faces have a lower corner above their upper one. Node 0 is unused.
+    `leaf_count` is a power of two; `lower` and `upper` are the corners, (2 * leaf_count, 3).
     """
 
     surface: Polyhedron
@@ -30,11 +25,7 @@ class TriangleHierarchy:
 
 
 def triangle_hierarchy(surface: Polyhedron) -> TriangleHierarchy:
-    """Build the hierarchy of a surface.
-
-    Args:
-        surface: A surface whose faces are all triangles.
-    """
+    """Build the hierarchy of a surface whose faces are all triangles."""
     corners = surface.corners.reshape(-1, 3)
     count = len(corners)
     leaf_count = 1

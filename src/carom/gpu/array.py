@@ -326,12 +326,7 @@ def _compact_strides(shape: Sequence[int], size: int) -> tuple[int, ...]:
 
 
 def combine(operation: int, first: DeviceArray, second: DeviceArray) -> DeviceArray:
-    """Combine two arrays of doubles entry by entry.
-
-    Args:
-        operation: The operation: a constant of `carom.kernels.arrays.arithmetic`.
-        first: Left operand.
-        second: Right operand; the two shapes have to broadcast to each other.
+    """Combine two arrays of doubles entry by entry, by an operation of `carom.kernels.arrays.arithmetic`.
 
     Raises:
         ValueError: The shapes do not broadcast to each other, or have more than three axes.

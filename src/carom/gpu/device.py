@@ -42,19 +42,13 @@ class Device(Protocol):
     name: str
 
     def zeros(self, shape: Sequence[int], dtype: np.dtype[Any]) -> Any:
-        """An array of zeros.
-
-        Raises:
-            MemoryError: The device has not enough free memory.
-        """
+        """An array of zeros; raises `MemoryError` if the device has not enough free memory."""
         ...
 
     def struct(self, declared: Any, arrays: Mapping[str, Any]) -> Any:
-        """A kernel argument: a struct of arrays on the device.
+        """A kernel argument: a struct declared in `carom.layouts`, of the arrays of its fields on the device.
 
-        Args:
-            declared: The struct, as declared in `carom.layouts`.
-            arrays: The array of each field. If its world axis has only one row, all worlds share this row.
+        If the world axis of an array has only one row, all worlds share this row.
         """
         ...
 
@@ -74,14 +68,9 @@ class Device(Protocol):
         structs: Mapping[str, Any],
         scalars: Mapping[str, float],
     ) -> FineLaunch:
-        """A kernel with its arguments, ready to run.
+        """A kernel in a module of `carom.kernels` with its arguments by name, ready to run.
 
-        Args:
-            module: Module of the kernel in `carom.kernels`.
-            kernel: Name of the kernel.
-            dim: Number of threads, along one or two axes.
-            structs: Structs by the names of kernel arguments.
-            scalars: Scalars by the names of kernel arguments.
+        `dim` is the number of threads, along one or two axes.
         """
         ...
 

@@ -24,17 +24,12 @@ from carom.model.builder import WorldArrays
 
 
 class DeviceEngine(Engine):
-    """Steps many worlds on a device.
+    """Steps many worlds on a device, with all tables of their arrays there.
 
     State, contacts and intermediate results are on the device only; model, shapes, user constraints and the
     model of soft bodies are on the host, with a copy on the device. The programs of a step and of collision
     detection differ from those for CPUs. Steps are requested, and repeated if arrays were too small, as on
     CPUs.
-
-    Args:
-        device: The device.
-        arrays: Model and state, in tables of the device.
-        contact_arrays: Shapes, contacts and user constraints, in tables of the device.
     """
 
     step_program = staticmethod(parallel_step_program)
@@ -51,17 +46,7 @@ class DeviceEngine(Engine):
     def like(
         cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
     ) -> DeviceEngine:
-        """An engine of many copies of a world.
-
-        Args:
-            device: The device of the copies.
-            arrays: Model and state of the world.
-            contact_arrays: Its shapes, contacts and user constraints.
-            count: Number of copies.
-
-        Raises:
-            MemoryError: The device has not enough free memory.
-        """
+        """An engine of copies of a world; raises `MemoryError` if the device has not enough free memory."""
         check_room(device, count, lambda counter: cls.made(counter, arrays, contact_arrays, count).structs())
         return cls.made(device, arrays, contact_arrays, count)
 

@@ -35,10 +35,7 @@ class Part(NamedTuple):
 def part_of(shape: tuple[int, ...], strides: tuple[int, ...], key: Any) -> Part:
     """The part that an index selects: integers, slices, an ellipsis, and one list of integers or mask.
 
-    Args:
-        shape: Shape of the array.
-        strides: Its strides [bytes].
-        key: The index.
+    Strides are in bytes.
 
     Raises:
         IndexError: The index has more axes than the array, is out of range, or picks along several axes.

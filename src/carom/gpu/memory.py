@@ -14,11 +14,7 @@ _GIGABYTE = 1e9
 
 
 class CountingDevice(Device):
-    """A device that counts the bytes of arrays instead of allocating them. Nothing can be launched on it.
-
-    Attributes:
-        bytes: Size of all arrays made so far.
-    """
+    """A device that counts the bytes of arrays instead of allocating them; it cannot launch anything."""
 
     name = "counting"
 
@@ -57,16 +53,7 @@ class CountingDevice(Device):
 
 
 def check_room(device: Device, count: int, make: Callable[[CountingDevice], Any]) -> None:
-    """Check that the arrays of some worlds fit into the free memory of a device.
-
-    Args:
-        device: The device.
-        count: Number of worlds.
-        make: Makes all their arrays on a device that only counts bytes.
-
-    Raises:
-        MemoryError: The arrays do not fit.
-    """
+    """Raise `MemoryError` unless the arrays that `make` makes fit into the free memory of a device."""
     free = device.free_memory()
     if free is None:
         return

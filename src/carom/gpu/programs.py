@@ -18,10 +18,6 @@ def parallel_step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step of all worlds that take part in it.
 
     If a world has an error, or its arrays are too small, the end of the step restores its state from before.
-
-    Args:
-        structs: Structs over the arrays of a device.
-        plan: Conditions that determine the parts of a step.
     """
     launches = _Launches(structs)
     if not plan.coupled:

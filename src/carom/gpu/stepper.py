@@ -33,15 +33,9 @@ class _Asked:
 class StepStepper(_Asked, Stepper):
     """Steps all worlds at once, with one captured graph for each number of substeps.
 
-    The status of the worlds is read after all steps have been launched: first one number for all of them,
-    and only if it is not 0 the status of each world.
-
-    Args:
-        structs: Structs on the device.
-        state: The arrays of `State` on the device.
-        status: Status of each world, on the host; set by each run.
-        worlds: Indices of the worlds; changed in place.
-        due: Number of substeps of each step; changed in place. If it is 0, only contacts are found.
+    The status of the worlds is read after all steps have been launched: first one number for all of them, and
+    only if it is not 0 the status of each world, on the host. The indices of `worlds` and the numbers of
+    substeps `due` in each step are changed in place; with 0 substeps, only contacts are found.
     """
 
     def __init__(
@@ -115,11 +109,7 @@ class StepStepper(_Asked, Stepper):
 
 
 class TaskStepper(_Asked, Stepper):
-    """Runs launches with one thread per world, for some of the worlds.
-
-    Args:
-        worlds: Indices of the worlds; changed in place.
-    """
+    """Runs launches with one thread per world, for some of the worlds, whose indices are changed in place."""
 
     def __init__(self, worlds: np.ndarray) -> None:
         super().__init__(len(worlds))

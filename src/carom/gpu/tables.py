@@ -15,14 +15,8 @@ class DeviceTable(ArrayTable):
     """A table whose arrays are on a device only.
 
     `numpy` has the arrays by name, as in any table; writing to them changes the memory on the device. Arrays
-    get exactly the requested length, without room to grow, because every world has each row.
-
-    Args:
-        device: The device.
-        struct: Struct whose fields are all arrays.
-        world_count: Length of the world axis.
-        entry_views: Fields that show the vectors of another field scalar by scalar.
-        lasts: Whether arrays keep their contents when they grow.
+    get exactly the requested length, without room to grow, because every world has each row. Those of a table
+    that `lasts` keep their contents when they grow.
     """
 
     def __init__(
@@ -42,15 +36,7 @@ class DeviceTable(ArrayTable):
     def repeated(
         cls, device: Device, table: ArrayTable, struct: Any, world_count: int, rows: Mapping[str, int]
     ) -> DeviceTable:
-        """A table of many copies of the first world of another table.
-
-        Args:
-            device: The device.
-            table: A table on the host.
-            struct: Its struct.
-            world_count: Number of copies.
-            rows: Number of rows to keep, by axis.
-        """
+        """A table of `world_count` copies of the first world of another table; `rows` to keep are by axis."""
         other = cls(device, struct, world_count)
         other.reserve({axis: max(1, count) for axis, count in rows.items()}, growth=1.0)
         for name, array in other.numpy.items():
@@ -72,13 +58,9 @@ class DeviceTable(ArrayTable):
 
 
 class MirroredTable(ArrayTable):
-    """A table on the host, with a copy of its arrays on a device for the kernels.
+    """A table on the host that takes over the arrays of another, with a copy on a device for the kernels.
 
     After an array on the host has been changed, `written` has to be called.
-
-    Args:
-        device: The device of the copy.
-        table: The table whose arrays this one takes over.
     """
 
     def __init__(self, device: Device, table: ArrayTable) -> None:
@@ -103,13 +85,7 @@ class MirroredTable(ArrayTable):
 
 
 def struct_of_zeros(device: Device, declared: Any, shapes: Mapping[str, tuple[int, ...]]) -> dict[str, Any]:
-    """Arrays of zeros for the fields of a struct.
-
-    Args:
-        device: The device.
-        declared: The struct, as declared in `carom.layouts`.
-        shapes: Shape of the array of each field, without the shape of an entry.
-    """
+    """Arrays of zeros for the fields of a struct, of these shapes without the shape of an entry."""
     fields = fields_of(declared)
     return {
         name: device.zeros((*shape, *fields[name].shape), fields[name].scalar)

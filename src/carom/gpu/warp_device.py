@@ -31,14 +31,7 @@ def cuda_devices() -> list[str]:
 
 
 class WarpDevice(Device):
-    """A device on which Warp runs the kernels.
-
-    Args:
-        name: Warp's name of the device, such as "cuda:0".
-
-    Attributes:
-        name: Warp's name of the device.
-    """
+    """A device, by its name such as "cuda:0", on which Warp runs the kernels."""
 
     def __init__(self, name: str) -> None:
         self._device: Any = wp.get_device(name)

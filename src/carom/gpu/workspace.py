@@ -91,12 +91,7 @@ class DeviceStructs(KernelStructs):
 
 
 class DeviceWorkspace(Workspace):
-    """Memory for the intermediate results of all worlds, on a device.
-
-    Args:
-        device: The device.
-        world_count: Number of worlds.
-    """
+    """Memory for the intermediate results of all worlds, on a device."""
 
     def __init__(self, device: Device, world_count: int) -> None:
         self._device = device

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from carom.description import Joint, JointType, Link, Robot
 from carom.description.joint import JOINT_CODE, NEEDS_LIMIT
-from carom.description.pose import Pose, Vector3
 from carom.layouts.codes import LIMIT_KIND, ConstraintKind
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
@@ -27,17 +26,9 @@ def assemble(
 ) -> BodySpec:
     """Convert a robot to a body for the engine.
 
-    Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in
-    the order of the file, except that a link never comes before its parent.
-
-    Args:
-        robot: The robot.
-        flags: Loading options.
-        fixed_base: The base does not move: its mass becomes zero.
-        compound_margin: `LinkSpec.compound_margin` of every link [m].
-
-    Returns:
-        A body whose base is fixed exactly when its mass is zero.
+    Links come depth first, children in the order of their joints in the file; with MAINTAIN_LINK_ORDER in the
+    order of the file, except that a link never comes before its parent. The base is fixed exactly when its
+    mass is zero, to which `fixed_base` sets it; `compound_margin` is that of every link [m].
 
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.
@@ -69,34 +60,26 @@ def assemble(
 def _link_spec(
     link: Link, flags: LoadFlags, compound_margin: float, *, is_massless: bool = False
 ) -> LinkSpec:
-    collisions = () if flags & LoadFlags.IGNORE_COLLISION_SHAPES else link.collisions
-    mass = 0.0 if is_massless else link.inertial.mass
-    inertia: Vector3 = (0.0, 0.0, 0.0)
-    frame: Pose = link.inertial.frame
-    if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:
-        inertia, frame = inertia_from_file(link.inertial, link.name)
-    elif mass != 0.0:
-        inertia = inertia_from_shapes(
-            mass,
-            collisions,
-            frame,
-            implicit_cylinder=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
-            compound_margin=compound_margin,
-        )
-    scaling = link.contact.inertia_scaling
-    if scaling is not None and mass != 0.0:
-        inertia = (inertia[0] * scaling, inertia[1] * scaling, inertia[2] * scaling)
-    return LinkSpec(
+    spec = LinkSpec(
         link.name,
-        mass=mass,
-        inertia=inertia,
-        inertial_frame=frame,
-        collisions=collisions,
+        mass=0.0 if is_massless else link.inertial.mass,
+        inertial_frame=link.inertial.frame,
+        collisions=() if flags & LoadFlags.IGNORE_COLLISION_SHAPES else link.collisions,
         visuals=() if flags & LoadFlags.IGNORE_VISUAL_SHAPES else link.visuals,
         compound_margin=compound_margin,
         contact=link.contact,
         user_data=dict(link.user_data),
     )
+    if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:
+        spec.inertia, spec.inertial_frame = inertia_from_file(link.inertial, link.name)
+    elif spec.mass != 0.0:
+        implicit = bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+        spec.inertia = inertia_from_shapes(spec, implicit_cylinder=implicit)
+    scaling = link.contact.inertia_scaling
+    if scaling is not None and spec.mass != 0.0:
+        x, y, z = spec.inertia
+        spec.inertia = (x * scaling, y * scaling, z * scaling)
+    return spec
 
 
 def _attach(spec: LinkSpec, node: TreeNode, parent: int) -> None:

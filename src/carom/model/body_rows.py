@@ -20,10 +20,8 @@ class BodyRows:
     """The rows of a body, with row numbers as if it were alone; its base is at the origin.
 
     Attributes:
-        count: Rows on each axis of model and state.
-        shape_count: Rows on each axis of shapes, that of links included.
-        packed_count: `count` for `RowChanges.put`.
-        packed_shape_count: `shape_count` for `RowChanges.put`.
+        count: Rows on each axis of model and state; `packed_count` is the same for `RowChanges.put`.
+        shape_count: Rows on each axis of shapes, that of links included; `packed_shape_count` likewise.
         rows: Its rows in all arrays of model and state, as `RowChanges.first_rows` returns them.
         shape_rows: Its rows in all arrays of shapes.
         bounds: Bounds of each link; see `BodyShapes`.
@@ -45,9 +43,7 @@ class BodyRows:
 def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
     """The rows of a body, made by writing it to empty arrays; None if they are larger than `MOST_BYTES`.
 
-    Args:
-        spec: The body, which is not soft.
-        surfaces: Contact parameters of its links, the base first.
+    The body is not soft; `surfaces` are the contact parameters of its links, the base first.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.

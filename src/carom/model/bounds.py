@@ -99,11 +99,7 @@ class Bounds(NamedTuple):
 def placed_bounds(
     geometry: Geometry, rotation: Matrix3, position: Vector3, *, implicit_cylinder: bool
 ) -> Bounds:
-    """Bounds of a shape after rotation and translation: of its rotated box, except for spheres and planes.
-
-    Raises:
-        DescriptionError: The file of a mesh cannot be used.
-    """
+    """Bounds after rotation and translation: those of the rotated box, except for spheres and planes."""
     bounds = shape_bounds(geometry, implicit_cylinder=implicit_cylinder)
     if isinstance(geometry, Plane):
         return bounds
@@ -113,11 +109,8 @@ def placed_bounds(
 def shape_bounds(geometry: Geometry, *, implicit_cylinder: bool) -> Bounds:
     """Bounds of a shape in its own frame, widened by its own margin.
 
-    The margin of a hull counts twice: once in the bounds of its points and once around them.
-
-    Args:
-        geometry: The shape.
-        implicit_cylinder: Cylinders are exact; otherwise they are hulls of their rims.
+    The margin of a hull counts twice: once in the bounds of its points and once around them. Unless cylinders
+    are implicit, they are hulls of their rims.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
@@ -176,11 +169,7 @@ def mesh_bounds(mesh: Mesh) -> Bounds:
 
 
 def vertex_bounds(mesh: Mesh) -> Bounds:
-    """Bounds of the vertices of a mesh, without any margin.
-
-    Raises:
-        DescriptionError: The file cannot be used.
-    """
+    """Bounds of the vertices of a mesh, without any margin; raises `DescriptionError` as `mesh_bounds`."""
     corners = [_scaled_corners(part.vertices, mesh.scale) for part in read_mesh(mesh.path)]
     return reduce(Bounds.joined, (Bounds.between(*pair) for pair in corners))
 

@@ -123,15 +123,7 @@ class WorldArrays:
             table.reserve(needed)
 
     def append(self, spec: BodySpec, base_pose: Pose) -> TreeRows:
-        """Add a body at rest, its joints at zero.
-
-        Args:
-            spec: The body.
-            base_pose: World pose of the base's inertial frame.
-
-        Returns:
-            Its rows.
-        """
+        """Add a body at rest, its joints at zero, the inertial frame of its base at a world pose."""
         codes = [JOINT_CODE[link.joint_type] for link in spec.links]
         joint_dofs = sum(DOF_COUNT[code] for code in codes)
         dofs = BASE_VELOCITIES + joint_dofs
@@ -163,15 +155,7 @@ class WorldArrays:
         return rows
 
     def put(self, known: BodyRows, base_pose: Pose) -> TreeRows:
-        """Add a body at rest whose rows are known; see `append`.
-
-        Args:
-            known: Its rows.
-            base_pose: World pose of the base's inertial frame.
-
-        Returns:
-            Its rows here.
-        """
+        """Add a body at rest whose rows are known, and return its rows here; see `append`."""
         used, count = self.used, known.count
         needed = {axis: used[axis] + number for axis, number in count.items()}
         self.model.reserve(needed)
@@ -328,14 +312,9 @@ class WorldArrays:
         self.used.update(used)
 
     def removal(self, rows: TreeRows, others: Sequence[TreeRows]) -> Callable[[], None]:
-        """Prepare to remove a body's rows.
+        """Prepare to remove a body's rows; those of others after it move up.
 
-        Args:
-            rows: Its rows.
-            others: Rows of all other bodies; those after it move up.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
+        The function that is returned can be called again if it was interrupted.
         """
         remove_rows = self.row_changes.removal(rows.first, rows.count, self.used)
         used = {axis: self.used[axis] - count for axis, count in rows.count.items()}

@@ -34,11 +34,8 @@ def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedB
 def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool = True) -> list[PlacedBody]:
     """The bodies of an MJCF file, in the order of the file; raises `DescriptionError`.
 
-    Args:
-        path: The file.
-        search: Folders in which it and the files it refers to are searched.
-        flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
-        as_mujoco: `axisangle` turns bodies, and named classes limit joints; in PyBullet they do not.
+    `flags` are `carom.layouts.flags.LoadFlags`. With `as_mujoco`, `axisangle` turns bodies, and named classes
+    limit joints; in PyBullet they do not.
     """
     from carom.formats.mjcf import read_mjcf
 
@@ -59,11 +56,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:
-    """Prepare all shapes for collision detection early, so that errors are raised before bodies are added.
-
-    Raises:
-        DescriptionError: The file of a mesh cannot be used.
-    """
+    """Prepare all shapes for collision detection, so that `DescriptionError` is raised early."""
     for spec, _ in bodies:
         if spec.pattern is not None:
             continue

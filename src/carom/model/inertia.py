@@ -34,6 +34,7 @@ from carom.description.transform import (
 )
 from carom.layouts.contacts import MARGIN
 from carom.logger import Logger
+from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds, placed_bounds, shape_bounds
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends, is_swept
 
@@ -47,38 +48,17 @@ _IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
 _EPSILON = 2.220446049250313e-16
 
 
-def inertia_from_shapes(
-    mass: float,
-    collisions: Sequence[Collision],
-    inertial_frame: Pose,
-    *,
-    implicit_cylinder: bool,
-    compound_margin: float = MARGIN,
-) -> Vector3:
-    """Moments of inertia about the axes of the inertial frame, from the collision shapes.
+def inertia_from_shapes(link: LinkSpec, *, implicit_cylinder: bool) -> Vector3:
+    """Moments of inertia [kg m²] about the axes of the inertial frame, from the collision shapes.
 
     A single shape that lies exactly in the inertial frame has its own moments. In all other cases, also
-    without shapes, the moments are those of the bounding box of all shapes, widened by a margin.
-
-    Args:
-        mass: [kg].
-        collisions: Shapes in the link frame.
-        inertial_frame: Inertial frame in the link frame.
-        implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
-        compound_margin: That margin [m].
-
-    Returns:
-        Moments about x, y and z [kg m²].
+    without shapes, the moments are those of the bounding box of all shapes, widened by `compound_margin`.
+    Unless cylinders are implicit, they are hulls of 32 sides.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
     """
-    return moments_at(
-        mass,
-        mass_terms(
-            collisions, inertial_frame, implicit_cylinder=implicit_cylinder, compound_margin=compound_margin
-        ),
-    )
+    return moments_at(link.mass, mass_terms(link, implicit_cylinder=implicit_cylinder))
 
 
 class MassTerm(NamedTuple):
@@ -112,51 +92,27 @@ def moments_at(mass: float, terms: MassTerms) -> Vector3:
     return (x, y, z)
 
 
-def mass_terms(
-    collisions: Sequence[Collision],
-    inertial_frame: Pose,
-    *,
-    implicit_cylinder: bool,
-    compound_margin: float = MARGIN,
-) -> MassTerms:
-    """The moments of `inertia_from_shapes`, which has the same arguments, as functions of the mass.
-
-    Raises:
-        DescriptionError: The file of a mesh cannot be used.
-    """
-    if is_in_place(collisions, inertial_frame):
-        return _shape_terms(collisions[0].geometry, implicit_cylinder)
-    bounds = link_bounds(
-        collisions, inertial_frame, implicit_cylinder=implicit_cylinder, compound_margin=compound_margin
-    )
-    return _box_terms(12.0, 1.0, bounds)
+def mass_terms(link: LinkSpec, *, implicit_cylinder: bool) -> MassTerms:
+    """The moments of `inertia_from_shapes`, which has the same arguments, as functions of the mass."""
+    if is_in_place(link.collisions, link.inertial_frame):
+        return _shape_terms(link.collisions[0].geometry, implicit_cylinder)
+    return _box_terms(12.0, 1.0, link_bounds(link, implicit_cylinder=implicit_cylinder))
 
 
-def link_bounds(
-    collisions: Sequence[Collision],
-    inertial_frame: Pose,
-    *,
-    implicit_cylinder: bool,
-    compound_margin: float = MARGIN,
-) -> Bounds:
+def link_bounds(link: LinkSpec, *, implicit_cylinder: bool) -> Bounds:
     """Bounds of a link's collision shapes along the axes of its inertial frame, margins included.
 
-    Args:
-        collisions: Shapes in the link frame.
-        inertial_frame: Inertial frame in the link frame.
-        implicit_cylinder: Cylinders are exact, not hulls of 32 sides.
-        compound_margin: Widens the bounds, except those of a single shape exactly in the inertial frame [m].
-
-    Raises:
-        DescriptionError: The file of a mesh cannot be used.
+    The margin of compounds widens them, except those of a single shape exactly in the inertial frame. The
+    arguments and errors are those of `inertia_from_shapes`.
     """
+    collisions, inertial_frame = link.collisions, link.inertial_frame
     if is_in_place(collisions, inertial_frame):
         if is_swept(collisions[0]):
             return bounds_between_ends(collisions[0], FIRST_MARGIN)
         return shape_bounds(collisions[0].geometry, implicit_cylinder=implicit_cylinder)
     boxes = [_bounds_in(inertial_frame, collision, implicit_cylinder) for collision in collisions]
     nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    return (reduce(Bounds.joined, boxes) if boxes else nothing).grown(compound_margin)
+    return (reduce(Bounds.joined, boxes) if boxes else nothing).grown(link.compound_margin)
 
 
 def _bounds_in(inertial_frame: Pose, collision: Collision, implicit_cylinder: bool) -> Bounds:
@@ -176,18 +132,16 @@ def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
     return placement(inertial_frame, only.frame) == _IN_PLACE
 
 
-def collision_margin(
-    collisions: Sequence[Collision], inertial_frame: Pose, compound_margin: float = MARGIN
-) -> float:
+def collision_margin(link: LinkSpec) -> float:
     """Collision margin of a link's shapes [m].
 
     That of a single sphere or capsule exactly in the inertial frame is its radius.
     """
-    if not is_in_place(collisions, inertial_frame):
-        return compound_margin
-    if is_swept(collisions[0]):
+    if not is_in_place(link.collisions, link.inertial_frame):
+        return link.compound_margin
+    if is_swept(link.collisions[0]):
         return FIRST_MARGIN
-    match collisions[0].geometry:
+    match link.collisions[0].geometry:
         case Sphere(radius) | Capsule(radius, _):
             return radius
         case TriangleMesh(margin=margin):
@@ -279,19 +233,12 @@ def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose
 
 
 def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vector3, Matrix3]:
-    """Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi rotations.
+    """Eigenvalues of a symmetric matrix, and a matrix with the eigenvectors as columns, by Jacobi rotations.
 
     Each rotation makes the largest off-diagonal entry zero. The eigenvalues are in the order in which they
-    appear on the diagonal, and the matrix of eigenvectors is a rotation, not a reflection.
-
-    Args:
-        tensor: The matrix.
-        threshold: Once the largest off-diagonal entry is at most this fraction of the sum of magnitudes on
-            the diagonal, one last rotation is made.
-        most_steps: Maximum number of rotations.
-
-    Returns:
-        The eigenvalues, and a matrix with the eigenvectors as columns.
+    appear on the diagonal, and the matrix of eigenvectors is a rotation, not a reflection. Once the largest
+    off-diagonal entry is at most `threshold` times the sum of magnitudes on the diagonal, one last rotation
+    is made.
     """
     a = [list(row) for row in tensor]
     v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]

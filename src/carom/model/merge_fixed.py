@@ -17,11 +17,7 @@ def merge_fixed_links(root: TreeNode, *, fixed_base: bool) -> None:
     The rules are PyBullet's, so that masses and link order agree. The parent takes over the shapes, but not
     the contact parameters. Inertial frames in the file are ignored: masses are added as if each centre of
     mass lay at the origin of its link, and tensors as if the axes of all links were parallel. The last child
-    takes the place of a merged one.
-
-    Args:
-        root: The tree.
-        fixed_base: The base is fixed, so links merged into it add no mass.
+    takes the place of a merged one. Links merged into a fixed base add no mass.
     """
     pending = [root]
     while pending:

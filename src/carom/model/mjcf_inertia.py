@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from functools import reduce
 
 from carom.description import Collision, Mesh, Pose
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
-from carom.model.body_spec import BodySpec
+from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds, placed_bounds, vertex_bounds
 from carom.model.inertia import TWELFTH, box_moments, inertia_from_shapes, is_in_place, placement
 from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
@@ -28,12 +28,13 @@ def set_mjcf_inertias(body: BodySpec) -> None:
         return
     for link in (body.base, *body.links):
         if link.mass != 0.0:
-            link.inertia = _inertia(link.mass, link.collisions, link.inertial_frame)
+            link.inertia = _inertia(link)
 
 
-def _inertia(mass: float, collisions: Sequence[Collision], frame: Pose) -> Vector3:
+def _inertia(link: LinkSpec) -> Vector3:
+    mass, collisions, frame = link.mass, link.collisions, link.inertial_frame
     if not any(collision.ends_frame or _is_stl(collision) for collision in collisions):
-        return inertia_from_shapes(mass, collisions, frame, implicit_cylinder=True, compound_margin=0.0)
+        return inertia_from_shapes(replace(link, compound_margin=0.0), implicit_cylinder=True)
     if is_in_place([as_given(collision) for collision in collisions], frame):
         (only,) = collisions
         if only.ends_frame is not None:

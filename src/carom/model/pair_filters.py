@@ -14,11 +14,7 @@ _FIELDS = ("filter_link_a", "filter_link_b", "filter_enabled")
 
 
 class PairFilters:
-    """Rules for pairs of links, kept sorted in the `filter_` fields of `Shapes`.
-
-    Args:
-        table: The table that has these fields.
-    """
+    """Rules for pairs of links, kept sorted in the `filter_` fields of a table of `Shapes`."""
 
     def __init__(self, table: ArrayTable) -> None:
         self._table = table
@@ -35,29 +31,18 @@ class PairFilters:
         enabled = self._table.numpy["filter_enabled"]
         return [(a, b, bool(enabled[row])) for row, (a, b) in enumerate(self._pairs)]
 
-    def set(self, link_a: int, link_b: int, *, enabled: bool) -> bool:
-        """Enable or disable collisions of two links, overriding their groups and masks.
-
-        Args:
-            link_a: Row of a link.
-            link_b: Row of the other.
-            enabled: Whether they collide.
-
-        Returns:
-            Whether arrays were replaced.
-        """
+    def set(self, link_a: int, link_b: int, *, enabled: bool) -> None:
+        """Enable or disable collisions of two links, by row, overriding their groups and masks."""
         pair = (min(link_a, link_b), max(link_a, link_b))
         at = bisect_left(self._pairs, pair)
-        grown = False
         if at == len(self._pairs) or self._pairs[at] != pair:
-            grown = self._table.reserve({"filter": len(self._pairs) + 1})
+            self._table.reserve({"filter": len(self._pairs) + 1})
             for name in _FIELDS:
                 rows = self._table.numpy[name]
                 rows[at + 1 : len(self._pairs) + 1] = rows[at : len(self._pairs)].copy()
             self._pairs.insert(at, pair)
         for name, value in zip(_FIELDS, (*pair, int(enabled)), strict=True):
             self._table.numpy[name][at] = value
-        return grown
 
     def way_back(self) -> Callable[[], None]:
         """A function that restores the present rules."""
@@ -70,11 +55,7 @@ class PairFilters:
         self._write_all([], np.zeros(0))
 
     def removal(self, first: int, count: int) -> Callable[[], None]:
-        """Prepare to drop the rules of removed links; later links move up.
-
-        Returns:
-            A function that drops them; it can be called again if it was interrupted.
-        """
+        """Prepare to drop the rules of removed links; later links move up. It can be called again."""
         after = first + count
         kept, enabled = [], []
         for a, b, rule in self.all:

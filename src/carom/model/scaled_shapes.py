@@ -19,12 +19,8 @@ def scaled_collisions(
     """Collision shapes scaled by the rules of Bullet's `setLocalScaling`.
 
     Positions are scaled along the axes of the inertial frame, shapes along their own axes: spheres by the
-    factor for x, capsules by those for y (radius) and z (length). Planes are not scaled.
-
-    Args:
-        collisions: The shapes, with poses in the link frame.
-        inertial_frame: Inertial frame in the link frame.
-        factors: Factors along x, y and z, greater than 0.
+    factor for x, capsules by those for y (radius) and z (length). Planes are not scaled. Poses are in the
+    link frame, and factors, along x, y and z, greater than 0.
 
     Raises:
         ValueError: A cylinder would not stay round, or a kind of shape cannot be scaled.

@@ -137,16 +137,11 @@ class ShapeArrays:
         """A C struct whose fields are views of the arrays."""
         return self.table.struct()
 
-    def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> bool:
+    def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> None:
         """Add the shapes of a body whose links were appended to the model just before.
 
-        Args:
-            spec: The body.
-            rows: Rows of its tree; this object is kept, and read again whenever the body changes.
-            surfaces: Contact parameters of its links, the base first.
-
-        Returns:
-            Whether arrays were replaced.
+        `rows` are those of its tree; this object is kept, and read again whenever the body changes.
+        `surfaces` are the contact parameters of its links, the base first.
 
         Raises:
             DescriptionError: The file of a mesh cannot be used; nothing has changed.
@@ -157,34 +152,20 @@ class ShapeArrays:
         body = BodyShapes(
             rows, {axis: self.used[axis] for axis in AXES}, row_counts([placed.piece for placed in pieces])
         )
-        body.bounds = [
-            link_bounds(
-                link.collisions,
-                link.inertial_frame,
-                implicit_cylinder=implicit,
-                compound_margin=link.compound_margin,
-            )
-            for link in links
-        ]
+        body.bounds = [link_bounds(link, implicit_cylinder=implicit) for link in links]
         body.own_margin = [has_own_margin(link) for link in links]
         needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
-        grown = self.table.reserve(needed)
+        self.table.reserve(needed)
         self._bodies[rows.first["link"]] = body
         self._write_links(body, spec, links)
         self._write_pieces(body, pieces)
         self.used.update(needed)
         for link_row, surface in enumerate(surfaces, start=self.used["link"] - len(links)):
             self.write_surface(link_row, surface)
-        return grown
 
     def put(self, known: BodyRows, rows: TreeRows) -> None:
-        """Add the shapes of a body whose rows are known; see `append`.
-
-        Args:
-            known: Its rows.
-            rows: Rows of its tree, which were put into the model just before.
-        """
+        """Add the shapes of a body whose rows are known and are in the model already; see `append`."""
         used, count = self.used, known.shape_count
         needed = {axis: used[axis] + number for axis, number in count.items()}
         self.table.reserve(needed)
@@ -228,25 +209,25 @@ class ShapeArrays:
             numpy["shape_link"][row] = link
             numpy["shape_tree"][row] = body.rows.tree
             numpy["shape_kind"][row] = piece.kind
-            numpy["shape_size"][row] = piece.size
-            numpy["shape_pose"][row] = placed.pose
-            numpy["shape_rolling"][row] = piece.rolling
-            numpy["shape_flat_faces"][row] = piece.flat_faces
-            numpy["shape_margin"][row] = piece.margin
-            numpy["shape_center"][row] = piece.center
             numpy["shape_columns"][row] = piece.columns
-            numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])
             for axis in ("vertex", "face", "node"):
                 numpy[f"shape_first_{axis}"][row] = at[axis]
             if numpy["link_shape_count"][link] == 0:
                 numpy["link_first_shape"][link] = row
             numpy["link_shape_count"][link] += 1
-            self._write_polyhedron(piece, row, at)
+            self._write_piece(body, placed, at)
             at["shape"] += 1
 
-    def _write_polyhedron(self, piece: ShapePiece, row: int, at: dict[str, int]) -> None:
-        """Write a piece's vertices, faces and nodes, starting at the rows `at`, and advance these."""
-        numpy = self.table.numpy
+    def _write_piece(self, body: BodyShapes, placed: PlacedPiece, at: dict[str, int]) -> None:
+        """Write what can change in a piece, to the rows `at`; those of vertices, faces and nodes advance."""
+        numpy, piece, row = self.table.numpy, placed.piece, at["shape"]
+        numpy["shape_pose"][row] = placed.pose
+        numpy["shape_size"][row] = piece.size
+        numpy["shape_rolling"][row] = piece.rolling
+        numpy["shape_flat_faces"][row] = piece.flat_faces
+        numpy["shape_margin"][row] = piece.margin
+        numpy["shape_center"][row] = piece.center
+        numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])
         polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
         if polyhedron is None:
             return
@@ -287,11 +268,7 @@ class ShapeArrays:
         return body.first["shape"], body.count["shape"]
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove a body's shapes, while its tree's rows are still present.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
-        """
+        """Prepare to remove a body's shapes, while its tree still has rows; it can be called again."""
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]
         count = {**body.count, "link": link_count}
@@ -373,11 +350,6 @@ class ShapeArrays:
     def replace_pieces(self, link_row: int, spec: LinkSpec, *, implicit_cylinder: bool) -> None:
         """Write a link's shapes again after their data changed; the number of rows is the same.
 
-        Args:
-            link_row: The link.
-            spec: Its shapes now.
-            implicit_cylinder: Cylinders are exact.
-
         Raises:
             ValueError: The number of rows or a kind of shape would change; nothing has changed.
         """
@@ -391,26 +363,12 @@ class ShapeArrays:
                 "its shapes would be of another kind, or have another number of parts or corners"
             )
         self.changes += 1
-        body.bounds[link] = link_bounds(
-            spec.collisions,
-            spec.inertial_frame,
-            implicit_cylinder=implicit_cylinder,
-            compound_margin=spec.compound_margin,
-        )
+        body.bounds[link] = link_bounds(spec, implicit_cylinder=implicit_cylinder)
         numpy = self.table.numpy
         for row, placed in enumerate(pieces, start=shapes.start):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
-            face = at["face"]
-            at["corner"] = int(numpy["face_first_corner"][face]) if placed.piece.polyhedron else 0
-            at["shape"] = row
-            numpy["shape_pose"][row] = placed.pose
-            numpy["shape_size"][row] = placed.piece.size
-            numpy["shape_rolling"][row] = placed.piece.rolling
-            numpy["shape_flat_faces"][row] = placed.piece.flat_faces
-            numpy["shape_center"][row] = placed.piece.center
-            numpy["shape_margin"][row] = placed.piece.margin
-            numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[link])
-            self._write_polyhedron(placed.piece, row, at)
+            at["corner"] = int(numpy["face_first_corner"][at["face"]]) if placed.piece.polyhedron else 0
+            self._write_piece(body, placed, at | {"shape": row})
 
     def _fits(self, piece: ShapePiece, row: int) -> bool:
         """Whether a piece has the same kind and the same numbers of rows as the piece in a row."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Sequence
 from functools import lru_cache
 from math import pi
@@ -84,13 +83,8 @@ class ShapePiece:
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
     """The pieces of a shape for collision detection; all of them share the frame of the shape.
 
-    Args:
-        geometry: The shape.
-        implicit_cylinder: Cylinders are exact; otherwise they are hulls of 32 sides.
-
-    Returns:
-        One piece, or one for each group of an OBJ file; none for a signed distance field, which nothing
-        collides with.
+    There is one piece, or one for each group of an OBJ file; none for a signed distance field, which nothing
+    collides with. Unless cylinders are implicit, they are hulls of 32 sides.
 
     Raises:
         DescriptionError: The file of a mesh cannot be used.
@@ -222,49 +216,23 @@ def _heightfield_piece(geometry: Heightfield) -> ShapePiece:
     return _polyhedral(ShapeKind.HEIGHTFIELD, heightfield_surface(geometry), 0.0, geometry.heights.shape[1])
 
 
-class _MeshGeometries:
-    """A cache of the collision geometries of mesh files, valid while the files are unchanged."""
-
-    def __init__(self) -> None:
-        self._kept: OrderedDict[Mesh, tuple[list[MeshPart], tuple[MeshGeometry, ...]]] = OrderedDict()
-
-    def of(self, mesh: Mesh) -> tuple[MeshGeometry, ...]:
-        """The hulls or triangles of a mesh."""
-        parts = read_mesh(mesh.path)
-        kept = self._kept.get(mesh)
-        # For an unchanged file, `read_mesh` returns the same part objects.
-        if kept is not None and all(a is b for a, b in zip(parts, kept[0], strict=False)):
-            self._kept.move_to_end(mesh)
-            return kept[1]
-        geometries = tuple(_geometries_of_parts(mesh, parts))
-        self._kept[mesh] = (parts, geometries)
-        while len(self._kept) > _CACHED:
-            self._kept.popitem(last=False)
-        return geometries
-
-
-_mesh_geometries = _MeshGeometries()
-
-
 def mesh_geometries(mesh: Mesh) -> tuple[MeshGeometry, ...]:
-    """The scaled collision geometries of a mesh file.
+    """A hull for each group of an OBJ file, one for any other file; one triangle mesh if it is concave.
 
-    Returns:
-        A hull for each group of an OBJ file, one for any other file; one triangle mesh if it is concave.
-
-    Raises:
-        DescriptionError: The file cannot be used.
+    They are scaled. Raises `DescriptionError` if the file cannot be used.
     """
-    return _mesh_geometries.of(mesh)
+    # For an unchanged file, `read_mesh` returns the same part objects.
+    return _geometries_of_parts(mesh, tuple(read_mesh(mesh.path)))
 
 
-def _geometries_of_parts(mesh: Mesh, parts: list[MeshPart]) -> list[MeshGeometry]:
+@lru_cache(_CACHED)
+def _geometries_of_parts(mesh: Mesh, parts: tuple[MeshPart, ...]) -> tuple[MeshGeometry, ...]:
     if mesh.concave:
-        return [TriangleMesh(*joined_parts(parts, mesh.scale), scale=mesh.scale)]
+        return (TriangleMesh(*joined_parts(parts, mesh.scale), scale=mesh.scale),)
     scale = np.array(mesh.scale)
     if mesh.path.suffix.lower() == ".obj":
-        return [ConvexHull(part.vertices * scale, mesh.scale) for part in parts]
-    return [ConvexHull(np.concatenate([part.vertices for part in parts]) * scale, mesh.scale)]
+        return tuple(ConvexHull(part.vertices * scale, mesh.scale) for part in parts)
+    return (ConvexHull(np.concatenate([part.vertices for part in parts]) * scale, mesh.scale),)
 
 
 def joined_parts(parts: Sequence[MeshPart], scale: Vector3) -> tuple[NDArray[np.float64], NDArray[np.int32]]:

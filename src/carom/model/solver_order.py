@@ -22,12 +22,9 @@ def remove_unordered(items: list[T], item: T) -> None:
 
 
 def quicksort_order(keys: Sequence[int]) -> list[int]:
-    """Permutation that sorts `keys` by Hoare's quicksort around the middle element.
+    """Indices that sort `keys` by Hoare's quicksort around the middle element.
 
     Unlike a stable sort it also moves equal keys; the result is a function of the keys alone.
-
-    Returns:
-        Indices into `keys` in sorted order.
     """
     order = list(range(len(keys)))
     ranges = [(0, len(keys) - 1)] if len(keys) > 1 else []
@@ -52,14 +49,10 @@ def quicksort_order(keys: Sequence[int]) -> list[int]:
 
 
 def batch_islands(tags: Sequence[int], minimum_size: int) -> list[tuple[int, int]]:
-    """Group sorted constraints into the runs that are solved together.
+    """First index and length of each run of sorted constraints that are solved together.
 
-    Args:
-        tags: Island of each constraint, ascending.
-        minimum_size: Islands are joined until a run has more constraints than this.
-
-    Returns:
-        First index and length of each run.
+    `tags` are the islands of the constraints, ascending, which are joined until a run has more constraints
+    than `minimum_size`.
     """
     runs: list[tuple[int, int]] = []
     start = 0
@@ -94,11 +87,7 @@ class IslandTags:
         return [key for key, moves in self._objects if moves]  # type: ignore[misc]
 
     def reorder(self, links: Sequence[tuple[Hashable, int]]) -> None:
-        """Put the objects in another order, given in the form of the property `links`.
-
-        Raises:
-            KeyError: There is no such link.
-        """
+        """Put the objects in another order of `links`; raises `KeyError` if there is no such link."""
         moves = dict(self._objects)
         self._objects = [(link, moves[link]) for link in links]
         self._tags = None

@@ -29,9 +29,7 @@ def as_given(collision: Collision) -> Collision:
 def bounds_between_ends(collision: Collision, margin: float) -> Bounds:
     """Bounds of a capsule or cylinder along the axes of the frame in which its ends are given.
 
-    Args:
-        collision: The shape.
-        margin: Widens the bounds of a capsule [m].
+    The margin widens those of a capsule [m].
     """
     assert collision.ends_frame is not None, "the shape is given by its ends"
     within = compose(inverse(collision.ends_frame), collision.frame)

@@ -31,14 +31,7 @@ _POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELO
 
 
 class Outline:
-    """What bodies take over from their specification.
-
-    Attributes:
-        joint_types: See `Body`.
-        position_count: See `Body`.
-        velocity_count: See `Body`.
-        dynamics: Parameters of each link after loading, the base first.
-    """
+    """What bodies take over from their specification: attributes of `Body`, and parameters of each link."""
 
     def __init__(self, spec: BodySpec) -> None:
         codes = [JOINT_CODE[link.joint_type] for link in spec.links]

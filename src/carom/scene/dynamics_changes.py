@@ -214,13 +214,8 @@ def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
 
 def shape_terms(body: Body, link: int) -> MassTerms:
     """The principal moments of inertia of a link's collision shapes as a function of the mass."""
-    spec = body.link_spec(link)
-    return mass_terms(
-        spec.collisions,
-        spec.inertial_frame,
-        implicit_cylinder=bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER),
-        compound_margin=spec.compound_margin,
-    )
+    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    return mass_terms(body.link_spec(link), implicit_cylinder=implicit)
 
 
 def _set_inertia(body: Body, link: int, inertia: Vector3) -> None:

@@ -12,8 +12,8 @@ from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.products import length
-from carom.scene import joint_motor
 from carom.scene.handles import world_of
+from carom.scene.joint_motor import Drives
 from carom.scene.named import Named
 
 if TYPE_CHECKING:
@@ -173,17 +173,9 @@ class Joint:
             max_velocity: Maximum velocity of the motor.
         """
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
-        world = world_of(self.body)
-        joint_motor.aim_at_position(
-            world.motor,
-            self._one_dof,
-            world.parameters.substep_time,
-            target,
-            velocity,
-            gain,
-            velocity_gain,
-            self._force(max_force),
-            max_velocity,
+        force = self._force(max_force)
+        self._drives(self._one_dof).aim_at_position(
+            target, velocity, gain, velocity_gain, force, max_velocity
         )
 
     def set_velocity_target(
@@ -196,15 +188,7 @@ class Joint:
             gain: Share of the velocity error corrected per substep.
             max_force: Maximum force; `effort_limit` by default.
         """
-        world = world_of(self.body)
-        joint_motor.aim_at_velocity(
-            world.motor,
-            self._one_dof,
-            world.parameters.substep_time,
-            target,
-            gain,
-            self._force(max_force),
-        )
+        self._drives(self._one_dof).aim_at_velocity(target, gain, self._force(max_force))
 
     def set_spring(
         self,
@@ -224,15 +208,8 @@ class Joint:
             velocity: Velocity at which the damper exerts no force.
             max_force: Maximum force; `effort_limit` by default.
         """
-        joint_motor.pull_like_a_spring(
-            world_of(self.body).pd,
-            self._one_dof,
-            target,
-            velocity,
-            stiffness,
-            damping,
-            self._force(max_force),
-        )
+        force = self._force(max_force)
+        self._drives(self._one_dof).pull_like_a_spring(target, velocity, stiffness, damping, force)
 
     def set_orientation_target(
         self,
@@ -256,16 +233,8 @@ class Joint:
         size = length(quaternion)
         if size == 0.0:
             raise ValueError("target must be a quaternion other than 0")
-        world = world_of(self.body)
-        joint_motor.aim_at_orientation(
-            world.motor,
-            self._dofs,
-            world.parameters.substep_time,
-            quaternion / size,
-            gain,
-            damping,
-            self._force(max_force),
-        )
+        force = self._force(max_force)
+        self._drives(self._dofs).aim_at_orientation(quaternion / size, gain, damping, force)
 
     def set_torque(self, torque: ArrayLike) -> None:
         """Torque control: apply a force or torque in the next step, instead of one set before.
@@ -277,8 +246,7 @@ class Joint:
 
     def disable_motor(self) -> None:
         """Switch off the motor, which is on after loading, and the spring."""
-        world = world_of(self.body)
-        joint_motor.switch_off(world.motor, world.pd, self._dofs)
+        self._drives(self._dofs).switch_off()
 
     @property
     def motor_torque(self) -> float:
@@ -319,6 +287,10 @@ class Joint:
     @property
     def _dof(self) -> int:
         return self._one_dof.start
+
+    def _drives(self, dofs: slice) -> Drives:
+        world = world_of(self.body)
+        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time)
 
     def _require_one_freedom(self) -> None:
         count = self.degrees_of_freedom
@@ -420,11 +392,7 @@ class Joints(Named[Joint]):
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
         """
-        world = world_of(self._body)
-        joint_motor.aim_at_position(
-            world.motor,
-            self._one_dof_each,
-            world.parameters.substep_time,
+        self._drives(self._one_dof_each).aim_at_position(
             np.clip(self._each(targets, "targets"), *self.limits),
             self._each(velocities, "velocities"),
             self._each(gains, "gains"),
@@ -437,11 +405,7 @@ class Joints(Named[Joint]):
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
         """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
-        world = world_of(self._body)
-        joint_motor.aim_at_velocity(
-            world.motor,
-            self._one_dof_each,
-            world.parameters.substep_time,
+        self._drives(self._one_dof_each).aim_at_velocity(
             self._each(targets, "targets"),
             self._each(gains, "gains"),
             self._each(self._forces(max_forces), "max_forces"),
@@ -454,8 +418,7 @@ class Joints(Named[Joint]):
 
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
-        world = world_of(self._body)
-        joint_motor.switch_off(world.motor, world.pd, self._dofs)
+        self._drives(self._dofs).switch_off()
 
     @property
     def _dofs(self) -> slice:
@@ -467,6 +430,10 @@ class Joints(Named[Joint]):
         for joint in self._movable:
             joint._require_one_freedom()
         return self._dofs
+
+    def _drives(self, dofs: slice) -> Drives:
+        world = world_of(self._body)
+        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time)
 
     def _each(self, value: ArrayLike, name: str) -> Array:
         """One number for each velocity coordinate; an error message names the joints."""

@@ -4,11 +4,9 @@ Targets, gains, maximum forces and maximum velocities become columns of `motor` 
 `kernels/dynamics/motors.py` converts these to constraint rows and torques. Forces are in N m for revolute
 joints and in N for prismatic ones; the bound of a motor is an impulse, the maximum force times the time step.
 
-The functions write many rows, of one world, (dofs, 8), or of many, (worlds, dofs, 8). Their argument `dofs`
-selects the velocity coordinates: a slice, or an array of indices. Other arguments are one number for all of
-these, one for each dof, or one for each world and dof. The classes write the row of one joint, for loops that
-set motors one by one. The kernel in `kernels/dynamics/motor_commands.py` does the same as `AxisMotor` for a
-list of joints.
+`Drives` writes many rows. Arguments of its methods are one number for all of these, one for each dof, or one
+for each world and dof. The other classes write the row of one joint, for loops that set motors one by one.
+The kernel in `kernels/dynamics/motor_commands.py` does the same as `AxisMotor` for a list of joints.
 """
 
 from __future__ import annotations
@@ -16,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import inf
 from struct import Struct
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,8 +40,6 @@ from carom.layouts.motor_commands import MODES, PD, POSITION, TORQUE, VELOCITY
 if TYPE_CHECKING:
     from carom.world.world import World
 
-Dofs = slice | np.ndarray
-
 _DOUBLE = 8
 _COLUMNS = 8
 # A PD drive with a smaller maximum force is switched off.
@@ -57,98 +53,89 @@ _write_target = Struct("5d").pack_into
 _write_target_and_clamp = Struct("6d").pack_into
 
 
-def aim_at_position(
-    motor: np.ndarray,
-    dofs: Dofs,
-    substep_time: float,
-    position: ArrayLike,
-    velocity: ArrayLike,
-    gain: ArrayLike,
-    velocity_gain: ArrayLike,
-    max_force: ArrayLike,
-    max_velocity: ArrayLike,
-) -> None:
-    """Position control: correct the share `gain` of the position error in every substep."""
-    columns = {
-        MOTOR_POSITION: finite(position, "target"),
-        MOTOR_VELOCITY: finite(velocity, "velocity"),
-        MOTOR_KP: finite(gain, "gain"),
-        MOTOR_KD: finite(velocity_gain, "velocity_gain"),
-        MOTOR_MAX_IMPULSE: _impulse(max_force, substep_time),
-        MOTOR_VELOCITY_CLAMP: not_negative(max_velocity, "max_velocity"),
-    }
-    _write(motor, dofs, columns)
+class Drives(NamedTuple):
+    """Motors and PD drives of some velocity coordinates, in one world or in many.
 
+    Attributes:
+        motor: `motor` of all coordinates, (dofs, 8) or (worlds, dofs, 8).
+        pd: `pd` of all coordinates, likewise.
+        dofs: Which coordinates: a slice, or an array of indices.
+        substep_time: Duration of a substep [s].
+    """
 
-def aim_at_velocity(
-    motor: np.ndarray,
-    dofs: Dofs,
-    substep_time: float,
-    velocity: ArrayLike,
-    gain: ArrayLike,
-    max_force: ArrayLike,
-) -> None:
-    """Velocity control: correct the share `gain` of the velocity error in every substep."""
-    aim_at_position(motor, dofs, substep_time, 0.0, velocity, 0.0, gain, max_force, np.inf)
+    motor: np.ndarray
+    pd: np.ndarray
+    dofs: slice | np.ndarray
+    substep_time: float
 
+    def aim_at_position(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        gain: ArrayLike,
+        velocity_gain: ArrayLike,
+        max_force: ArrayLike,
+        max_velocity: ArrayLike,
+    ) -> None:
+        """Position control: correct the share `gain` of the position error in every substep."""
+        columns = {
+            MOTOR_POSITION: finite(position, "target"),
+            MOTOR_VELOCITY: finite(velocity, "velocity"),
+            MOTOR_KP: finite(gain, "gain"),
+            MOTOR_KD: finite(velocity_gain, "velocity_gain"),
+            MOTOR_MAX_IMPULSE: not_negative(max_force, "max_force") * self.substep_time,
+            MOTOR_VELOCITY_CLAMP: not_negative(max_velocity, "max_velocity"),
+        }
+        self._write(self.motor, columns)
 
-def aim_at_orientation(
-    motor: np.ndarray,
-    dofs: slice,
-    substep_time: float,
-    orientation: ArrayLike,
-    gain: ArrayLike,
-    damping: ArrayLike,
-    max_force: ArrayLike,
-) -> None:
-    """Position control of a spherical joint: the target is a unit quaternion (x, y, z, w)."""
-    x, y, z, w = finite(orientation, "orientation")
-    columns = {
-        MOTOR_POSITION: np.array([x, y, z]),
-        MOTOR_KP: finite(gain, "gain"),
-        MOTOR_MAX_IMPULSE: _impulse(max_force, substep_time),
-        MOTOR_DAMPING: finite(damping, "damping"),
-    }
-    _write(motor, dofs, columns)
-    motor[dofs.start, MOTOR_TARGET_W] = w
+    def aim_at_velocity(self, velocity: ArrayLike, gain: ArrayLike, max_force: ArrayLike) -> None:
+        """Velocity control: correct the share `gain` of the velocity error in every substep."""
+        self.aim_at_position(0.0, velocity, 0.0, gain, max_force, np.inf)
 
+    def aim_at_orientation(
+        self, orientation: ArrayLike, gain: ArrayLike, damping: ArrayLike, max_force: ArrayLike
+    ) -> None:
+        """Position control of a spherical joint: the target is a unit quaternion (x, y, z, w)."""
+        x, y, z, w = finite(orientation, "orientation")
+        columns = {
+            MOTOR_POSITION: np.array([x, y, z]),
+            MOTOR_KP: finite(gain, "gain"),
+            MOTOR_MAX_IMPULSE: not_negative(max_force, "max_force") * self.substep_time,
+            MOTOR_DAMPING: finite(damping, "damping"),
+        }
+        self._write(self.motor, columns)
+        assert isinstance(self.dofs, slice)
+        self.motor[self.dofs.start, MOTOR_TARGET_W] = w
 
-def pull_like_a_spring(
-    pd: np.ndarray,
-    dofs: Dofs,
-    position: ArrayLike,
-    velocity: ArrayLike,
-    stiffness: ArrayLike,
-    damping: ArrayLike,
-    max_force: ArrayLike,
-) -> None:
-    """PD control: apply stiffness · (position error) + damping · (velocity error), at most `max_force`."""
-    columns = {
-        PD_POSITION: finite(position, "target"),
-        PD_VELOCITY: finite(velocity, "velocity"),
-        PD_KP: finite(stiffness, "stiffness"),
-        PD_KD: finite(damping, "damping"),
-        PD_MAX_FORCE: not_negative(max_force, "max_force"),
-    }
-    _write(pd, dofs, columns)
+    def pull_like_a_spring(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        stiffness: ArrayLike,
+        damping: ArrayLike,
+        max_force: ArrayLike,
+    ) -> None:
+        """PD control: stiffness · (position error) + damping · (velocity error), at most `max_force`."""
+        columns = {
+            PD_POSITION: finite(position, "target"),
+            PD_VELOCITY: finite(velocity, "velocity"),
+            PD_KP: finite(stiffness, "stiffness"),
+            PD_KD: finite(damping, "damping"),
+            PD_MAX_FORCE: not_negative(max_force, "max_force"),
+        }
+        self._write(self.pd, columns)
 
+    def switch_off(self) -> None:
+        """Switch off the motors and the PD drives."""
+        self.motor[..., self.dofs, MOTOR_MAX_IMPULSE] = 0.0
+        self.pd[..., self.dofs, PD_MAX_FORCE] = 0.0
 
-def switch_off(motor: np.ndarray, pd: np.ndarray, dofs: Dofs) -> None:
-    """Switch off the motors and PD drives of joints."""
-    motor[..., dofs, MOTOR_MAX_IMPULSE] = 0.0
-    pd[..., dofs, PD_MAX_FORCE] = 0.0
-
-
-def _impulse(max_force: ArrayLike, substep_time: float) -> np.ndarray:
-    return not_negative(max_force, "max_force") * substep_time
-
-
-def _write(rows: np.ndarray, dofs: Dofs, columns: Mapping[int, np.ndarray]) -> None:
-    """Write columns after checking that all of them fit the rows, so that an error changes nothing."""
-    shape = rows[..., dofs, 0].shape
-    fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
-    for column, values in fitting.items():
-        rows[..., dofs, column] = values
+    def _write(self, rows: np.ndarray, columns: Mapping[int, np.ndarray]) -> None:
+        """Write columns after checking that all of them fit the rows, so that an error changes nothing."""
+        shape = rows[..., self.dofs, 0].shape
+        fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
+        for column, values in fitting.items():
+            rows[..., self.dofs, column] = values
 
 
 class Clock(Protocol):
@@ -160,12 +147,7 @@ class Clock(Protocol):
 class JointMotor:
     """The motor of one joint of a world: the base class, for joints without a motor.
 
-    It is valid until bodies are added or removed.
-
-    Args:
-        world: The world.
-        clock: Its time step converts forces to impulses.
-        dof: Row of the joint's first velocity.
+    It is valid until bodies are added or removed. The time step of the clock converts forces to impulses.
 
     Attributes:
         lower: Minimum target position [rad or m]; minus infinity without limits.

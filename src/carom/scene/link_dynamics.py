@@ -70,7 +70,7 @@ class LinkDynamics:
             joint_lower_limit=link.lower,
             joint_upper_limit=link.upper,
             friction_anchor=contact.friction_anchor,
-            collision_margin=collision_margin(link.collisions, link.inertial_frame, link.compound_margin),
+            collision_margin=collision_margin(link),
         )
         stated = {
             "lateral_friction": contact.lateral_friction,

@@ -35,17 +35,10 @@ _MODES = (VELOCITY, TORQUE, POSITION)
 
 
 class MotorGroup:
-    """Revolute and prismatic joints of a world, in any order.
+    """Revolute and prismatic joints of a world, in any order; valid until bodies are added or removed.
 
-    It is valid until bodies are added or removed.
-
-    Args:
-        world: The world.
-        dofs: Rows of their velocities.
-        bounds: Minimum and maximum target position of each.
-        force: Default force of motors [N or N m].
-        kp: Default gain.
-        kd: Default gain.
+    They are given by the rows of their velocities; `bounds` are the minimum and maximum target position of
+    each, and `force` [N or N m], `kp` and `kd` the defaults of motors.
     """
 
     def __init__(
@@ -83,11 +76,7 @@ class MotorGroup:
         self._asked: tuple[float, ...] = ()
 
     def record(self, indices: Sequence[int]) -> Record:
-        """The record of these joints for quick calls; valid as long as this object exists.
-
-        Args:
-            indices: Their indices in the body.
-        """
+        """The record of these joints, by index, for quick calls; valid as long as this object exists."""
         commands = self._commands.struct()
         made = Record(
             indices=ctypes.addressof(self._keep(indices)),

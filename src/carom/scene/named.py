@@ -22,12 +22,9 @@ class Named(Generic[Item]):
     """Items by index or by name."""
 
     def __init__(self, kind: str, items: Sequence[Item], first: int = 0) -> None:
-        """Number the items.
+        """Number the items from `first` on; if several have the same name, the first is found.
 
-        Args:
-            kind: Name of an item in messages.
-            items: The items in order; if several have the same name, the first is found.
-            first: Index of the first item.
+        `kind` is what messages call an item.
         """
         self._kind = kind
         self._items = list(items)

@@ -141,18 +141,10 @@ def take(world: World, layout: Layout) -> Snapshot:
 
 
 def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], None]:
-    """Prepare to restore a world from a snapshot.
+    """Prepare to restore a world, which has this layout, from a snapshot.
 
     Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
-    and loaded in another order.
-
-    Args:
-        world: The world.
-        layout: Its layout.
-        snapshot: The state.
-
-    Returns:
-        A function that restores the state; it can be called again if it was interrupted.
+    and loaded in another order. The function that is returned can be called again if it was interrupted.
 
     Raises:
         StateError: The world has other bodies.
@@ -238,11 +230,7 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
 
 
 def check_same(saved: Layout, present: Layout) -> None:
-    """Check that the present bodies are those of a saved state.
-
-    Raises:
-        StateError: A body is missing, additional, or has other joints or nodes.
-    """
+    """Raise `StateError` unless the present bodies, their joints and nodes are those of a saved state."""
     before = {body.id: body for body in saved.bodies}
     now = {body.id: body for body in present.bodies}
     for number in sorted(before.keys() | now.keys()):

@@ -125,11 +125,7 @@ class UserData:
         return go_back
 
     def removal(self, body: int) -> Callable[[], None]:
-        """Prepare to remove all texts of a body.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
-        """
+        """Prepare to remove all texts of a body; the function that is returned can be called again."""
         gone = [datum.id for datum in self.of_body(body)]
         free = [*self._free, *gone]
 

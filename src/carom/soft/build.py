@@ -19,6 +19,9 @@ from carom.soft.skin import bind
 from carom.soft.texture_mapping import TextureMapping, checkered
 from carom.soft.topology import bending_pairs, edges_of, surface_of
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
 MOST_NODES = 1_000_000
 """Maximum number of nodes of a soft body."""
 LEAST_MASS = 1.0e-30
@@ -32,8 +35,8 @@ _WHITE = (1.0, 1.0, 1.0, 1.0)
 
 def soft_body(
     name: str,
-    nodes: NDArray[np.float64],
-    cells: NDArray[np.int32],
+    nodes: Floats,
+    cells: Ints,
     *,
     mass: float,
     springs: Springs | None = None,
@@ -41,7 +44,7 @@ def soft_body(
     margin: float = 0.02,
     friction: float = 0.0,
     self_collision: bool = False,
-    seen: tuple[NDArray[np.float64], NDArray[np.int32]] | None = None,
+    seen: tuple[Floats, Ints] | None = None,
     textured: TextureMapping | None = None,
     source: Path | None = None,
 ) -> BodySpec:
@@ -109,9 +112,7 @@ def soft_body(
     return BodySpec(name, base, fixed_base=True, source=source, soft=soft)
 
 
-def _visual(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int32], textured: TextureMapping | None
-) -> Visual:
+def _visual(vertices: Floats, triangles: Ints, textured: TextureMapping | None) -> Visual:
     if textured is None:
         return Visual(TriangleMesh(vertices, triangles))
     # A vertex may have another texture coordinate in each of its triangles.
@@ -147,7 +148,7 @@ def _check_parameters(
             raise DescriptionError(f"{name} is {value}; it has to be finite and {least}", file=source)
 
 
-def _check_nodes(nodes: NDArray[np.float64], cells: NDArray[np.int32], source: Path | None) -> None:
+def _check_nodes(nodes: Floats, cells: Ints, source: Path | None) -> None:
     if not len(nodes) or not len(cells):
         raise DescriptionError("there are no nodes or no cells to simulate", file=source)
     if len(nodes) > MOST_NODES:
@@ -159,7 +160,7 @@ def _check_nodes(nodes: NDArray[np.float64], cells: NDArray[np.int32], source: P
         raise DescriptionError(f"a cell names a node outside 0..{len(nodes) - 1}", file=source)
 
 
-def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source: Path | None) -> None:
+def _check_volumes(nodes: Floats, tetras: Ints, source: Path | None) -> None:
     corners = nodes[tetras]
     edges = corners[:, 1:] - corners[:, :1]
     size = np.abs(edges).max(axis=(1, 2))
@@ -170,9 +171,7 @@ def _check_volumes(nodes: NDArray[np.float64], tetras: NDArray[np.int32], source
         )
 
 
-def _springs(
-    nodes: NDArray[np.float64], cells: NDArray[np.int32], springs: Springs | None, source: Path | None
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+def _springs(nodes: Floats, cells: Ints, springs: Springs | None, source: Path | None) -> tuple[Ints, Floats]:
     """Pairs of nodes (s, 2), and the length, stiffness and damping of the springs between them (s, 3)."""
     edges = edges_of(cells)
     same = np.flatnonzero(edges[:, 0] == edges[:, 1])

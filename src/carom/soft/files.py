@@ -18,6 +18,15 @@ from carom.soft.texture_mapping import mapping_of_file
 SOLIDS = (".vtk",)
 SURFACES = (".obj",)
 
+# Angular frequency of one node on a spring of older cloth [rad/s]. Bullet projects the springs of such cloth
+# 20 times in a step, whatever its mass. With this frequency, 1 m of cloth that hangs from an edge stretches
+# by 0.1 mm; PyBullet's stretches by 0.05 mm.
+_OLDER_FREQUENCY = 720.0
+# Bullet's friction coefficient for such cloth.
+_OLDER_FRICTION = 0.5
+# Damping of a spring, divided by the product of node mass and frequency.
+_OLDER_DAMPING = 0.05
+
 
 def is_solid(path: Path) -> bool:
     """Whether files with this suffix contain tetrahedra."""
@@ -36,20 +45,11 @@ def soft_body_from_file(
     self_collision: bool = False,
     simulated: Path | None = None,
 ) -> BodySpec:
-    """The soft body of a mesh file.
+    """The soft body of a mesh file, `.obj` or `.vtk`; most arguments are those of `soft_body`.
 
-    Only the first object of an OBJ file is used; its triangles are cloth, and `solid` is ignored.
-
-    Args:
-        path: The file, `.obj` or `.vtk`.
-        scale: Factor on all lengths.
-        mass: Total mass of all nodes [kg].
-        springs: Springs along the edges of the cells.
-        solid: Material of tetrahedra.
-        margin: Distance at which nodes rest on other surfaces [m].
-        friction: Coulomb coefficient.
-        self_collision: Its nodes collide with its own faces.
-        simulated: A file with the mesh to simulate; the mesh of `path`, an OBJ file, is then only drawn.
+    Only the first object of an OBJ file is used; its triangles are cloth, and `solid` is ignored. `scale` is
+    a factor on all lengths. If there is a file with another mesh to simulate, that of `path`, an OBJ file, is
+    only drawn.
 
     Raises:
         DescriptionError: The file is missing, damaged or of another kind, or its mesh cannot be used.
@@ -78,12 +78,30 @@ def soft_body_from_file(
     )
 
 
-def mesh_of(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """The nodes of a file, and its triangles or tetrahedra.
+def older_cloth_from_file(path: Path, *, scale: float, mass: float, margin: float) -> BodySpec:
+    """The cloth of an OBJ file as in PyBullet without a deformable world: it hardly stretches.
+
+    Its stiffness, along edges and against bending, is proportional to its mass; the arguments are those of
+    `soft_body_from_file`.
 
     Raises:
-        DescriptionError: The file is missing, damaged or of another kind.
+        DescriptionError: The file is missing or damaged, holds tetrahedra, or its mesh cannot be used.
     """
+    if is_solid(path):
+        raise DescriptionError(
+            "it holds tetrahedra: call resetSimulation(RESET_USE_DEFORMABLE_WORLD) first", file=path
+        )
+    nodes, _ = mesh_of(path)
+    node_mass = mass / len(nodes) if len(nodes) else mass
+    stiffness = node_mass * _OLDER_FREQUENCY**2
+    springs = Springs(stiffness, _OLDER_DAMPING * node_mass * _OLDER_FREQUENCY, stiffness)
+    return soft_body_from_file(
+        path, scale=scale, mass=mass, springs=springs, margin=margin, friction=_OLDER_FRICTION
+    )
+
+
+def mesh_of(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The nodes of a file, and its triangles or tetrahedra; raises `DescriptionError`."""
     suffix = path.suffix.lower()
     if suffix in SOLIDS:
         mesh = read_vtk(path)

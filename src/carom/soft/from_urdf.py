@@ -27,15 +27,10 @@ _CACHED = 64
 def urdf_body(
     path: Path, search: AssetSearch, *, scale: float, flags: int, fixed_base: bool, older: bool = False
 ) -> BodySpec:
-    """The body of a URDF file, rigid or soft.
+    """The body of a URDF file, rigid or soft; `scale` is a factor on all lengths.
 
-    Args:
-        path: The file.
-        search: Folders to search for it and for the files that it refers to.
-        scale: Factor on all lengths.
-        flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
-        fixed_base: Fix the base of a rigid body in the world.
-        older: Make soft bodies as in PyBullet without a deformable world.
+    `flags` are `carom.layouts.flags.LoadFlags`. `fixed_base` fixes the base of a rigid body in the world, and
+    `older` makes soft bodies as in PyBullet without a deformable world.
 
     Raises:
         DescriptionError: The file cannot be used.
@@ -108,11 +103,7 @@ def _are_unchanged(meshes: Meshes) -> bool:
 def robot_body(
     robot: Robot, *, scale: float = 1.0, flags: int = 0, fixed_base: bool = False, older: bool = False
 ) -> BodySpec:
-    """The body of a description; the arguments are those of `urdf_body`.
-
-    Raises:
-        DescriptionError: A mesh of a soft body cannot be used.
-    """
+    """The body of a description, with the arguments of `urdf_body`; raises `DescriptionError`."""
     if robot.deformable is None:
         return assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base)
     collides = bool(flags & LoadFlags.USE_SELF_COLLISION)
@@ -124,8 +115,7 @@ def robot_body(
 
 
 def _deformable_body(soft: Deformable, *, scale: float, self_collision: bool, older: bool) -> BodySpec:
-    from carom.soft.files import soft_body_from_file
-    from carom.soft.older import older_cloth_from_file
+    from carom.soft.files import older_cloth_from_file, soft_body_from_file
 
     if older:
         if soft.stiffness_scale is not None:

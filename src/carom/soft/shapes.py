@@ -7,16 +7,15 @@ from numpy.typing import NDArray
 
 from carom.native.products import determinants, dots
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
 # Six tetrahedra of a cube, around the diagonal from corner 0 to 7. Bits 0, 1, 2 of a corner are its x, y, z.
 _IN_CUBE = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
 
 
-def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A rectangle in the plane z = 0, centred on the origin.
-
-    Args:
-        size: Lengths along x and y [m].
-        cells: Number of cells along x and y.
+def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[Floats, Ints]:
+    """A rectangle in the plane z = 0, centred on the origin: size [m] and number of cells along x and y.
 
     Returns:
         ((n, 3) nodes, x fastest; (f, 3) triangles with normals along z, two for each cell).
@@ -30,14 +29,8 @@ def grid(size: tuple[float, float], cells: tuple[int, int]) -> tuple[NDArray[np.
     return nodes, np.stack([first, second], axis=1).reshape(-1, 3).astype(np.int32)
 
 
-def box(
-    size: tuple[float, float, float], cells: tuple[int, int, int]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """A cuboid of tetrahedra centred on the origin, six in each cell.
-
-    Args:
-        size: Lengths along x, y and z [m].
-        cells: Number of cells along x, y and z.
+def box(size: tuple[float, float, float], cells: tuple[int, int, int]) -> tuple[Floats, Ints]:
+    """A cuboid centred on the origin: size [m] and number of cells along x, y and z; six tetrahedra in each.
 
     Returns:
         ((n, 3) nodes, x fastest; (t, 4) tetrahedra of positive volume).
@@ -54,7 +47,7 @@ def box(
     return nodes, (origin[:, None, None] + corners[np.array(_IN_CUBE)]).reshape(-1, 4).astype(np.int32)
 
 
-def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def ball(radius: float, cells: int) -> tuple[Floats, Ints]:
     """A ball of tetrahedra around the origin: a cube of cells whose cubic layers are mapped to spheres.
 
     Returns:
@@ -67,7 +60,7 @@ def ball(radius: float, cells: int) -> tuple[NDArray[np.float64], NDArray[np.int
     return round_nodes, oriented(round_nodes, tetras)
 
 
-def oriented(nodes: NDArray[np.float64], tetras: NDArray[np.int32]) -> NDArray[np.int32]:
+def oriented(nodes: Floats, tetras: Ints) -> Ints:
     """The same tetrahedra, with two corners swapped in those of negative volume."""
     corners = nodes[tetras]
     volumes = determinants(corners[:, 1:] - corners[:, :1])

@@ -5,27 +5,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
 # The cell of a vertex is searched among this number of cells, those whose centres are nearest to it.
 _CANDIDATES = 8
 # Number of vertices handled at a time, to save memory.
 _CHUNK = 256
 
 
-def bind(
-    vertices: NDArray[np.float64], nodes: NDArray[np.float64], cells: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
-    """The nodes that each vertex follows, and their weights.
+def bind(vertices: Floats, nodes: Floats, cells: Ints) -> tuple[Ints, Floats]:
+    """The nodes (v, k) that each vertex follows, and their weights (v, k), which add up to 1.
 
-    A vertex keeps its barycentric coordinates in the cell that contains it. A vertex outside of all cells is
-    extrapolated from the nearest cell, as in Bullet.
-
-    Args:
-        vertices: (v, 3) positions at rest [m].
-        nodes: (n, 3) positions at rest [m].
-        cells: (m, 3) triangles or (m, 4) tetrahedra.
-
-    Returns:
-        ((v, k) nodes; (v, k) weights that add up to 1).
+    A vertex keeps its barycentric coordinates in the triangle (m, 3) or tetrahedron (m, 4) that contains it.
+    A vertex outside of all cells is extrapolated from the nearest cell, as in Bullet. Positions (v, 3) and
+    (n, 3) are at rest [m].
     """
     corners = nodes[cells]
     middles = corners.mean(axis=1)
@@ -44,7 +38,7 @@ def bind(
     return chosen, weights
 
 
-def _weights(points: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+def _weights(points: Floats, corners: Floats) -> Floats:
     """Barycentric coordinates of points, or of their projections onto triangles: (..., 3 or 4)."""
     edges = np.swapaxes(corners[..., 1:, :] - corners[..., :1, :], -1, -2)
     offset = points - corners[..., 0, :]

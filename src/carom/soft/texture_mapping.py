@@ -14,6 +14,9 @@ from carom.record import record
 
 _log = Logger(__name__)
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
 # Repeats of the texture on each metre of a solid, as in PyBullet.
 _REPEATS = 10.0
 
@@ -28,23 +31,16 @@ class TextureMapping:
         checkered: The texture is that of floors: white and blue squares, two by two.
     """
 
-    uvs: NDArray[np.float64]
+    uvs: Floats
     texture: Path | None = None
     checkered: bool = False
 
 
-def mapping_of_file(
-    file: Path, vertices: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> TextureMapping | None:
+def mapping_of_file(file: Path, vertices: Floats, triangles: Ints) -> TextureMapping | None:
     """Texture coordinates and texture that an OBJ file has for its first object.
 
-    Args:
-        file: The file.
-        vertices: (v, 3) vertices of that object, as in the file.
-        triangles: (t, 3) its triangles.
-
-    Returns:
-        None if the file has no texture coordinates, or if they cannot be read, with a warning.
+    Vertices (v, 3) and triangles (t, 3) are those of that object, as in the file. The result is None if the
+    file has no texture coordinates, or if they cannot be read, with a warning.
     """
     try:
         mesh = read_mesh_visual(file)
@@ -61,12 +57,12 @@ def mapping_of_file(
     return TextureMapping(uvs, mesh.texture_file) if np.ptp(uvs, axis=0).any() else None
 
 
-def checkered(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> TextureMapping:
+def checkered(vertices: Floats, triangles: Ints) -> TextureMapping:
     """Squares of 5 cm, projected along z, as on PyBullet's solids from VTK files."""
     return TextureMapping(_REPEATS * np.abs(vertices[triangles.reshape(-1), :2]), checkered=True)
 
 
-def stretched(vertices: NDArray[np.float64], triangles: NDArray[np.int32]) -> TextureMapping:
+def stretched(vertices: Floats, triangles: Ints) -> TextureMapping:
     """One image stretched over the whole of a flat cloth."""
     low, size = vertices[:, :2].min(axis=0), np.maximum(np.ptp(vertices[:, :2], axis=0), np.finfo(float).tiny)
     return TextureMapping((vertices[triangles.reshape(-1), :2] - low) / size)

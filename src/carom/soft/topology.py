@@ -10,30 +10,16 @@ _FACES = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
 
 
 def edges_of(cells: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Edges of cells: pairs of nodes of the same cell, each once, the lower first, sorted.
-
-    Args:
-        cells: (m, k) corners of triangles or tetrahedra.
-
-    Returns:
-        (e, 2).
-    """
+    """Edges (e, 2) of (m, k) cells: pairs of nodes of the same cell, each once, the lower first, sorted."""
     corners = cells.shape[1]
     pairs = [cells[:, [i, j]] for i in range(corners) for j in range(i + 1, corners)]
     return _unique(np.concatenate(pairs)) if pairs else np.empty((0, 2), dtype=np.int32)
 
 
 def bending_pairs(edges: NDArray[np.int32], node_count: int) -> NDArray[np.int32]:
-    """Pairs of nodes with a common neighbour that are not neighbours themselves, for springs against bending.
+    """Pairs of nodes (b, 2), sorted, with a common neighbour that are not neighbours themselves.
 
-    Bullet has the same springs.
-
-    Args:
-        edges: (e, 2) pairs of neighbours.
-        node_count: Number of nodes.
-
-    Returns:
-        (b, 2), sorted.
+    Springs between them resist bending; Bullet has the same. `edges` are (e, 2) pairs of neighbours.
     """
     both = np.concatenate([edges, edges[:, ::-1]])
     both = both[np.argsort(both[:, 0], kind="stable")]
@@ -51,13 +37,9 @@ def bending_pairs(edges: NDArray[np.int32], node_count: int) -> NDArray[np.int32
 
 
 def surface_of(tetras: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Faces that belong to one tetrahedron only, counter-clockwise from outside.
+    """Faces (f, 3) of only one tetrahedron, counter-clockwise from outside, in the order of the tetrahedra.
 
-    Args:
-        tetras: (t, 4) corners, each tetrahedron of positive volume.
-
-    Returns:
-        (f, 3), in the order of the tetrahedra.
+    The tetrahedra (t, 4) have positive volumes.
     """
     faces = np.concatenate([tetras[:, list(face)] for face in _FACES])
     order = np.arange(len(faces)).reshape(len(_FACES), -1).T.ravel()

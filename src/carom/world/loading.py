@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,10 +10,23 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
 from carom.scene.body import Body
-from carom.world.adding import BodyAdding
 
 if TYPE_CHECKING:
     from carom.formats.search import AssetSearch
+
+
+class BodyAdding(ABC):
+    """Interface of classes that add bodies, such as a world."""
+
+    @abstractmethod
+    def _add(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> Body:
+        """Add a body at rest."""
+
+    @abstractmethod
+    def _add_all(
+        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+    ) -> list[Body]:
+        """Add bodies at rest, all or none."""
 
 
 class DescriptionLoading(BodyAdding):

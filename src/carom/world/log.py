@@ -31,13 +31,9 @@ class Log:
         self._every = every
         self._steps = 0
         self._count = 0
-        self._rows = {name: self._room(getattr(world, name), _FIRST_ROOM) for name in names}
-        self._rows["time"] = np.empty(_FIRST_ROOM)
+        like = {name: getattr(world, name) for name in names} | {"time": np.empty(())}
+        self._rows = {name: np.empty((_FIRST_ROOM, *it.shape), it.dtype) for name, it in like.items()}
         world.observers.append(self)
-
-    @staticmethod
-    def _room(like: np.ndarray, length: int) -> np.ndarray:
-        return np.empty((length, *like.shape), dtype=like.dtype)
 
     def __len__(self) -> int:
         return self._count

@@ -28,12 +28,7 @@ _STAGE_OF = {
 
 
 class StagedStepper(Stepper):
-    """Performs programs on a single world, as an `Interpreter` does, and times their stages.
-
-    Attributes:
-        seconds: Total time of each stage [s].
-        run: Runs the requested steps.
-    """
+    """Performs programs on a single world, as an `Interpreter` does, and times their stages [s]."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -76,11 +71,7 @@ class StagedStepper(Stepper):
 
 
 class Profile:
-    """A context in which the steps of an engine are split into stages and timed.
-
-    Attributes:
-        seconds: Total time of each stage [s].
-    """
+    """A context in which the steps of an engine are split into stages and timed [s]."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine

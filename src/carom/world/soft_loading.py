@@ -8,7 +8,7 @@ from typing import Any
 
 from carom.model.body_spec import BodySpec
 from carom.scene.soft_body import SoftBody
-from carom.world.adding import BodyAdding
+from carom.world.loading import BodyAdding
 
 _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 

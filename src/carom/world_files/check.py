@@ -21,11 +21,7 @@ _UNIT_TOLERANCE = 1e-3
 
 
 def check_body(spec: BodySpec) -> None:
-    """Check that links form a tree, nodes and corners that are referred to exist, and numbers are finite.
-
-    Raises:
-        ValueError: One of these is not true.
-    """
+    """Raise `ValueError` unless links form a tree, what they refer to exists, and numbers are finite."""
     for index, link in enumerate(spec.links):
         if not -1 <= link.parent < index:
             raise ValueError(f"link {index} has link {link.parent} as its parent, which must come before it")
@@ -63,11 +59,7 @@ def _check_soft(spec: BodySpec, soft: SoftSpec) -> None:
 
 
 def check_finite(value: Any) -> None:
-    """Check that numbers of a dataclass are finite and not very large, and that quaternions have length 1.
-
-    Raises:
-        ValueError: One of these is not true.
-    """
+    """Raise `ValueError` unless numbers are finite and not very large, and quaternions have length 1."""
     for part in _parts(value):
         if isinstance(part, float) and not abs(part) <= MAX_MAGNITUDE:
             raise ValueError(f"a number is {part:g}: it must be finite and not very large")

@@ -62,11 +62,7 @@ def packed(document: dict[str, Any], blocks: Blocks) -> bytes:
 
 
 def unpacked(data: bytes, file: Path) -> tuple[dict[str, Any], memoryview]:
-    """The document and the blocks in the content of a file.
-
-    Args:
-        data: The content.
-        file: Path of the file, for error messages.
+    """The document and the blocks in the content of a file, whose path is for error messages.
 
     Raises:
         DescriptionError: The file is not a saved world, has another version of the format, or is damaged.

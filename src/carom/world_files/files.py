@@ -33,11 +33,7 @@ class FileTable:
         self.records: list[dict[str, Any]] = []
 
     def add(self, path: Path) -> int:
-        """Add a file with the files it refers to, and return its number.
-
-        Raises:
-            DescriptionError: A file cannot be read.
-        """
+        """Add a file with the files it refers to, and return its number; raises `DescriptionError`."""
         path = Path(os.path.abspath(path))
         if path not in self._numbers:
             members = _with_references(path) if path.is_file() else {}
@@ -75,12 +71,7 @@ def _with_references(path: Path) -> dict[Path, bytes]:
 
 
 def restored(records: Any, blocks: memoryview, file: Path) -> list[Path]:
-    """Paths of the files of a saved world, unpacked if the originals are missing or have changed.
-
-    Args:
-        records: The list in its document.
-        blocks: The bytes it refers to.
-        file: The saved world, for error messages.
+    """Paths of the files listed in a saved world, unpacked if the originals are missing or have changed.
 
     Raises:
         DescriptionError: The list is invalid, or a file cannot be unpacked.

@@ -32,12 +32,7 @@ _LARGEST = 2**63
 
 
 class Writer:
-    """Converts values to parts of a document.
-
-    Attributes:
-        blocks: The bytes that the document refers to.
-        files: The files that the document refers to.
-    """
+    """Converts values to parts of a document, which refers to its `blocks` of bytes and its `files`."""
 
     def __init__(self) -> None:
         self.blocks: Blocks = Blocks()
@@ -79,10 +74,7 @@ class Writer:
 class Reader:
     """Converts parts of a document to values of the expected types.
 
-    Args:
-        file: Path of the document's file.
-        blocks: The bytes that the document refers to.
-        files: Paths of the embedded files by their numbers.
+    They refer to blocks of bytes, and to embedded files by their numbers.
     """
 
     def __init__(self, file: Path, blocks: memoryview, files: list[Path]) -> None:
@@ -95,12 +87,7 @@ class Reader:
         return DescriptionError(f"{where} {reason}", file=self._file)
 
     def read(self, hint: Any, data: Any, where: str) -> Any:
-        """Read a value.
-
-        Args:
-            hint: Its expected type.
-            data: Its JSON form.
-            where: Its place in the document, for error messages.
+        """Read a value of an expected type from its JSON form; `where` is its place, for error messages.
 
         Raises:
             DescriptionError: The value is not of that type.
@@ -134,13 +121,7 @@ class Reader:
     def array(
         self, data: Any, dtype: np.dtype, shape: tuple[int | None, ...] | None, where: str
     ) -> np.ndarray:
-        """Read an array.
-
-        Args:
-            data: Its JSON form.
-            dtype: Expected type of its entries.
-            shape: Expected shape; None instead of a length, or of the shape, allows any.
-            where: Its place in the document, for error messages.
+        """Read an array; in the shape, and instead of it, None allows any.
 
         Raises:
             DescriptionError: The array has another type or shape, or contains NaN.

@@ -20,12 +20,7 @@ _TAG, _END_TAG = b"<init_from>", b"</init_from>"
 
 
 def references(path: Path, data: bytes) -> list[Path]:
-    """The files that a mesh or material file refers to and that may be embedded with it.
-
-    Args:
-        path: The file.
-        data: Its content.
-    """
+    """The files that a mesh or material file with this content refers to and that may be embedded with it."""
     match path.suffix.lower():
         case ".obj":
             names, suffixes = _after_keyword(data, b"mtllib"), _MATERIALS

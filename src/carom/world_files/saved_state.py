@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
+_FIELDS = {"bodies", "time", "unspent_time", "state", "contacts", "user_impulses"}
 _ARRAYS = ("state", "contacts")
 _USER_IMPULSES = 6
 # Arrays of positions and velocities.
@@ -25,29 +25,6 @@ _MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position
 _BASE_TURN, _QUATERNION = 3, 4
 _UNIT_TOLERANCE = 1e-3
 _OF_NODES = ("node_position", "node_velocity", "node_force")
-
-
-@dataclass(slots=True)
-class SavedState:
-    """A snapshot in a file; bodies have the numbers they had when they were saved."""
-
-    bodies: list[BodyLayout]
-    time: float
-    unspent_time: float
-    state: dict[str, np.ndarray]
-    contacts: dict[str, np.ndarray]
-    user_impulses: np.ndarray
-
-    def snapshot(self) -> Snapshot:
-        """The same state as an argument for `World.restore`."""
-        return Snapshot(
-            Layout.of(tuple(self.bodies)),
-            self.time,
-            self.unspent_time,
-            self.state,
-            self.contacts,
-            self.user_impulses,
-        )
 
 
 def state_of(world: World) -> dict[str, Any]:
@@ -63,13 +40,13 @@ def state_of(world: World) -> dict[str, Any]:
     }
 
 
-def read_state(reader: Reader, data: Any) -> SavedState:
-    """The state in a document.
+def read_state(reader: Reader, data: Any) -> Snapshot:
+    """The state in a document; bodies have the numbers they had when they were saved.
 
     Raises:
         carom.errors.DescriptionError: The document has no valid state, or arrays do not fit the bodies.
     """
-    if not isinstance(data, dict) or data.keys() != set(SavedState.__dataclass_fields__):
+    if not isinstance(data, dict) or data.keys() != _FIELDS:
         raise reader.fail("state", "is missing or does not have the fields of a state")
     bodies = reader.read(list[BodyLayout], data["bodies"], "state.bodies")
     arrays = {part: _arrays(reader, part, data[part]) for part in _ARRAYS}
@@ -84,8 +61,8 @@ def read_state(reader: Reader, data: Any) -> SavedState:
     impulses = reader.array(
         data["user_impulses"], np.dtype(np.float64), (None, _USER_IMPULSES), "state.user_impulses"
     )
-    return SavedState(
-        bodies,
+    return Snapshot(
+        Layout.of(tuple(bodies)),
         reader.read(float, data["time"], "state.time"),
         reader.read(float, data["unspent_time"], "state.unspent_time"),
         arrays["state"],
@@ -135,25 +112,21 @@ def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
     return arrays
 
 
-def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: bool) -> None:
-    """Set bodies that were just loaded to the state in which they were saved.
+def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: bool) -> None:
+    """Set bodies that were just loaded, in the order they were saved, to their state in a snapshot.
 
-    Args:
-        world: Their world.
-        bodies: The loaded bodies, which are the last of the world, in the order they were saved.
-        saved: The state.
-        whole: The world has no other bodies, so contacts, time and impulses of constraints are set as well.
+    They are the last of the world. If they are the `whole` of it, contacts, time and impulses of constraints
+    are set as well.
 
     Raises:
         ValueError: The state does not fit the bodies.
     """
-    present = layout(world)
+    present, saved = layout(world), snapshot.layout.bodies
     ours = present.bodies[len(present.bodies) - len(bodies) :]
-    if [body.id for body in bodies] != [body.id for body in ours] or len(ours) != len(saved.bodies):
+    if [body.id for body in bodies] != [body.id for body in ours] or len(ours) != len(saved):
         raise ValueError("the state is that of other bodies")
-    if any(a != b if whole else not a.moves_like(b) for a, b in zip(ours, saved.bodies, strict=True)):
+    if any(a != b if whole else not a.moves_like(b) for a, b in zip(ours, saved, strict=True)):
         raise ValueError("the state is that of other bodies")
-    snapshot = saved.snapshot()
     check_arrays(world, bodies, snapshot)
     if whole:
         return_to(world, present, snapshot)()
@@ -167,16 +140,7 @@ def write_state(world: World, bodies: list[Body], saved: SavedState, *, whole: b
 
 
 def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:
-    """Check that the arrays of a snapshot from a file fit its bodies in this world.
-
-    Args:
-        world: The world.
-        bodies: The bodies of the snapshot, as the world has them, in its order.
-        snapshot: The snapshot.
-
-    Raises:
-        ValueError: They do not fit, or a value is out of range.
-    """
+    """Raise `ValueError` unless the arrays of a snapshot from a file fit its bodies, in its order."""
     saved = snapshot.layout.bodies
     counts = snapshot.contacts["count_contacts"]
     if counts.ndim != 1 or len(counts) < CONTACT_COLUMNS:

@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from functools import partial
 from pathlib import Path
@@ -190,7 +191,25 @@ def save_world(world: World, path: Path, parts: Parts) -> None:
 
 def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
-    return _guarded(path, lambda: _load(world, path, parts))
+    with _guarded(path):
+        document, reader, saved = _read(path)
+        state = read_state(reader, document.get("state"))
+        with begin(world) as undo:
+            undo.note(return_to(world, layout(world), world.snapshot()))
+            undo.note(partial(_set_parameters, world, world.parameters))
+            note_additions(world, undo)
+            alone = not world.bodies
+            bodies = _append(world, saved, alone)
+            for name, part in parts.items():
+                part.load(bodies, reader, document["parts"][name])
+            write_state(world, bodies, state, whole=alone)
+            if alone:
+                world.free_ids, world.next_id = saved.free_ids, saved.next_id
+                world.user_constraints.next_id = saved.next_tie
+                _set_parameters(world, saved.parameters)
+            world.scene_changed()
+            undo.done()
+        return bodies
 
 
 def restore_world(world: World, path: Path) -> None:
@@ -200,20 +219,19 @@ def restore_world(world: World, path: Path) -> None:
         DescriptionError: The file cannot be used; the world is as it was.
         StateError: The world has other bodies; it is as it was.
     """
-
-    def restore() -> None:
+    with _guarded(path):
         document, reader, _ = _read(path)
-        snapshot = read_state(reader, document.get("state")).snapshot()
+        snapshot = read_state(reader, document.get("state"))
         check_same(snapshot.layout, layout(world))
         check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
         world.restore(snapshot)
 
-    _guarded(path, restore)
 
-
-def _guarded(path: Path, load: Callable[[], Any]) -> Any:
+@contextmanager
+def _guarded(path: Path) -> Iterator[None]:
+    """Report what the engine raises for invalid content as an error of the file."""
     try:
-        return load()
+        yield
     except _MEANINGLESS as problem:
         raise DescriptionError(f"its content is invalid: {problem}", file=path) from problem
 
@@ -300,27 +318,6 @@ def _saved_tie(tie: UserConstraint) -> SavedTie:
     return SavedTie(**values)
 
 
-def _load(world: World, path: Path, parts: Parts) -> list[Body]:
-    document, reader, saved = _read(path)
-    state = read_state(reader, document.get("state"))
-    with begin(world) as undo:
-        undo.note(return_to(world, layout(world), world.snapshot()))
-        undo.note(partial(_set_parameters, world, world.parameters))
-        note_additions(world, undo)
-        alone = not world.bodies
-        bodies = _append(world, saved, alone)
-        for name, part in parts.items():
-            part.load(bodies, reader, document["parts"][name])
-        write_state(world, bodies, state, whole=alone)
-        if alone:
-            world.free_ids, world.next_id = saved.free_ids, saved.next_id
-            world.user_constraints.next_id = saved.next_tie
-            _set_parameters(world, saved.parameters)
-        world.scene_changed()
-        undo.done()
-    return bodies
-
-
 def _set_parameters(world: World, parameters: EngineParameters) -> None:
     world.parameters = parameters
     world.apply_parameters()
@@ -353,6 +350,11 @@ def _index(number: int, items: list[Any]) -> int:
     if not 0 <= number < len(items):
         raise ValueError(f"index {number} is out of range for {len(items)} items")
     return number
+
+
+def _check_link(body: Body, link: int) -> None:
+    if not BASE <= link < body.joint_count:
+        raise ValueError(f"body {body.id} has no link {link}")
 
 
 def _give_dynamics(body: Body, record: SavedBody) -> None:
@@ -388,13 +390,10 @@ def _make_ties(
     for record in saved.ties:
         parent = bodies[record.parent]
         child = None if record.child == _NONE else bodies[record.child]
-        for body, link in (
-            (parent, record.parent_link),
-            (parent, record.gear_auxiliary_link),
-            (child, record.child_link),
-        ):
-            if body is not None and not BASE <= link < body.joint_count:
-                raise ValueError(f"body {body.id} has no link {link}")
+        _check_link(parent, record.parent_link)
+        _check_link(parent, record.gear_auxiliary_link)
+        if child is not None:
+            _check_link(child, record.child_link)
         values = {field.name: getattr(record, field.name) for field in fields(SavedTie)}
         values |= {"parent": parent, "child": child}
         if not alone:
@@ -436,32 +435,18 @@ def _order_constraints(
             raise ValueError("a constraint does not fit its joint")
         if tie is not None:
             used.add(record.user)
-        own.append(
-            JointConstraint(
-                body,
-                record.joint,
-                record.kind,
-                record.lower,
-                record.upper,
-                record.twist,
-                tie,
-                record.max_impulse,
-            )
-        )
+        limits = record.lower, record.upper, record.twist
+        own.append(JointConstraint(body, record.joint, record.kind, *limits, tie, record.max_impulse))
     if used != ties.keys():
         raise ValueError("a constraint is missing")
     world.constraints.all = own
-    others = [
-        link
-        for link in world.constraints.tags.links
-        if world.bodies[cast(int, link[0])] not in bodies.values()
-    ]
+    tags = world.constraints.tags
+    others = [link for link in tags.links if world.bodies[cast(int, link[0])] not in bodies.values()]
     objects = [(bodies[body].id, link) for body, link in saved.objects]
-    if len(set(objects)) != len(objects) or len(objects) != sum(
-        1 + body.joint_count for body in bodies.values()
-    ):
+    count = sum(1 + body.joint_count for body in bodies.values())
+    if not len(set(objects)) == len(objects) == count:
         raise ValueError("the list of objects does not contain every link exactly once")
-    world.constraints.tags.reorder([*others, *objects])
+    tags.reorder([*others, *objects])
 
 
 def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bool:
@@ -477,7 +462,6 @@ def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> No
     for it in saved.filters:
         rows = []
         for body, link in ((bodies[it.body_a], it.link_a), (bodies[it.body_b], it.link_b)):
-            if not BASE <= link < body.joint_count:
-                raise ValueError(f"body {body.id} has no link {link}")
+            _check_link(body, link)
             rows.append(body.first_link + 1 + link)
         world.contact_arrays.shapes.filters.set(*rows, enabled=it.enabled)

@@ -9,8 +9,8 @@ from carom.checks import Array, OnDevice, finite
 from carom.description import JointType
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.scene import joint_motor
 from carom.scene.body import ROUNDING, Body
+from carom.scene.joint_motor import Drives
 from carom.world.world import World
 from carom.worlds.checks import broadcast, choose, world_numbers
 from carom.worlds.dynamics import change_dynamics
@@ -179,10 +179,7 @@ class BodyBatch:
         """
         dofs, places = self._chosen(joints)
         lower, upper = self.limits
-        joint_motor.aim_at_position(
-            self._state["dof_motor"],
-            dofs,
-            self._scene.parameters.substep_time,
+        self._drives(dofs).aim_at_position(
             np.clip(self._numbers(targets), lower[places], upper[places]),
             self._take(velocities),
             self._take(gains),
@@ -201,14 +198,8 @@ class BodyBatch:
     ) -> None:
         """`Joint.set_velocity_target` for joints in all worlds; arguments as for `set_position_targets`."""
         dofs, places = self._chosen(joints)
-        joint_motor.aim_at_velocity(
-            self._state["dof_motor"],
-            dofs,
-            self._scene.parameters.substep_time,
-            self._take(targets),
-            self._take(gains),
-            self._forces(max_forces, places),
-        )
+        forces = self._forces(max_forces, places)
+        self._drives(dofs).aim_at_velocity(self._take(targets), self._take(gains), forces)
 
     def set_springs(
         self,
@@ -222,10 +213,9 @@ class BodyBatch:
     ) -> None:
         """`Joint.set_spring` for joints in all worlds; arguments as for `set_position_targets`."""
         dofs, places = self._chosen(joints)
-        joint_motor.pull_like_a_spring(
-            self._state["dof_pd"], dofs, self._take(targets), self._take(velocities), self._take(stiffness),
-            self._take(damping), self._forces(max_forces, places),
-        )  # fmt: skip
+        rest, rate = self._take(targets), self._take(velocities)
+        gains, forces = (self._take(stiffness), self._take(damping)), self._forces(max_forces, places)
+        self._drives(dofs).pull_like_a_spring(rest, rate, *gains, forces)
 
     def set_torques(self, torques: ArrayLike, joints: list[int | str] | None = None) -> None:
         """`Joint.set_torque` for joints in all worlds: for the next step, replacing those set before.
@@ -241,7 +231,7 @@ class BodyBatch:
     def disable_motors(self, joints: list[int | str] | None = None) -> None:
         """Switch off the motors and springs of joints."""
         dofs, _ = self._chosen(joints, one_freedom=joints is not None)
-        joint_motor.switch_off(self._state["dof_motor"], self._state["dof_pd"], dofs)
+        self._drives(dofs).switch_off()
 
     # Base and links
 
@@ -422,6 +412,10 @@ class BodyBatch:
         return np.array([body.velocity_index[joint] for joint in chosen], dtype=np.int64), np.array(
             [movable.index(joint) for joint in chosen], dtype=np.int64
         )
+
+    def _drives(self, dofs: slice | np.ndarray) -> Drives:
+        substep_time = self._scene.parameters.substep_time
+        return Drives(self._state["dof_motor"], self._state["dof_pd"], dofs, substep_time)
 
     def _require_one_freedom(self, joints: list[int]) -> None:
         for joint in joints:

@@ -14,27 +14,19 @@ Mask = NDArray[np.bool_]
 
 
 def broadcast(value: ArrayLike, shape: tuple[int, ...], name: str, *, finite: bool = True) -> Array:
-    """Broadcast `value` to an array of doubles; one value can be for all worlds, or for all joints.
+    """Broadcast a user's value to an array of doubles; one value can be for all worlds, or for all joints.
 
-    Args:
-        value: The user's value; numbers on another device stay there, and are not checked.
-        shape: The shape of the result, worlds first.
-        name: Its name in messages.
-        finite: Whether infinities raise an error; NaN always does.
+    Numbers on another device stay there, and are not checked. `finite` refuses infinities; NaN always is.
 
     Raises:
         ValueError: `value` does not broadcast to that shape, or a number is not finite.
     """
-    if isinstance(value, OnDevice):
-        return _spread(value, shape, name)
-    array = np.asarray(value, dtype=np.float64)
-    good = np.isfinite(array).all() if finite else not np.isnan(array).any()
-    if not good:
-        raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, but some entries are not")
-    return _spread(array, shape, name)
-
-
-def _spread(array: Any, shape: tuple[int, ...], name: str) -> Array:
+    array: Any = value
+    if not isinstance(value, OnDevice):
+        array = np.asarray(value, dtype=np.float64)
+        good = np.isfinite(array).all() if finite else not np.isnan(array).any()
+        if not good:
+            raise ValueError(f"{name} must be {'finite' if finite else 'numbers'}, but some entries are not")
     try:
         return np.broadcast_to(array, shape)
     except ValueError:
@@ -44,11 +36,7 @@ def _spread(array: Any, shape: tuple[int, ...], name: str) -> Array:
 
 
 def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
-    """Indices of the chosen worlds.
-
-    Args:
-        where: A mask (count,), indices of worlds, or None for all.
-        count: Number of worlds.
+    """Indices of the chosen worlds: those of a mask (count,), the given ones, or with None all.
 
     Raises:
         ValueError: A mask has the wrong length, or the indices are not integers.
@@ -71,12 +59,7 @@ def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
 
 
 def choose(what: str, names: Sequence[str], key: int | str) -> int:
-    """The index of the joint or link with an index or a name.
-
-    Raises:
-        KeyError: Nothing has that name.
-        IndexError: There is no such index.
-    """
+    """The index of the joint or link with an index (or `IndexError`) or a name (or `KeyError`)."""
     if isinstance(key, str):
         if key not in names:
             raise KeyError(f"no {what} is called {key!r}; there are {', '.join(names)}")

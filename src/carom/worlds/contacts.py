@@ -34,11 +34,7 @@ class ContactSummary(NamedTuple):
 
 
 class ContactFinder:
-    """Finds contacts between links in all worlds.
-
-    Args:
-        engine: The engine of the worlds.
-    """
+    """Finds contacts between links in all worlds of an engine."""
 
     def __init__(self, engine: Engine) -> None:
         self._count = engine.arrays.world_count
@@ -51,12 +47,9 @@ class ContactFinder:
         self._find = engine.task(self._launches, WORLDS_PER_THREAD)
 
     def summary(self, first: np.ndarray, second: np.ndarray | None, substep_time: float) -> ContactSummary:
-        """Summary of the contacts of some links with others.
+        """Summary of the contacts of links with others, by row; None for any.
 
-        Args:
-            first: Rows of links.
-            second: Rows of other links; None for any.
-            substep_time: Duration of a substep [s], to convert impulses to forces.
+        Impulses are converted to forces by the duration of a substep [s].
         """
         self._ask(first, second)
         touching, number, impulse, distance, deepest = (
@@ -66,15 +59,7 @@ class ContactFinder:
         return ContactSummary(touching.view(np.bool_), number, impulse / substep_time, distance, deepest)
 
     def links(self, first: np.ndarray, second: np.ndarray) -> NDArray[np.bool_]:
-        """Whether each of some links has a contact point with any of others, in each world.
-
-        Args:
-            first: Rows of the links.
-            second: Rows of the other links.
-
-        Returns:
-            (worlds, links) booleans.
-        """
+        """Whether each of some links has a contact point with any of others, by row: (worlds, links)."""
         self._ask(first, second)
         touching = self._table.numpy["place_touching"][: self._count * len(first)].copy()
         return touching.view(np.bool_).reshape(self._count, len(first))

@@ -20,13 +20,7 @@ _WARP_CPU = "warp-cpu"
 
 
 def make_engine(scene: World, count: int, device: str | Device, threads: int | None) -> Engine:
-    """An engine for many copies of a scene.
-
-    Args:
-        scene: The scene.
-        count: Number of worlds.
-        device: A name as for `Worlds`, or a device of `carom.gpu`.
-        threads: Number of threads on the processor; None for the number of cores available.
+    """An engine for `count` copies of a scene, on a device as for `Worlds`, or one of `carom.gpu`.
 
     Raises:
         ValueError: There is no such device.
@@ -50,8 +44,7 @@ def open_device(name: str) -> Device:
     """A device by name: "cuda", "cuda:1".
 
     Raises:
-        ValueError: The name is unknown, or this machine has no such device.
-        ImportError: Warp is not installed.
+        ValueError, ImportError: The machine has no such device, or Warp is not installed.
     """
     kind, _, number = name.partition(":")
     if name != _WARP_CPU and (kind != _CUDA or (":" in name and not number.isdigit())):

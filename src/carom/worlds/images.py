@@ -47,18 +47,8 @@ def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray
             images.append(camera.capture(scene))
     finally:
         camera.mount(mounted)
-    height, width = camera.height, camera.width
-    size = (0, height, width)
     if not images:
-        return Images(
-            np.zeros((*size, 3), np.uint8),
-            np.zeros(size, np.float32),
-            np.zeros(size, np.int32),
-            np.zeros(size, np.int32),
-        )
-    return Images(
-        np.stack([image.colour for image in images]),
-        np.stack([image.depth for image in images]),
-        np.stack([image.body_ids for image in images]),
-        np.stack([image.link_indices for image in images]),
-    )
+        size = (0, camera.height, camera.width)
+        numbers = np.zeros(size, np.int32)
+        return Images(np.zeros((*size, 3), np.uint8), np.zeros(size, np.float32), numbers, numbers.copy())
+    return Images(*(np.stack([getattr(image, name) for image in images]) for name in Images._fields))

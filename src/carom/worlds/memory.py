@@ -21,11 +21,7 @@ def free_memory() -> int | None:
 
 
 def check_memory(count: int, bytes_per_world: int) -> None:
-    """Check that there is enough memory for the worlds.
-
-    Raises:
-        MemoryError: There is not enough.
-    """
+    """Raise `MemoryError` unless there is enough memory for the worlds."""
     needed, free = count * bytes_per_world, free_memory()
     if free is not None and needed > free:
         raise MemoryError(

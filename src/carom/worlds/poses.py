@@ -11,12 +11,7 @@ from carom.native.launch import Kernel, KernelStructs, Launch
 
 
 class PoseFinder:
-    """Updates link poses and velocities of one tree in all worlds.
-
-    Args:
-        engine: The engine of the worlds.
-        tree: Row of the tree.
-    """
+    """Updates link poses and velocities of one tree in all worlds of an engine."""
 
     def __init__(self, engine: Engine, tree: int) -> None:
         self._state = engine.arrays.state.numpy

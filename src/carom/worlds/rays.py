@@ -36,12 +36,7 @@ class RayHits(NamedTuple):
 
 
 class RayCaster:
-    """Casts rays in all worlds at once.
-
-    Args:
-        engine: The engine of the worlds.
-        places: Body and link of each row of the link arrays.
-    """
+    """Casts rays in all worlds of an engine at once; `places` are the body and link of each row."""
 
     def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:
         self._count = engine.arrays.world_count

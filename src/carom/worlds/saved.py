@@ -50,11 +50,7 @@ class SavedWorlds:
         return len(self.worlds)
 
     def rows_for(self, worlds: np.ndarray, count: int) -> np.ndarray:
-        """For each of some worlds, the index of the saved state that it gets.
-
-        Raises:
-            ValueError: The number of states is wrong.
-        """
+        """For each of some worlds, the index of its saved state; `ValueError` if their number is wrong."""
         if len(self) == 1:
             return np.zeros(len(worlds), dtype=np.int64)
         if len(self) == count:

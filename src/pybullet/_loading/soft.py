@@ -131,8 +131,7 @@ def loadSoftBody(
     # As in PyBullet, the mesh for the simulation may be in the folder of the visible mesh.
     inside = _found(client, simulated, path.parent) if simulated else None
 
-    from carom.soft.files import soft_body_from_file
-    from carom.soft.older import older_cloth_from_file
+    from carom.soft.files import older_cloth_from_file, soft_body_from_file
 
     try:
         if client.deformable:

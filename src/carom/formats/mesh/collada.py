@@ -27,11 +27,7 @@ MAX_PARTS = 4096
 
 
 def read_collada(data: bytes, file: Path) -> list[MeshPart]:
-    """Reads a DAE file.
-
-    Raises:
-        DescriptionError: It is not COLLADA, is broken, or its scene shows no triangles.
-    """
+    """Reads a DAE file; raises `DescriptionError` if it is broken, or its scene shows no triangles."""
     reader = collada_reader(data, file)
     parts = [reader.part(identifier, placement) for identifier, placement in reader.scene()]
     parts = [part for part in parts if len(part.triangles)]
@@ -46,12 +42,7 @@ def collada_reader(data: bytes, file: Path) -> ColladaReader:
 
 
 class ColladaReader:
-    """Reads the geometries in the scene of a COLLADA document.
-
-    Args:
-        root: The `<COLLADA>` element.
-        file: Named in errors.
-    """
+    """Reads the geometries in the scene of a document, from its `<COLLADA>` element."""
 
     def __init__(self, root: Element, file: Path) -> None:
         self.root = root

@@ -30,16 +30,10 @@ class MeshPart:
 def make_part(
     file: Path, positions: NDArray[np.float64], corners: NDArray[np.int64], name: str = ""
 ) -> MeshPart:
-    """A part from positions and corner indices, with the positions it does not use left out.
-
-    Args:
-        file: Named in errors.
-        positions: (k, 3) positions.
-        corners: (m, 3) indices into `positions`, all in range.
-        name: Name of the part.
+    """A part from positions (k, 3) and corners (m, 3), indices in range; unused positions are left out.
 
     Raises:
-        DescriptionError: A position is not finite.
+        DescriptionError: A position is not finite; `file` is named.
     """
     used, inverse = np.unique(corners, return_inverse=True)
     with np.errstate(over="ignore"):
@@ -55,12 +49,8 @@ def make_part(
 def cut_into_fans(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> NDArray[np.int64]:
     """Polygons cut into triangle fans from the first corner; those with fewer than three corners vanish.
 
-    Args:
-        corners: Corner indices of all polygons, one after the other.
-        sizes: Number of corners of each polygon; they add up to the length of `corners`.
-
-    Returns:
-        (m, 3) corner indices.
+    `corners` are those of all polygons, one after the other, and `sizes` the number of corners of each. The
+    result is (m, 3).
     """
     if (sizes == 3).all():
         return corners.reshape(-1, 3)

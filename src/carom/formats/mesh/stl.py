@@ -16,11 +16,7 @@ _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_stl(data: bytes, file: Path) -> list[MeshPart]:
-    """Reads an STL file of either kind.
-
-    Raises:
-        DescriptionError: It is neither, is cut off, or holds no triangles.
-    """
+    """Reads an STL file of either kind; raises `DescriptionError` if it is neither, cut off or empty."""
     # Binary files may begin with "solid" as well: only the length distinguishes them.
     if len(data) >= _HEADER_BYTES:
         count = int.from_bytes(data[80:84], "little")

@@ -66,7 +66,9 @@ class _Sections:
             raise self._wrong("it is binary; write it as ASCII", 3)
         if kind != b"ASCII":
             raise self._wrong("the third line has to be ASCII", 3)
-        self._words: Iterator[tuple[int, bytes]] = _numbered_words(lines, first=3)
+        self._words: Iterator[tuple[int, bytes]] = (
+            (number, word) for number, line in enumerate(lines[3:], start=4) for word in line.split()
+        )
         self._line = 3
 
     def mesh(self) -> TetraMesh:
@@ -160,9 +162,3 @@ class _Sections:
 
     def _wrong(self, reason: str, line: int | None = None) -> DescriptionError:
         return DescriptionError(reason, file=self._file, line=self._line if line is None else line)
-
-
-def _numbered_words(lines: list[bytes], first: int) -> Iterator[tuple[int, bytes]]:
-    for number, line in enumerate(lines[first:], start=first + 1):
-        for word in line.split():
-            yield number, word

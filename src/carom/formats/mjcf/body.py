@@ -69,12 +69,9 @@ class _Content:
 
 
 class ModelReader:
-    """Makes one robot from a body or geom of the world.
+    """Makes one robot, with the name of all robots of the file, from a body or geom of the world.
 
-    Args:
-        context: The reading it belongs to.
-        number: Number of models in the file before it.
-        name: Name of all robots of the file.
+    `number` is that of models in the file before it.
     """
 
     def __init__(self, context: MjcfContext, number: int, name: str) -> None:
@@ -246,15 +243,9 @@ class ModelReader:
 
 def _with_earlier(contact: ContactParameters, earlier: ContactParameters) -> ContactParameters:
     """Contact parameters of a body's last geom, plus kinds of friction that only earlier geoms state."""
-    return replace(
-        contact,
-        spinning_friction=earlier.spinning_friction
-        if contact.spinning_friction is None
-        else contact.spinning_friction,
-        rolling_friction=earlier.rolling_friction
-        if contact.rolling_friction is None
-        else contact.rolling_friction,
-    )
+    own = {name: getattr(contact, name) for name in ("spinning_friction", "rolling_friction")}
+    kept = {name: getattr(earlier, name) for name, value in own.items() if value is None}
+    return replace(contact, **kept)
 
 
 def _without_frames(context: MjcfContext, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:

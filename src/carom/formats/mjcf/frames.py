@@ -27,13 +27,9 @@ _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 def read_pose(
     context: MjcfContext, element: Element, attributes: Attributes, *, radians: bool = False
 ) -> Pose:
-    """The pose of an element, in the frame in which the file gives it.
+    """The pose of an element, in the frame in which the file gives it; `attributes` include defaults.
 
-    Args:
-        context: The reading it belongs to.
-        element: The element.
-        attributes: Its attributes, defaults included.
-        radians: The angle of `axisangle` is in radians, regardless of compiler options.
+    With `radians` the angle of `axisangle` is in radians, regardless of compiler options.
     """
     position = (0.0, 0.0, 0.0)
     if "pos" in attributes:

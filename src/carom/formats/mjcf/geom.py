@@ -59,14 +59,8 @@ class Geom:
 def read_geom(context: MjcfContext, element: Element, attributes: Attributes, into: Pose) -> Geom | None:
     """The shape of a `<geom>`; None, with a warning, where PyBullet too ignores the geom.
 
-    Args:
-        context: The reading it belongs to.
-        element: The element.
-        attributes: Its attributes, defaults included.
-        into: Pose, in the link frame, of the frame in which its own pose is given.
-
-    Raises:
-        DescriptionError: An attribute is missing or invalid.
+    `attributes` include defaults; `into` is the pose, in the link frame, of the frame in which its own pose
+    is given. Raises `DescriptionError` if an attribute is missing or invalid.
     """
     kind = attributes.get("type", "mesh" if "mesh" in attributes else "sphere")
     pose = compose(into, read_pose(context, element, attributes, radians=True))

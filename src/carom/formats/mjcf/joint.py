@@ -27,19 +27,11 @@ def read_joint(
     frame: Pose,
     into: Pose,
 ) -> Joint:
-    """The joint that a `<joint>` element of a body describes.
+    """The joint between two links that a `<joint>` element of a body describes.
 
-    Args:
-        context: The reading it belongs to.
-        element: The element.
-        attributes: Its attributes, defaults included.
-        parent: Index of its parent link.
-        child: Index of its child link.
-        frame: Joint frame in the parent link.
-        into: Pose, in the body's frame, of the frame in which its axis is given.
-
-    Raises:
-        DescriptionError: An attribute is missing or invalid.
+    `attributes` include defaults; `frame` is the joint frame in the parent link, and `into` the pose, in the
+    body's frame, of the frame in which its axis is given. Raises `DescriptionError` if an attribute is
+    missing or invalid.
     """
     kind = attributes.get("type", _HINGE)
     if kind not in (_HINGE, _SLIDE, _BALL, _FIXED):

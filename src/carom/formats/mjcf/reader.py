@@ -10,8 +10,7 @@ from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, locate
-from carom.formats.robot.includes import Includes
+from carom.formats.robot.file import MAX_FILE_BYTES, Includes, locate
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import MAX_ELEMENTS, Element
 from carom.formats.xml_tree import parse_root
@@ -32,24 +31,13 @@ def read_mjcf(
     as_mujoco: bool = True,
     search: AssetSearch | None = None,
 ) -> list[PlacedRobot]:
-    """Reads and checks an MJCF file.
+    """Reads and checks an MJCF file, looked up with `AssetSearch.find`: bodies and geoms in its order.
 
     Features that PyBullet supports are read as PyBullet reads them: numbers in single precision, 1000 kg/m³
     for every geom, massless links for joints. Others have MuJoCo's meaning: classes of defaults for all
     attributes, ball joints, ellipsoids, all kinds of orientations, `<frame>`, `<include>`, global
-    coordinates. Actuators, sensors, tendons, damping, armature and the like are ignored.
-
-    Args:
-        path: The file; looked up with `AssetSearch.find`.
-        colours: Geoms have the colours that the file states; otherwise they are white.
-        implicit: Capsules given by their ends are capsules; otherwise they have the inertia that
-            PyBullet gives to swept spheres.
-        as_mujoco: `axisangle` turns bodies, and named classes limit joints. Otherwise both are ignored, as in
-            PyBullet.
-        search: Folders in which the file and files it refers to are searched.
-
-    Returns:
-        The bodies and geoms of the world, in the order of the file.
+    coordinates. Actuators, sensors, tendons, damping, armature and the like are ignored. The flags are those
+    of `MjcfContext`.
 
     Raises:
         DescriptionError: The file is missing or broken.
@@ -97,13 +85,7 @@ class _Inclusion:
         self.elements = 0
 
     def expand(self, parent: Element, file: Path, including: tuple[Path, ...]) -> None:
-        """Replaces every `<include>` below an element.
-
-        Args:
-            parent: The element.
-            file: The file that contains it.
-            including: That file and those by which it is included.
-        """
+        """Replaces every `<include>` below an element; `including` are its file and those around that."""
         children: list[Element] = []
         for child in parent.children:
             if child.tag != "include":

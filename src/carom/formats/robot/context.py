@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from math import isfinite
 from pathlib import Path
+from typing import TypeVar
 
-from carom.description import Pose
+from carom.description import Material, Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 from carom.logger import Logger
+
+Default = TypeVar("Default")
 
 _log = Logger(__name__)
 _LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -35,6 +38,7 @@ class FileContext:
         search: The search for meshes and textures.
         references: The path that each file name in the file was resolved to; None if there is no such file.
         links_without_inertial: Names of links that got the default mass.
+        materials: The materials of a URDF file read so far, by name.
     """
 
     def __init__(self, file: Path, root: Element, scale: float, search: AssetSearch) -> None:
@@ -44,6 +48,7 @@ class FileContext:
         self.search = search
         self.references: dict[str, Path | None] = {}
         self.links_without_inertial: list[str] = []
+        self.materials: dict[str, Material] = {}
 
     def error(self, element: Element, reason: str) -> DescriptionError:
         """An error at an element, with its line and its path in the document."""
@@ -79,6 +84,17 @@ class FileContext:
                 raise self.error(element, f"attribute {key!r} is missing")
             return default
         return self.parse_number(element, key, text)
+
+    def place(self, parent: Element, tag: str) -> tuple[Element, str]:
+        """The arguments of `value` for a number that a child of an element states."""
+        child = parent.first(tag)
+        if child is None:
+            raise self.error(parent, f"<{tag}> is missing")
+        return child, "value"
+
+    def child_value(self, parent: Element, tag: str, default: Default) -> float | Default:
+        """The number that a child of an element states; `default` without such a child."""
+        return default if parent.first(tag) is None else self.value(*self.place(parent, tag))
 
     def non_negative(self, element: Element, key: str) -> float:
         """A required number that must not be negative."""
@@ -189,11 +205,7 @@ class FileContext:
         return Pose(position, quaternion_from_rpy(roll, pitch, yaw))
 
     def refuse_duplicate(self, element: Element, name: str, lines: dict[str, int]) -> None:
-        """Record the line of a name in `lines`.
-
-        Raises:
-            DescriptionError: The name is in `lines` already.
-        """
+        """Record the line of a name in `lines`; raises `DescriptionError` if it is there already."""
         if name in lines:
             raise self.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
         lines[name] = element.line

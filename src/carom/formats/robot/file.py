@@ -1,4 +1,4 @@
-"""Locating robot files, and checks that all readers share."""
+"""Locating robot files, limits on what they include, and checks that all readers share."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ import os
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.robot.context import MAX_MAGNITUDE, FileContext
+from carom.formats.robot.context import MAX_MAGNITUDE, FileContext, shown
 from carom.formats.search import AssetSearch, path_of
 from carom.formats.shipped import advice
+from carom.formats.xml_element import Element
 from carom.logger import Logger
 
 _log = Logger(__name__)
@@ -16,13 +17,15 @@ _log = Logger(__name__)
 MAX_FILE_BYTES = 16 << 20
 """Largest robot file that is read."""
 
+MAX_INCLUDES = 512
+"""Most files that one file may include, directly or through others."""
+
+MAX_INCLUDE_DEPTH = 16
+"""Deepest nesting of includes."""
+
 
 def locate(path: Path, search: AssetSearch) -> Path:
-    """The absolute path of a file, looked up with `AssetSearch.find`.
-
-    Raises:
-        DescriptionError: There is none.
-    """
+    """The absolute path that `AssetSearch.find` finds; raises `DescriptionError` if there is none."""
     found = search.find(path)
     if found is None:
         raise DescriptionError(f"no such file: {path}{advice(path, search.places)}", file=path)
@@ -40,3 +43,37 @@ def warn_of_assumed_masses(context: FileContext) -> None:
     if context.links_without_inertial:
         names = ", ".join(context.links_without_inertial)
         _log.warning("%s: no <inertial>, so 1 kg is assumed, for %s", context.file, names)
+
+
+class Includes:
+    """Counts the files that one file includes, directly or through others."""
+
+    def __init__(self) -> None:
+        self._files = 0
+
+    def admit(
+        self,
+        context: FileContext,
+        element: Element,
+        name: str,
+        found: Path | None,
+        including: tuple[Path, ...],
+    ) -> Path:
+        """The absolute path of an included file, `found` by the name that the `<include>` element states.
+
+        `including` are the files by which it is included, outermost first.
+
+        Raises:
+            DescriptionError: There is no such file, it includes itself, or there are too many.
+        """
+        if found is None:
+            raise context.not_found(element, name)
+        file = found.absolute()
+        if file in including:
+            raise context.error(element, f"{shown(name)} includes itself")
+        self._files += 1
+        if self._files > MAX_INCLUDES or len(including) > MAX_INCLUDE_DEPTH:
+            raise context.error(
+                element, f"more than {MAX_INCLUDES} includes, or nested deeper than {MAX_INCLUDE_DEPTH}"
+            )
+        return file

@@ -2,45 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from math import hypot
 from pathlib import Path
-from typing import TypeVar
 
-from carom.description import Geometry, Plane
+from carom.description import Plane
 from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
 
-Context = TypeVar("Context", bound=FileContext)
-
 MESH_SUFFIXES = (".obj", ".stl", ".dae")
 FIELD_SUFFIXES = (".cdf",)
+_SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
 
 
-def read_geometry(
-    context: Context, owner: Element, readers: Mapping[str, Callable[[Context, Element], Geometry]]
-) -> Geometry:
-    """The shape of a `<visual>` or `<collision>`.
-
-    Args:
-        context: The reading it belongs to.
-        owner: The `<visual>` or `<collision>`.
-        readers: The function that reads each shape, by the name of its element.
-
-    Raises:
-        DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
-    """
+def shape_element(context: FileContext, owner: Element) -> Element:
+    """The element of a shape in a `<visual>` or `<collision>`; `DescriptionError` unless it is known."""
     geometry = owner.first("geometry")
     if geometry is None:
         raise context.error(owner, "<geometry> is missing")
     if not geometry.children:
         raise context.error(geometry, "it holds no shape")
     shape = geometry.children[0]
-    reader = readers.get(shape.tag)
-    if reader is None:
-        raise context.error(shape, f"unknown shape; known are {', '.join(readers)}")
-    return reader(context, shape)
+    if shape.tag not in _SHAPES:
+        raise context.error(shape, f"unknown shape; known are {', '.join(_SHAPES)}")
+    return shape
 
 
 def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:
@@ -53,17 +38,10 @@ def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:
 
 
 def shape_file(context: FileContext, shape: Element, key: str, name: str, suffixes: tuple[str, ...]) -> Path:
-    """The file of a mesh or distance field.
-
-    Args:
-        context: The reading it belongs to.
-        shape: The element that names it.
-        key: Attribute or child element that contains the file name.
-        name: The file name.
-        suffixes: Accepted suffixes of file names.
+    """The file of a mesh or distance field; `key` is the attribute or child element that contains its name.
 
     Raises:
-        DescriptionError: The suffix is not accepted, or there is no such file.
+        DescriptionError: The suffix of the name is not one of `suffixes`, or there is no such file.
     """
     check_suffix(context, shape, key, name, suffixes)
     path = context.find_file(name)

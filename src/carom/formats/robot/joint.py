@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import hypot
 
 from carom.description import JointLimit, JointType
-from carom.description.joint import NEEDS_LIMIT
+from carom.description.joint import NEEDS_AXIS, NEEDS_LIMIT
+from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
+
+ALONG_X: tuple[Vector3, float] = (1.0, 0.0, 0.0), 1.0
+"""Axis, and its length in the file, of a joint that states none."""
 
 
 def read_joint_type(context: FileContext, element: Element, types: Mapping[str, JointType]) -> JointType:
@@ -25,14 +30,21 @@ def link_index(context: FileContext, element: Element, name: str, link_indices: 
     return link_indices[name]
 
 
-def read_limit(context: FileContext, owner: Element, kind: JointType, scale: float = 1.0) -> JointLimit:
-    """The `<limit>` below an element.
+def unit_axis(
+    context: FileContext, element: Element, kind: JointType, axis: Vector3
+) -> tuple[Vector3, float]:
+    """Unit axis and the length it had in the file; along x where it has none and the joint needs none."""
+    x, y, z = axis
+    length = hypot(x, y, z)
+    if length != 0.0:
+        return (x / length, y / length, z / length), length
+    if kind in NEEDS_AXIS:
+        raise context.error(element, f"the axis of a {kind.value} joint has no length")
+    return ALONG_X
 
-    Args:
-        context: The reading it belongs to.
-        owner: The element.
-        kind: Type of the joint.
-        scale: Factor on lower and upper limit.
+
+def read_limit(context: FileContext, owner: Element, kind: JointType, scale: float = 1.0) -> JointLimit:
+    """The `<limit>` below an element; `scale` is a factor on lower and upper limit.
 
     Raises:
         DescriptionError: A joint of this type needs a limit, or a value is not a number.

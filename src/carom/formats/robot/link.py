@@ -1,13 +1,16 @@
-"""`<link>`: inertia, collision shapes and contact parameters."""
+"""`<link>`: inertia, shapes and contact parameters."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeVar
 
-from carom.description import Collision, ContactParameters, Geometry, Inertial, Mesh
+from carom.description import Collision, ContactParameters, Geometry, Inertial, Link, Material, Mesh, Visual
 from carom.formats.robot.context import FileContext
 from carom.formats.xml_element import Element
+
+Context = TypeVar("Context", bound=FileContext)
 
 MASSLESS = Inertial(mass=0.0)
 """Inertial of a link that stands for the world."""
@@ -24,27 +27,49 @@ _DEFAULT_DAMPING = 1.0
 _DEFAULT_CONTACT = ContactParameters()
 
 
-def read_inertial(
-    context: FileContext, link: Element, name: str, read_mass: Callable[[Element], float]
-) -> Inertial:
-    """The `<inertial>` of a link.
-
-    Args:
-        context: The reading it belongs to.
-        link: The `<link>` element.
-        name: Name of the link; a link called `world` without `<inertial>` has no mass.
-        read_mass: Reads the mass from the `<inertial>` element.
+def read_link(
+    context: Context,
+    element: Element,
+    read_geometry: Callable[[Context, Element], Geometry],
+    read_material: Callable[[Context, Element], Material | None],
+) -> Link:
+    """The link that a `<link>` element describes, without its pose.
 
     Raises:
-        DescriptionError: Mass or moments are missing or are not numbers.
+        DescriptionError: The name is missing, or something inside is wrong.
     """
+    name = context.required(element, "name")
+    return Link(
+        name,
+        inertial=_read_inertial(context, element, name),
+        collisions=tuple(
+            _read_collision(context, child, read_geometry(context, child))
+            for child in element.all("collision")
+        ),
+        visuals=tuple(
+            Visual(
+                read_geometry(context, child),
+                frame=context.pose(child),
+                name=child.attributes.get("name", ""),
+                material=read_material(context, child),
+                user_data=context.user_data(child),
+            )
+            for child in element.all("visual")
+        ),
+        contact=_read_contact(context, element.first("contact")),
+        user_data=context.user_data(element),
+    )
+
+
+def _read_inertial(context: FileContext, link: Element, name: str) -> Inertial:
+    """The `<inertial>` of a link; without one, a link called `world` has no mass."""
     element = link.first("inertial")
     if element is None:
         if name == "world":
             return MASSLESS
         context.links_without_inertial.append(name)
         return _NO_INERTIAL
-    mass = read_mass(element)
+    mass = context.non_negative(*context.place(element, "mass"))
     inertia = element.first("inertia")
     if inertia is None:
         raise context.error(element, "<inertia> is missing")
@@ -58,8 +83,7 @@ def read_inertial(
     return Inertial(mass=mass, frame=context.pose(element), tensor=(ixx, ixy, ixz, iyy, iyz, izz))
 
 
-def read_collision(context: FileContext, element: Element, geometry: Geometry) -> Collision:
-    """The collision shape that a `<collision>` with this geometry describes."""
+def _read_collision(context: FileContext, element: Element, geometry: Geometry) -> Collision:
     # Only the presence of the attribute matters, not its value.
     if "concave" in element.attributes and isinstance(geometry, Mesh):
         geometry = replace(geometry, concave=True)
@@ -72,31 +96,20 @@ def read_collision(context: FileContext, element: Element, geometry: Geometry) -
     )
 
 
-def read_contact(element: Element | None, value: Callable[[Element], float]) -> ContactParameters:
-    """The contact parameters of a link.
-
-    Args:
-        element: Its `<contact>` element; None if it has none.
-        value: Reads the number from a child of that element.
-    """
+def _read_contact(context: FileContext, element: Element | None) -> ContactParameters:
     if element is None:
         return _DEFAULT_CONTACT
-
-    def optional(tag: str) -> float | None:
-        child = element.first(tag)
-        return None if child is None else value(child)
-
-    stiffness, damping = optional("stiffness"), optional("damping")
+    stiffness, damping = (context.child_value(element, tag, None) for tag in ("stiffness", "damping"))
     if stiffness is not None or damping is not None:
         stiffness = _DEFAULT_STIFFNESS if stiffness is None else stiffness
         damping = _DEFAULT_DAMPING if damping is None else damping
     return ContactParameters(
-        lateral_friction=optional("lateral_friction"),
-        rolling_friction=optional("rolling_friction"),
-        spinning_friction=optional("spinning_friction"),
-        restitution=optional("restitution"),
+        lateral_friction=context.child_value(element, "lateral_friction", None),
+        rolling_friction=context.child_value(element, "rolling_friction", None),
+        spinning_friction=context.child_value(element, "spinning_friction", None),
+        restitution=context.child_value(element, "restitution", None),
         stiffness=stiffness,
         damping=damping,
-        inertia_scaling=optional("inertia_scaling"),
+        inertia_scaling=context.child_value(element, "inertia_scaling", None),
         friction_anchor=element.first("friction_anchor") is not None,
     )

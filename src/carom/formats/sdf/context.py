@@ -17,6 +17,9 @@ class SdfContext(FileContext):
         child = parent.first(tag)
         return None if child is None else child.text.strip()
 
+    def place(self, parent: Element, tag: str) -> tuple[Element, str]:  # noqa: D102
+        return parent, tag
+
     def states(self, element: Element, key: str) -> bool:
         """Whether an element has a child of that name."""
         return element.first(key) is not None
@@ -28,22 +31,14 @@ class SdfContext(FileContext):
             if default is None:
                 raise self.error(element, f"<{key}> is missing")
             return default
-        return self.number(child)
-
-    def number(self, element: Element) -> float:
-        """A finite number from the text of an element."""
-        return self.parse_number(element, element.tag, element.text.strip())
+        return self.parse_number(child, key, child.text.strip())
 
     def values(self, element: Element) -> list[float]:
         """All numbers in the text of an element."""
         return [self.parse_number(element, element.tag, word) for word in element.text.split()]
 
     def triple(self, parent: Element, tag: str) -> Vector3 | None:
-        """The first three numbers in the text of a child; None where there is no child.
-
-        Raises:
-            DescriptionError: There are fewer than three.
-        """
+        """The first three numbers in the text of a child; None without it, `DescriptionError` if fewer."""
         child = parent.first(tag)
         if child is None:
             return None

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, Plane, SignedDistanceField, Sphere
-from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, read_geometry, shape_file
+from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, SignedDistanceField, Sphere
+from carom.description.pose import Vector3
+from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, shape_element, shape_file
 from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
@@ -14,58 +15,38 @@ _CYLINDER_SIZE, _CAPSULE_SIZE = 0.1, 1.0
 
 
 def read_sdf_geometry(context: SdfContext, owner: Element) -> Geometry:
-    """The shape of a `<visual>` or `<collision>`.
+    """The shape of a `<visual>` or `<collision>`; raises `DescriptionError` if it is incomplete."""
+    shape = shape_element(context, owner)
+    match shape.tag:
+        case "box":
+            return Box(_half_extents(context, shape))
+        case "sphere":
+            # Not scaled, as in PyBullet.
+            return Sphere(context.non_negative(shape, "radius"))
+        case "cylinder":
+            return Cylinder(*(_length(context, shape, tag, _CYLINDER_SIZE) for tag in ("radius", "length")))
+        case "capsule":
+            return Capsule(*(_length(context, shape, tag, _CAPSULE_SIZE) for tag in ("radius", "length")))
+        case "plane":
+            normal = context.triple(shape, "normal")
+            if normal is None or shape.first("size") is None:
+                raise context.error(shape, "it needs both <normal> and <size>")
+            return plane(context, shape, normal)
+        case "mesh":
+            x, y, z = context.triple(shape, "scale") or (1.0, 1.0, 1.0)
+            scale = context.scale
+            return Mesh(_file(context, shape, MESH_SUFFIXES), (x * scale, y * scale, z * scale))
+    return SignedDistanceField(_file(context, shape, FIELD_SUFFIXES))
 
-    Raises:
-        DescriptionError: No `<geometry>`, an unknown shape, missing or bad sizes, a mesh that does not exist.
-    """
-    return read_geometry(context, owner, _READERS)
 
-
-def _sphere(context: SdfContext, shape: Element) -> Sphere:
-    # Not scaled, as in PyBullet.
-    return Sphere(context.non_negative(shape, "radius"))
-
-
-def _box(context: SdfContext, shape: Element) -> Box:
+def _half_extents(context: SdfContext, shape: Element) -> Vector3:
     size = context.triple(shape, "size")
     if size is None:
         raise context.error(shape, "<size> is missing")
     if min(size) < 0.0:
         raise context.error(shape, f"size={size} must not be negative")
     half = 0.5 * context.scale
-    return Box((size[0] * half, size[1] * half, size[2] * half))
-
-
-def _length(context: SdfContext, shape: Element, tag: str, default: float) -> float:
-    if shape.first(tag) is None:
-        return default
-    return context.scale * context.non_negative(shape, tag)
-
-
-def _cylinder(context: SdfContext, shape: Element) -> Cylinder:
-    return Cylinder(*(_length(context, shape, tag, _CYLINDER_SIZE) for tag in ("radius", "length")))
-
-
-def _capsule(context: SdfContext, shape: Element) -> Capsule:
-    return Capsule(*(_length(context, shape, tag, _CAPSULE_SIZE) for tag in ("radius", "length")))
-
-
-def _plane(context: SdfContext, shape: Element) -> Plane:
-    normal = context.triple(shape, "normal")
-    if normal is None or shape.first("size") is None:
-        raise context.error(shape, "it needs both <normal> and <size>")
-    return plane(context, shape, normal)
-
-
-def _mesh(context: SdfContext, shape: Element) -> Mesh:
-    x, y, z = context.triple(shape, "scale") or (1.0, 1.0, 1.0)
-    scale = context.scale
-    return Mesh(_file(context, shape, MESH_SUFFIXES), (x * scale, y * scale, z * scale))
-
-
-def _signed_distance_field(context: SdfContext, shape: Element) -> SignedDistanceField:
-    return SignedDistanceField(_file(context, shape, FIELD_SUFFIXES))
+    return (size[0] * half, size[1] * half, size[2] * half)
 
 
 def _file(context: SdfContext, shape: Element, suffixes: tuple[str, ...]) -> Path:
@@ -75,12 +56,7 @@ def _file(context: SdfContext, shape: Element, suffixes: tuple[str, ...]) -> Pat
     return shape_file(context, shape, "uri", name, suffixes)
 
 
-_READERS = {
-    "box": _box,
-    "sphere": _sphere,
-    "cylinder": _cylinder,
-    "capsule": _capsule,
-    "plane": _plane,
-    "mesh": _mesh,
-    "cdf": _signed_distance_field,
-}
+def _length(context: SdfContext, shape: Element, tag: str, default: float) -> float:
+    if shape.first(tag) is None:
+        return default
+    return context.scale * context.non_negative(shape, tag)

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from math import hypot
-
 from carom.description import Joint, JointLimit, JointType, Pose
-from carom.description.joint import NEEDS_AXIS, WITHOUT_AXIS, WITHOUT_LIMIT
+from carom.description.joint import WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
-from carom.formats.robot.joint import link_index, read_dynamics, read_joint_type, read_limit
+from carom.formats.robot.joint import (
+    ALONG_X,
+    link_index,
+    read_dynamics,
+    read_joint_type,
+    read_limit,
+    unit_axis,
+)
 from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
 WORLD = "world"
 _TYPES = {kind.value: kind for kind in JointType} | {"ball": JointType.SPHERICAL}
-_X: Vector3 = (1.0, 0.0, 0.0)
 _Z: Vector3 = (0.0, 0.0, 1.0)
 
 
@@ -23,11 +27,7 @@ def read_sdf_joint(
 ) -> Joint:
     """The joint that a `<joint>` element describes; its frame is that of the child link.
 
-    Args:
-        context: The reading it belongs to.
-        element: The `<joint>` element.
-        link_indices: Index in `Robot.links` of every link, by name.
-        poses: Poses of the links in the model's frame.
+    Links have indices in `Robot.links`, by name, and poses in the model's frame.
 
     Raises:
         DescriptionError: The name, type or a link is missing or unknown, or something inside is wrong.
@@ -39,7 +39,7 @@ def read_sdf_joint(
         context.warn(pose, "ignored, as in PyBullet: the joint is at the origin of its child")
     parent = _read_end(context, element, "parent", link_indices)
     child = _read_end(context, element, "child", link_indices)
-    axis, length = _X, 1.0
+    axis, length = ALONG_X
     limit, damping, friction = JointLimit(), 0.0, 0.0
     axis_element = element.first("axis")
     if axis_element is not None and kind not in WITHOUT_AXIS:
@@ -48,18 +48,8 @@ def read_sdf_joint(
             # Not scaled in PyBullet, not even for prismatic joints.
             limit = read_limit(context, axis_element, kind)
         damping, friction = read_dynamics(context, axis_element)
-    return Joint(
-        name,
-        kind,
-        parent=parent,
-        child=child,
-        frame=compose(inverse(poses[parent]), poses[child]),
-        axis=axis,
-        axis_length=length,
-        limit=limit,
-        damping=damping,
-        friction=friction,
-    )
+    frame = compose(inverse(poses[parent]), poses[child])
+    return Joint(name, kind, parent, child, frame, axis, length, limit, damping, friction)
 
 
 def _read_end(context: SdfContext, joint: Element, tag: str, link_indices: dict[str, int]) -> int:
@@ -72,12 +62,4 @@ def _read_end(context: SdfContext, joint: Element, tag: str, link_indices: dict[
 def _read_axis(context: SdfContext, element: Element, kind: JointType) -> tuple[Vector3, float]:
     """Unit axis and the length it had in the file."""
     vector = context.triple(element, "xyz")
-    if vector is None:
-        return _Z, 1.0
-    x, y, z = vector
-    length = hypot(x, y, z)
-    if length == 0.0:
-        if kind not in NEEDS_AXIS:
-            return _X, 1.0
-        raise context.error(element, f"the axis of a {kind.value} joint has no length")
-    return (x / length, y / length, z / length), length
+    return (_Z, 1.0) if vector is None else unit_axis(context, element, kind, vector)

@@ -4,28 +4,24 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Joint, Link, Pose, Robot
+from carom.description import Joint, Link, Material, Pose, Robot
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.link import MASSLESS
+from carom.formats.robot.link import MASSLESS, read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
+from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
-from carom.formats.sdf.link import read_sdf_link
 from carom.formats.xml_element import Element
 
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
 
 
 def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
-    """The robots of a `<model>`: one for each link that has no parent.
-
-    Raises:
-        DescriptionError: Name or links are missing, or something inside is wrong.
-    """
+    """The robots of a `<model>`, one for each link that has no parent; raises `DescriptionError`."""
     name = context.required(element, "name")
     for child in element.children:
         if child.tag in _IGNORED:
@@ -39,7 +35,9 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
         links.append(Link(WORLD, inertial=MASSLESS))
         poses.append(IDENTITY)
     joints = [read_sdf_joint(context, joint, indices, poses) for joint in joint_elements]
-    _refuse_duplicates(context, joint_elements)
+    lines: dict[str, int] = {}
+    for joint in joint_elements:
+        context.refuse_duplicate(joint, joint.attributes["name"], lines)
     place, static = context.pose(element), _is_static(context, element)
     carried = {joint.child for joint in joints}
     roots = [index for index in range(len(links)) if index not in carried]
@@ -60,7 +58,7 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
     poses: list[Pose] = []
     lines: dict[str, int] = {}
     for element in model.all("link"):
-        link = read_sdf_link(context, element)
+        link = read_link(context, element, read_sdf_geometry, _read_material)
         context.refuse_duplicate(element, link.name, lines)
         links.append(link)
         poses.append(context.pose(element))
@@ -69,10 +67,22 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
     return links, poses
 
 
-def _refuse_duplicates(context: SdfContext, joints: list[Element]) -> None:
-    lines: dict[str, int] = {}
-    for element in joints:
-        context.refuse_duplicate(element, element.attributes["name"], lines)
+def _read_material(context: SdfContext, visual: Element) -> Material | None:
+    """The material of a visual, with the visual's name."""
+    element = visual.first("material")
+    if element is None:
+        return None
+    diffuse = _colour(context, element.first("diffuse"), (4,))
+    specular = _colour(context, element.first("specular"), (3, 4))
+    return Material(
+        visual.attributes.get("name") or "mat",
+        rgba=None if diffuse is None else (diffuse[0], diffuse[1], diffuse[2], diffuse[3]),
+        specular=None if specular is None else (specular[0], specular[1], specular[2]),
+    )
+
+
+def _colour(context: SdfContext, element: Element | None, counts: tuple[int, ...]) -> list[float] | None:
+    return None if element is None else context.parse_components(element, element.tag, element.text, counts)
 
 
 def _is_static(context: SdfContext, model: Element) -> bool:

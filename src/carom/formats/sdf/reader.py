@@ -9,8 +9,7 @@ from carom.description.transform import compose
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
-from carom.formats.robot.includes import Includes
+from carom.formats.robot.file import MAX_FILE_BYTES, Includes, check_scale, locate, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.model import read_model
 from carom.formats.search import AssetSearch
@@ -21,19 +20,11 @@ _MODEL_FILE = "model.sdf"
 
 
 def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> list[PlacedRobot]:
-    """Reads and checks an SDF file.
+    """Reads and checks an SDF file, looked up with `AssetSearch.find`; models are in the order of the file.
 
     Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
-    and plugins are ignored.
-
-    Args:
-        path: The file; looked up with `AssetSearch.find`.
-        scale: Factor on lengths: positions, boxes, cylinders, capsules and meshes, but as in PyBullet
-            neither spheres nor limits.
-        search: Folders in which the file and files it refers to are searched.
-
-    Returns:
-        The models of the world, in the order of the file.
+    and plugins are ignored. `scale` is a factor on lengths: positions, boxes, cylinders, capsules and meshes,
+    but as in PyBullet neither spheres nor limits.
 
     Raises:
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.
@@ -53,12 +44,7 @@ class _Reading:
         self.includes = Includes()
 
     def read(self, file: Path, including: tuple[Path, ...]) -> list[PlacedRobot]:
-        """The robots of a file.
-
-        Args:
-            file: The file.
-            including: The files by which it is included, outermost first.
-        """
+        """The robots of a file; `including` are the files by which it is included, outermost first."""
         data, _ = read_bounded(file, MAX_FILE_BYTES)
         root = parse_root(data, file, "sdf")
         context = SdfContext(file, root, self.scale, self.search)

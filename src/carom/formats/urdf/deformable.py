@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description.deformable import Deformable, LameCoefficients, SpringCoefficients
+from carom.formats.robot.context import FileContext
 from carom.formats.robot.geometry import shape_file
-from carom.formats.urdf.context import UrdfContext
 from carom.formats.xml_element import Element
 
 _SUFFIXES = (".obj", ".vtk")
@@ -17,56 +17,49 @@ _REDUCED_MASS, _REDUCED_STIFFNESS = 1.0, 100.0
 _STRIDE = 2.0
 
 
-def read_deformable(context: UrdfContext, element: Element) -> Deformable:
-    """The soft body that a `<deformable>` or `<reduced_deformable>` describes.
+def read_deformable(context: FileContext, element: Element) -> Deformable:
+    """The soft body that a `<deformable>` or `<reduced_deformable>` describes; raises `DescriptionError`.
 
     Lengths are not scaled: the meshes are read later.
-
-    Raises:
-        DescriptionError: The name, the mass or the mesh is missing, there is no such file, or a value is not
-            a number.
     """
     context.required(element, "name")
     reduced = element.tag == "reduced_deformable"
     visual = element.first("visual")
     if visual is None:
         raise context.error(element, "<visual> is missing")
+    friction = _REDUCED_FRICTION if reduced else _DEFAULT_FRICTION
     collision = element.first("collision")
     springs = element.first("spring")
     return Deformable(
         visual=_mesh(context, visual),
-        mass=_value(context, element, "mass", _REDUCED_MASS) if reduced else _mass(context, element),
-        margin=_value(context, element, "collision_margin", _DEFAULT_MARGIN),
-        friction=_value(context, element, "friction", _REDUCED_FRICTION if reduced else _DEFAULT_FRICTION),
+        mass=context.child_value(element, "mass", _REDUCED_MASS) if reduced else _mass(context, element),
+        margin=context.child_value(element, "collision_margin", _DEFAULT_MARGIN),
+        friction=context.child_value(element, "friction", friction),
         simulated=None if collision is None else _mesh(context, collision),
-        gravity_factor=1.0 if reduced else _value(context, element, "gravity_factor", 1.0),
+        gravity_factor=1.0 if reduced else context.child_value(element, "gravity_factor", 1.0),
         springs=None if reduced or springs is None else _springs(context, springs),
         neo_hookean=None if reduced else _lame(context, element.first("neohookean")),
         corotated=None if reduced else _lame(context, element.first("corotated")),
-        stiffness_scale=_value(context, element, "stiffness_scale", _REDUCED_STIFFNESS) if reduced else None,
-        mode_damping=_value(context, element, "damping_coefficient", 0.0) if reduced else 0.0,
+        stiffness_scale=context.child_value(element, "stiffness_scale", _REDUCED_STIFFNESS)
+        if reduced
+        else None,
+        mode_damping=context.child_value(element, "damping_coefficient", 0.0) if reduced else 0.0,
     )
 
 
-def _mesh(context: UrdfContext, element: Element) -> Path:
+def _mesh(context: FileContext, element: Element) -> Path:
     name = context.required(element, "filename")
     return shape_file(context, element, "filename", name, _SUFFIXES)
 
 
-def _value(context: UrdfContext, element: Element, tag: str, default: float) -> float:
-    child = element.first(tag)
-    return default if child is None else context.value(child, "value")
-
-
-def _mass(context: UrdfContext, element: Element) -> float:
+def _mass(context: FileContext, element: Element) -> float:
     inertial = element.first("inertial")
-    mass = None if inertial is None else inertial.first("mass")
-    if mass is None:
+    if inertial is None or inertial.first("mass") is None:
         raise context.error(inertial or element, "<inertial> with a <mass> is missing")
-    return context.value(mass, "value")
+    return context.value(*context.place(inertial, "mass"))
 
 
-def _springs(context: UrdfContext, element: Element) -> SpringCoefficients:
+def _springs(context: FileContext, element: Element) -> SpringCoefficients:
     bending = context.value(element, "bending_stiffness", 0.0)
     if bending and context.value(element, "bending_stride", _STRIDE) != _STRIDE:
         context.warn(
@@ -77,7 +70,7 @@ def _springs(context: UrdfContext, element: Element) -> SpringCoefficients:
     )
 
 
-def _lame(context: UrdfContext, element: Element | None) -> LameCoefficients | None:
+def _lame(context: FileContext, element: Element | None) -> LameCoefficients | None:
     if element is None:
         return None
     return LameCoefficients(

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
-from math import hypot
+from collections.abc import Callable
+from typing import TypeVar
 
 from carom.description import Joint, JointType, Mimic, SafetyController
-from carom.description.joint import NEEDS_AXIS, SLIDES, WITHOUT_AXIS
+from carom.description.joint import SLIDES, WITHOUT_AXIS
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.robot.context import shown
-from carom.formats.robot.joint import link_index, read_dynamics, read_joint_type, read_limit
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.robot.context import FileContext, shown
+from carom.formats.robot.joint import (
+    ALONG_X,
+    link_index,
+    read_dynamics,
+    read_joint_type,
+    read_limit,
+    unit_axis,
+)
 from carom.formats.xml_element import Element
+
+Ignored = TypeVar("Ignored")
 
 _TYPES = {kind.value: kind for kind in JointType}
 
 
-def read_joint(context: UrdfContext, element: Element, link_indices: dict[str, int]) -> Joint:
-    """The joint that a `<joint>` element describes.
-
-    Args:
-        context: The reading it belongs to.
-        element: The `<joint>` element.
-        link_indices: Index in `Robot.links` of every link, by name.
+def read_joint(context: FileContext, element: Element, link_indices: dict[str, int]) -> Joint:
+    """The joint that a `<joint>` element describes; links have indices in `Robot.links`, by name.
 
     Raises:
         DescriptionError: The name, type or a link is missing or unknown, or something inside is wrong.
@@ -31,6 +35,7 @@ def read_joint(context: UrdfContext, element: Element, link_indices: dict[str, i
     kind = read_joint_type(context, element, _TYPES)
     axis, axis_length = _read_axis(context, element, kind)
     damping, friction = read_dynamics(context, element)
+    scale = context.scale if kind in SLIDES else 1.0
     return Joint(
         name,
         kind,
@@ -39,74 +44,58 @@ def read_joint(context: UrdfContext, element: Element, link_indices: dict[str, i
         frame=context.pose(element),
         axis=axis,
         axis_length=axis_length,
-        limit=read_limit(context, element, kind, _length_scale(context, kind)),
+        limit=read_limit(context, element, kind, scale),
         damping=damping,
         friction=friction,
-        mimic=_read_mimic(context, element, kind),
-        safety=_read_safety(context, element, kind),
+        mimic=_if_valid(context, element.first("mimic"), scale, _read_mimic),
+        safety=_if_valid(context, element.first("safety_controller"), scale, _read_safety),
     )
 
 
-def _read_end(context: UrdfContext, joint: Element, tag: str, link_indices: dict[str, int]) -> int:
+def _read_end(context: FileContext, joint: Element, tag: str, link_indices: dict[str, int]) -> int:
     element = joint.first(tag)
     if element is None:
         raise context.error(joint, f"<{tag}> is missing")
     return link_index(context, element, context.required(element, "link"), link_indices)
 
 
-def _read_axis(context: UrdfContext, joint: Element, kind: JointType) -> tuple[Vector3, float]:
+def _read_axis(context: FileContext, joint: Element, kind: JointType) -> tuple[Vector3, float]:
     """Unit axis and the length it had in the file."""
     element = joint.first("axis")
     if kind in WITHOUT_AXIS or element is None or "xyz" not in element.attributes:
-        return (1.0, 0.0, 0.0), 1.0
+        return ALONG_X
     vector = context.vector(element, "xyz")
     if vector is None:
         raise context.error(element, f"xyz={shown(element.attributes['xyz'])} needs three numbers")
-    x, y, z = vector
-    length = hypot(x, y, z)
-    if length == 0.0:
-        if kind in NEEDS_AXIS:
-            raise context.error(element, f"the axis of a {kind.value} joint has no length")
-        return (1.0, 0.0, 0.0), 1.0
-    if length == 1.0:
-        return vector, 1.0
-    return (x / length, y / length, z / length), length
+    return unit_axis(context, element, kind, vector)
 
 
-def _length_scale(context: UrdfContext, kind: JointType) -> float:
-    """Factor on positions of a joint of this type."""
-    return context.scale if kind in SLIDES else 1.0
+def _read_mimic(context: FileContext, element: Element, scale: float) -> Mimic:
+    return Mimic(
+        context.required(element, "joint"),
+        multiplier=context.value(element, "multiplier", 1.0),
+        offset=context.value(element, "offset", 0.0) * scale,
+    )
 
 
-def _read_mimic(context: UrdfContext, joint: Element, kind: JointType) -> Mimic | None:
-    element = joint.first("mimic")
-    if element is None:
-        return None
-    scale = _length_scale(context, kind)
+def _read_safety(context: FileContext, element: Element, scale: float) -> SafetyController:
+    return SafetyController(
+        soft_lower=context.value(element, "soft_lower_limit", 0.0) * scale,
+        soft_upper=context.value(element, "soft_upper_limit", 0.0) * scale,
+        k_position=context.value(element, "k_position", 0.0),
+        k_velocity=context.value(element, "k_velocity", 0.0),
+    )
+
+
+def _if_valid(
+    context: FileContext,
+    element: Element | None,
+    scale: float,
+    read: Callable[[FileContext, Element, float], Ignored],
+) -> Ignored | None:
+    """What an element describes; None, with a warning, if it is invalid: PyBullet ignores such elements."""
     try:
-        return Mimic(
-            context.required(element, "joint"),
-            multiplier=context.value(element, "multiplier", 1.0),
-            offset=context.value(element, "offset", 0.0) * scale,
-        )
+        return None if element is None else read(context, element, scale)
     except DescriptionError as error:
-        # PyBullet ignores `<mimic>`, so a file with an invalid one still has to load.
-        context.warn(element, f"ignored: {error.reason}")
-        return None
-
-
-def _read_safety(context: UrdfContext, joint: Element, kind: JointType) -> SafetyController | None:
-    element = joint.first("safety_controller")
-    if element is None:
-        return None
-    scale = _length_scale(context, kind)
-    try:
-        return SafetyController(
-            soft_lower=context.value(element, "soft_lower_limit", 0.0) * scale,
-            soft_upper=context.value(element, "soft_upper_limit", 0.0) * scale,
-            k_position=context.value(element, "k_position", 0.0),
-            k_velocity=context.value(element, "k_velocity", 0.0),
-        )
-    except DescriptionError as error:
-        context.warn(element, f"ignored: {error.reason}")
+        context.warn(element or context.root, f"ignored: {error.reason}")
         return None

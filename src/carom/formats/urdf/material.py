@@ -5,19 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.description import Material
-from carom.formats.robot.context import shown
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
 
 
-def read_global_materials(context: UrdfContext) -> None:
+def read_global_materials(context: FileContext) -> None:
     """Read the materials directly below `<robot>`; of several with the same name the first counts."""
     for element in context.root.all("material"):
         material = _read_material(context, element, element.attributes.get("name", ""))
         context.materials.setdefault(material.name, material)
 
 
-def read_visual_material(context: UrdfContext, visual: Element) -> Material | None:
+def read_visual_material(context: FileContext, visual: Element) -> Material | None:
     """The material of a visual: defined in place, or referred to by its name.
 
     Later visuals can refer to a definition in place.
@@ -36,7 +35,7 @@ def read_visual_material(context: UrdfContext, visual: Element) -> Material | No
     return context.materials.get(name) or Material(name)
 
 
-def _read_material(context: UrdfContext, element: Element, name: str) -> Material:
+def _read_material(context: FileContext, element: Element, name: str) -> Material:
     texture = element.first("texture")
     colour = _components(context, element.first("color"), "rgba", 4)
     specular = _components(context, element.first("specular"), "rgb", 3)
@@ -49,7 +48,7 @@ def _read_material(context: UrdfContext, element: Element, name: str) -> Materia
 
 
 def _components(
-    context: UrdfContext, element: Element | None, attribute: str, count: int
+    context: FileContext, element: Element | None, attribute: str, count: int
 ) -> list[float] | None:
     text = "" if element is None else element.attributes.get(attribute, "")
     if element is None or not text:
@@ -57,7 +56,7 @@ def _components(
     return context.parse_components(element, attribute, text, (count,))
 
 
-def _texture(context: UrdfContext, texture: Element) -> Path | None:
+def _texture(context: FileContext, texture: Element) -> Path | None:
     name = texture.attributes.get("filename", "")
     if not name:
         return None

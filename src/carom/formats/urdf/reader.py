@@ -2,38 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
-from carom.description import Joint, Link, Material, Robot, Visual
+from carom.description import Joint, Link, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
+from carom.formats.robot.context import FileContext
 from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
+from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.context import UrdfContext
+from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
-from carom.formats.urdf.link import read_link
-from carom.formats.urdf.material import read_global_materials
+from carom.formats.urdf.material import read_global_materials, read_visual_material
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
+
+Part = TypeVar("Part", Link, Joint)
 
 # The elements that make a robot a soft body, in order of precedence.
 _SOFT = ("reduced_deformable", "deformable")
 
 
 def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> Robot:
-    """Reads and checks a URDF file.
+    """Reads and checks a URDF file, looked up with `AssetSearch.find`; links and joints are in file order.
 
-    Unchanged files are served from a cache; changed files are read again.
-
-    Args:
-        path: The file; looked up with `AssetSearch.find`.
-        scale: Factor on every length (positions, shapes, limits of prismatic joints). Masses and
-            inertia tensors stay as they are.
-        search: Folders in which the file, its meshes and its textures are searched.
-
-    Returns:
-        The robot, its links and joints in file order.
+    Unchanged files are served from a cache; changed files are read again. `scale` is a factor on every length
+    (positions, shapes, limits of prismatic joints); masses and inertia tensors stay as they are.
 
     Raises:
         DescriptionError: The file is missing, broken, or does not describe one tree of links.
@@ -62,15 +59,20 @@ def parse_urdf(
 ) -> tuple[Robot, dict[str, Path | None]]:
     """A robot from the content of a file, and the path that each file name in it was resolved to."""
     element = parse_root(data, file, "robot")
-    context = UrdfContext(file, element, scale, search)
+    context = FileContext(file, element, scale, search)
     name = context.required(element, "name")
     for tag in _SOFT:
         soft = element.first(tag)
         if soft is not None:
             return _soft_robot(context, name, soft), context.references
     read_global_materials(context)
-    links = _read_links(context)
-    joints = _read_joints(context, links)
+    links = _read_all(
+        context, "link", lambda it: read_link(context, it, read_urdf_geometry, read_visual_material)
+    )
+    if not links:
+        raise context.error(element, "there are no links")
+    link_indices = {link.name: index for index, link in enumerate(links)}
+    joints = _read_all(context, "joint", lambda it: read_joint(context, it, link_indices))
     warn_of_assumed_masses(context)
     robot = Robot(
         name,
@@ -84,7 +86,7 @@ def parse_urdf(
     return robot, context.references
 
 
-def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
+def _soft_robot(context: FileContext, name: str, element: Element) -> Robot:
     """A robot that is a soft body; as in PyBullet its links and joints are ignored."""
     from carom.formats.urdf.deformable import read_deformable
 
@@ -99,45 +101,28 @@ def _soft_robot(context: UrdfContext, name: str, element: Element) -> Robot:
     )
 
 
-def _read_links(context: UrdfContext) -> list[Link]:
-    links: list[Link] = []
+def _read_all(context: FileContext, tag: str, read: Callable[[Element], Part]) -> list[Part]:
+    """The links or joints of a robot, all with different names."""
+    parts: list[Part] = []
     lines: dict[str, int] = {}
-    for element in context.root.all("link"):
-        link = read_link(context, element)
-        context.refuse_duplicate(element, link.name, lines)
-        links.append(link)
-    if not links:
-        raise context.error(context.root, "there are no links")
-    return links
+    for element in context.root.all(tag):
+        part = read(element)
+        context.refuse_duplicate(element, part.name, lines)
+        parts.append(part)
+    return parts
 
 
-def _read_joints(context: UrdfContext, links: list[Link]) -> list[Joint]:
-    link_indices = {link.name: index for index, link in enumerate(links)}
-    joints: list[Joint] = []
-    lines: dict[str, int] = {}
-    for element in context.root.all("joint"):
-        joint = read_joint(context, element, link_indices)
-        context.refuse_duplicate(element, joint.name, lines)
-        joints.append(joint)
-    return joints
-
-
-def _with_late_materials(context: UrdfContext, link: Link) -> Link:
+def _with_late_materials(context: FileContext, link: Link) -> Link:
     """The link with its materials, including those that were referred to before their definition."""
-    if all(_is_settled(visual.material) for visual in link.visuals):
-        return link
-    return replace(link, visuals=tuple(_with_late_material(context, visual) for visual in link.visuals))
+    visuals = tuple([_with_late_material(context, visual) for visual in link.visuals])
+    return link if visuals == link.visuals else replace(link, visuals=visuals)
 
 
-def _with_late_material(context: UrdfContext, visual: Visual) -> Visual:
+def _with_late_material(context: FileContext, visual: Visual) -> Visual:
     material = visual.material
-    if material is None or _is_settled(material):
+    if material is None or material.rgba or material.specular or material.texture:
         return visual
     return replace(visual, material=context.materials.get(material.name, material))
-
-
-def _is_settled(material: Material | None) -> bool:
-    return material is None or bool(material.rgba or material.specular or material.texture)
 
 
 _cache: FileCache[tuple[Path, float, AssetSearch], tuple[Robot, dict[str, Path | None]]] = FileCache(64)

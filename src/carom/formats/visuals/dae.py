@@ -37,11 +37,7 @@ class _Corners:
 
 
 def read_dae_visual(file: Path) -> RenderMesh:
-    """Reads a DAE file for drawing. Triangles without usable normals are flat.
-
-    Raises:
-        DescriptionError: It is not COLLADA, is broken, or its scene shows no triangles.
-    """
+    """Reads a DAE file for drawing, as `read_collada`. Triangles without usable normals are flat."""
     data, _ = read_bounded(file, MAX_FILE_BYTES)
     reader = collada_reader(data, file)
     known: dict[str, list[_Corners]] = {}

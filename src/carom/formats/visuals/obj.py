@@ -176,12 +176,7 @@ def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
 def _distinct(
     corners: NDArray[np.int64], counts: tuple[int, int]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """The distinct corners, sorted, and the index of each corner among them.
-
-    Args:
-        corners: (n, 3) position, texture coordinate and normal; -1 for none.
-        counts: How many texture coordinates and normals there are.
-    """
+    """The distinct ones of (n, 3) corners, sorted, and the index of each corner among them."""
     # Sorting numbers is many times quicker than sorting rows, as `np.unique(axis=0)` does.
     keys = corners[:, 0]
     for column, count in zip(corners.T[1:], counts, strict=True):

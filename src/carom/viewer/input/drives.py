@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from carom.scene.joint_motor import aim_at_position
+from carom.scene.joint_motor import Drives
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -32,4 +32,5 @@ def drive(world: World, body_id: int, joint: int, target: float, *, place: bool)
     row = body.velocity_index[joint]
     force = body.link_spec(joint).effort or _FORCE
     step = world.parameters.substep_time
-    aim_at_position(world.motor, slice(row, row + 1), step, target, 0.0, _GAIN, _VELOCITY_GAIN, force, _SPEED)
+    drives = Drives(world.motor, world.pd, slice(row, row + 1), step)
+    drives.aim_at_position(target, 0.0, _GAIN, _VELOCITY_GAIN, force, _SPEED)
