@@ -11,6 +11,7 @@ from carom.description import Mesh, Robot, SignedDistanceField
 from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
 from carom.formats.search import AssetSearch
+from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.assemble import assemble
@@ -43,6 +44,11 @@ def urdf_body(
     return _bodies.of(robot, flags, fixed_base)
 
 
+def rigid_body(robot: Robot, *, flags: int, compound_margin: float) -> BodySpec:
+    """The rigid body of a description, once made for the same object; raises `DescriptionError`."""
+    return _bodies.of(robot, flags, False, compound_margin)
+
+
 class _Bodies:
     """A cache of rigid bodies by the robots they were made from, valid while their meshes are unchanged.
 
@@ -50,11 +56,11 @@ class _Bodies:
     """
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[tuple[int, int, bool], tuple[Robot, Meshes, BodySpec]] = OrderedDict()
+        self._kept: OrderedDict[tuple[object, ...], tuple[Robot, Meshes, BodySpec]] = OrderedDict()
 
-    def of(self, robot: Robot, flags: int, fixed_base: bool) -> BodySpec:
+    def of(self, robot: Robot, flags: int, fixed_base: bool, compound_margin: float = MARGIN) -> BodySpec:
         """The body of a robot."""
-        key = id(robot), flags, fixed_base
+        key = id(robot), flags, fixed_base, compound_margin
         # Taken out meanwhile: another thread may do the same.
         kept = self._kept.pop(key, None)
         if kept is not None and kept[0] is robot and _are_unchanged(kept[1]):
@@ -64,7 +70,7 @@ class _Bodies:
         # Read first: a mesh that changes while the body is made is then found to have changed.
         meshes = _meshes(robot, flags)
         said = Logger.count
-        spec = robot_body(robot, flags=flags, fixed_base=fixed_base)
+        spec = assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base, compound_margin=compound_margin)
         # What the log was told must be told again for the next body.
         if meshes is not None and Logger.count == said and not flags & LoadFlags.PRINT_URDF_INFO:
             self._kept[key] = robot, meshes, spec

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Generic, TypeVar
+from collections import OrderedDict
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from carom.description import Collision, Visual
 from carom.native.undo import Undo
 from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.description import Robot
 
 Shape = TypeVar("Shape")
 
@@ -58,8 +62,13 @@ class ShapeTable(Generic[Shape]):
 
 
 class ShapeRegistry:
-    """The shapes of one client: collision shapes, and visual shapes, each a tuple of visuals."""
+    """The shapes of one client: collision shapes, and visual shapes, each a tuple of visuals.
+
+    Attributes:
+        alone: Descriptions of bodies without links, with what they were made from.
+    """
 
     def __init__(self) -> None:
         self.collisions: ShapeTable[CollisionShape] = ShapeTable()
         self.visuals: ShapeTable[tuple[Visual, ...]] = ShapeTable()
+        self.alone: OrderedDict[tuple[Any, ...], tuple[Any, Any, Robot]] = OrderedDict()

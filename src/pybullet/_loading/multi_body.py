@@ -37,6 +37,8 @@ __all__ = ["createMultiBody"]
 Shape = TypeVar("Shape")
 
 _FAILED = "createMultiBody failed."
+# Number of bodies without links whose descriptions are kept.
+_KEPT = 64
 
 JOINT_TYPES = {
     JOINT_REVOLUTE: JointType.REVOLUTE,
@@ -184,12 +186,14 @@ def createMultiBody(
     batch = [vector3(place, _FAILED, "batchPositions") for place in places or ()]
     inertial = baseInertialFramePosition, baseInertialFrameOrientation
     base_frame = optional_pose(*inertial, _FAILED, "baseInertialFrame")
-    base = _link(
-        client, 0, _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
-    )
-    links = [base, *_links(client, lists)]
+    base = _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
+    if lists["linkMasses"]:
+        links = [_link(client, 0, *base), *_links(client, lists)]
+        robot = Robot("", tuple(links), tuple(_joints(lists)))
+    else:
+        robot = _alone(client, *base)
     warn_of_coordinates("createMultiBody", maximal)
-    spec = _assembled(Robot("", tuple(links), tuple(_joints(lists))), max(bits, 0))
+    spec = _assembled(robot, max(bits, 0))
     poses = [Pose(place, pose.orientation) for place in batch or [pose.position]]
     ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
@@ -283,6 +287,24 @@ def _check_tree(parents: list[int]) -> None:
         hangs.update(way)
 
 
+def _alone(client: Client, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Robot:
+    """The description of a body without links: the same object for the same shapes, so it is made once."""
+    numbers = integer(collision_id, "collision shape"), integer(visual_id, "visual shape")
+    collision, visuals = client.shapes.collisions.get(numbers[0]), client.shapes.visuals.get(numbers[1])
+    collisions = None if collision is None else collision.collisions
+    kept = client.shapes.alone.get((mass, frame, *numbers))
+    # Numbers of removed shapes are given again, and heights of height fields replaced.
+    if kept is not None and kept[0] is collisions and kept[1] is visuals:
+        return kept[2]
+    robot = Robot("", (_link(client, 0, mass, frame, *numbers),), ())
+    missing = (collisions is None and numbers[0] >= 0) or (visuals is None and numbers[1] >= 0)
+    if not missing:
+        client.shapes.alone[(mass, frame, *numbers)] = collisions, visuals, robot
+        while len(client.shapes.alone) > _KEPT:
+            client.shapes.alone.popitem(last=False)
+    return robot
+
+
 def _link(client: Client, number: int, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Link:
     collision = _shape(client.shapes.collisions, collision_id, "collision")
     visuals = _shape(client.shapes.visuals, visual_id, "visual")
@@ -319,7 +341,7 @@ def _joint(
 
 def _assembled(robot: Robot, flags: int) -> BodySpec:
     from carom.layouts.flags import LoadFlags
-    from carom.model.assemble import assemble
+    from carom.soft.from_urdf import rigid_body
 
     of_files = (
         LoadFlags.MERGE_FIXED_LINKS
@@ -329,6 +351,6 @@ def _assembled(robot: Robot, flags: int) -> BodySpec:
     )
     kept = (LoadFlags(flags) & ~of_files) | LoadFlags.USE_IMPLICIT_CYLINDER
     try:
-        return assemble(robot, flags=kept, compound_margin=0.0)
+        return rigid_body(robot, flags=kept, compound_margin=0.0)
     except CaromError as problem:
         fail(_FAILED, str(problem))

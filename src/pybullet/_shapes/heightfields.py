@@ -118,7 +118,8 @@ def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
         implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         for link in range(-1, body.joint_count):
             spec = body.link_spec(link)
-            if all(collision.geometry is not old for collision in spec.collisions):
+            # Bodies made of the same shape may share their specification, which has the new heights then.
+            if not any(it.geometry is old or it.geometry is new for it in spec.collisions):
                 continue
             spec.collisions = tuple(
                 replace(it, geometry=new) if it.geometry is old else it for it in spec.collisions
