@@ -68,7 +68,10 @@ def inverse_mass_entry(model: Model, scratch: Scratch, world: Int32, tree: Int32
 @func
 def inverse_or_off(inverse_mass: real) -> real:
     """Effective mass of a row from its inverse mass; 0 if that is too small, as nothing can move."""
-    return 1.0 / inverse_mass if inverse_mass > LEAST_INVERSE_MASS else 0.0
+    # A conditional expression makes kernels of rows on GPUs spill registers.
+    if inverse_mass > LEAST_INVERSE_MASS:
+        return 1.0 / inverse_mass
+    return 0.0
 
 
 @func
