@@ -171,3 +171,10 @@ def _motors(body: int) -> list[float]:
 
     world = clients[0].world
     return world.motor[world.bodies[body].first_velocity :].ravel().tolist()
+
+
+@pytest.mark.parametrize("name", ["x" * 5000, "x\0y"])
+def test_a_mesh_to_simulate_may_have_any_name(client: int, name: str) -> None:
+    with pytest.raises(p.error, match="was not found"):
+        p.loadSoftBody("cloth_z_up.obj", simFileName=name)
+    assert p.getNumBodies() == 0

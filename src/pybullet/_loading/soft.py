@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from os.path import isfile
 from pathlib import Path
 from typing import Any
 
@@ -166,7 +167,8 @@ def _material(numbers: dict[str, Any]) -> dict[str, Any]:
 def _found(client: Client, name: str, beside: Path | None = None) -> Path:
     """Find a file in the search path, or else in the folder `beside`."""
     path = client.search().find(name)
-    if path is None and beside is not None and (beside / name).is_file():
+    # `Path.is_file` raises an error for names that are too long.
+    if path is None and beside is not None and isfile(beside / name):
         path = beside / name
     if path is None:
         fail(_CANNOT_LOAD, f"The file {name!r} was not found.")
