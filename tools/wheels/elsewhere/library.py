@@ -18,6 +18,7 @@ from typing import Any
 from tools.wheels.elsewhere.memory import Layouts, Memory
 
 from carom.native import library as native
+from carom.scene import changes
 
 _NAME_BYTES = 64
 _CALL = struct.Struct(f"<{_NAME_BYTES}s5Q")
@@ -180,3 +181,5 @@ class Elsewhere:
 def use(library: Elsewhere) -> None:
     """Have all calls of this process made elsewhere; before the first."""
     native._library = lambda: library  # type: ignore[assignment]
+    # Builtins of this process copy the rows of bodies that are made again: here each is made anew.
+    changes.pattern_of = lambda spec: None
