@@ -20,11 +20,9 @@ from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
-from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
-from carom.native.launch import KernelStructs, TreeLaunch
+from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
-from carom.record import record
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
@@ -35,30 +33,16 @@ from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
 from carom.world.loading import DescriptionLoading
+from carom.world.poses import Derived, PoseUpdates
 from carom.world.recordable import Recordable
 from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
-    from carom.queries.present_poses import PresentPoses
     from carom.queries.queries import Queries
     from carom.world.log import Log
 
 
-@record(frozen=False, hot=True)
-class Derived:
-    """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
-
-    step: Callable[[], None] | None = None
-    queries: Queries | None = None
-    present_poses: PresentPoses | None = None
-    pose_launch: TreeLaunch | None = None
-    twist_launch: TreeLaunch | None = None
-    layout: Layout | None = None
-    link_places: list[tuple[int, int]] | None = None
-    link_columns: tuple[list[int], list[int]] | None = None
-
-
-class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
+class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
@@ -573,44 +557,3 @@ class World(DescriptionLoading, SoftLoading, Recordable, StateViews):
         from carom.world.solver_report import solver_report
 
         return solver_report(self)
-
-    # Poses
-
-    def present_poses(self) -> PresentPoses:
-        """A context in which `link_pose` is up to date with the coordinates of all bodies."""
-        if self._derived.present_poses is None:
-            from carom.queries.present_poses import PresentPoses
-
-            poses = self.arrays.state.bytes_of("link_pose")
-            self._derived.present_poses = PresentPoses(poses, self._kernel_structs())
-        return self._derived.present_poses
-
-    def update_link_poses(self, body: Body) -> None:
-        """Bring `link_pose` up to date with the coordinates of a body."""
-        (self._derived.pose_launch or self.be_quick())(body.rows.tree)
-
-    def be_quick(self) -> TreeLaunch:
-        """Set the addresses that the fast paths in the native library use, after a change of the scene.
-
-        Returns:
-            A function that updates the link poses of a body.
-        """
-        if self._derived.pose_launch is None:
-            self.contact_arrays.shapes.reserve({"link": self.arrays.model.capacity["link"]})
-            self._derived.pose_launch = self.quick.know_poses(self.arrays, self.contact_arrays)
-        return self._derived.pose_launch
-
-    def update_soft_poses(self) -> None:
-        """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
-        if self.contact_arrays.soft.bodies:
-            if self._derived.step is None:
-                # Nodes anchored to the world are left out; `write_anchors` marks these.
-                self.contact_arrays.soft.write_anchors()
-            self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
-
-    def update_link_velocities(self, body: Body) -> None:
-        """Fill `link_velocity` for the present coordinates of a body."""
-        if self._derived.twist_launch is None:
-            self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
-            self.quick.know_twists(self._derived.twist_launch)
-        self._derived.twist_launch(body.rows.tree)

@@ -1,0 +1,88 @@
+"""Poses and velocities of links, brought up to date with the coordinates of a world."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from carom.engine.contact_arrays import ContactArrays
+from carom.engine.engine import Engine
+from carom.engine.quick_scene import QuickScene
+from carom.model.builder import WorldArrays
+from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
+from carom.native.launch import KernelStructs, TreeLaunch
+from carom.record import record
+from carom.scene.body import Body
+
+if TYPE_CHECKING:
+    from carom.queries.present_poses import PresentPoses
+    from carom.queries.queries import Queries
+    from carom.scene.snapshot import Layout
+
+
+@record(frozen=False, hot=True)
+class Derived:
+    """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
+
+    step: Callable[[], None] | None = None
+    queries: Queries | None = None
+    present_poses: PresentPoses | None = None
+    pose_launch: TreeLaunch | None = None
+    twist_launch: TreeLaunch | None = None
+    layout: Layout | None = None
+    link_places: list[tuple[int, int]] | None = None
+    link_columns: tuple[list[int], list[int]] | None = None
+
+
+class PoseUpdates(ABC):
+    """Updates of the poses and velocities that are computed only when they are asked for."""
+
+    arrays: WorldArrays
+    contact_arrays: ContactArrays
+    engine: Engine
+    quick: QuickScene
+    _derived: Derived
+
+    @abstractmethod
+    def _kernel_structs(self) -> KernelStructs:
+        """Structs of the present arrays, by the names of kernel arguments."""
+
+    def present_poses(self) -> PresentPoses:
+        """A context in which `link_pose` is up to date with the coordinates of all bodies."""
+        if self._derived.present_poses is None:
+            from carom.queries.present_poses import PresentPoses
+
+            poses = self.arrays.state.bytes_of("link_pose")
+            self._derived.present_poses = PresentPoses(poses, self._kernel_structs())
+        return self._derived.present_poses
+
+    def update_link_poses(self, body: Body) -> None:
+        """Bring `link_pose` up to date with the coordinates of a body."""
+        (self._derived.pose_launch or self.be_quick())(body.rows.tree)
+
+    def be_quick(self) -> TreeLaunch:
+        """Set the addresses that the fast paths in the native library use, after a change of the scene.
+
+        Returns:
+            A function that updates the link poses of a body.
+        """
+        if self._derived.pose_launch is None:
+            self.contact_arrays.shapes.reserve({"link": self.arrays.model.capacity["link"]})
+            self._derived.pose_launch = self.quick.know_poses(self.arrays, self.contact_arrays)
+        return self._derived.pose_launch
+
+    def update_soft_poses(self) -> None:
+        """Bring the poses and velocities of all soft bodies as a whole up to date with their nodes."""
+        if self.contact_arrays.soft.bodies:
+            if self._derived.step is None:
+                # Nodes anchored to the world are left out; `write_anchors` marks these.
+                self.contact_arrays.soft.write_anchors()
+            self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
+
+    def update_link_velocities(self, body: Body) -> None:
+        """Fill `link_velocity` for the present coordinates of a body."""
+        if self._derived.twist_launch is None:
+            self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
+            self.quick.know_twists(self._derived.twist_launch)
+        self._derived.twist_launch(body.rows.tree)
