@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,26 @@ def test_arrays_where_numbers_belong_are_refused(arm: int) -> None:
     for call in calls:
         with pytest.raises((p.error, TypeError)):
             call()
+
+
+@pytest.mark.parametrize("flags", [0, 1])
+@pytest.mark.parametrize("size", [1e100, 1e160, 1e299, 1.7e308])
+@pytest.mark.parametrize("name", ["kuka_iiwa/model.urdf", "franka_panda/panda.urdf", "cartpole.urdf"])
+def test_dynamics_of_numbers_beyond_all_bounds(client: int, name: str, size: float, flags: int) -> None:
+    robot = p.loadURDF(name)
+    joints = p.computeDofCount(robot)
+    here, fast, still = [0, 0, 0, 0, 0, 0, 1] + [size] * joints, [size] * (joints + 6), [0] * (joints + 6)
+    calls: list[Callable[[], Any]] = [
+        lambda: p.calculateInverseDynamics(robot, here, [*fast, 0][: len(here)], fast, flags),
+        lambda: p.calculateInverseDynamics(robot, here, [*fast, 0][: len(here)], still, flags),
+        lambda: p.calculateInverseDynamics(robot, here, fast, still, flags),
+        lambda: p.calculateMassMatrix(robot, here[7:], flags),
+        lambda: p.calculateMassMatrix(robot, here, flags),
+        lambda: p.calculateJacobian(robot, joints - 1, [size] * 3, here[7:], here[7:], here[7:]),
+    ]
+    for call in calls:
+        with suppress(p.error):
+            assert np.isfinite(np.hstack(call()).ravel()).all()
 
 
 def test_logs_take_numbers_that_single_precision_does_not(client: int, tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ class ExtendedModel:
         turn[:3, :3] = turn[3:6, 3:6] = _rotation(position)
         matrix = np.zeros((self.size, self.size))
         matrix[np.ix_(self._places, self._places)] = product(product(turn, moving), turn.T)
-        return matrix
+        return _finite(matrix, "mass matrix is")
 
     def bias_forces(self, position: np.ndarray, rate: np.ndarray, gravity: Vector3) -> np.ndarray:
         """Generalized forces of inertia and gravity (`gravity` in m/s²) at zero acceleration, (size,)."""
@@ -64,7 +64,7 @@ class ExtendedModel:
         forces[:3], forces[3:6] = dots(rotation, forces[:3]), dots(rotation, forces[3:6])
         result = np.zeros(self.size)
         result[self._places] = forces
-        return result
+        return _finite(result, "forces are")
 
 
 def base_motion(
@@ -88,6 +88,13 @@ def base_motion(
     return (*own_omega, 0.0, 0.0, 0.0, *acceleration)
 
 
+def _finite(values: np.ndarray, name: str) -> np.ndarray:
+    """The values; raises `ValueError` if one is not finite."""
+    if not np.isfinite(values).all():
+        raise ValueError(f"the {name} not finite")
+    return values
+
+
 def _rotation(position: np.ndarray) -> np.ndarray:
     x, y, z, w = position[3:BASE_POSITIONS].tolist()
     return np.array(rotation_matrix((x, y, z, w)))
@@ -101,7 +108,7 @@ def extended_mass_matrix(body: Body, positions: Sequence[float]) -> np.ndarray:
     quaternion (x, y, z, w) for a spherical joint.
 
     Raises:
-        ValueError: A joint is planar.
+        ValueError: A joint is planar, or the entries overflow.
         DescriptionError: The file of a collision mesh cannot be used.
     """
     matrix = _model(body).mass_matrix(_with_base(body, positions, _base_pose(body)))

@@ -31,6 +31,9 @@ def jacobian(
     Returns:
         Matrices J with velocity = J rates, in axes of the base's inertial frame, each of shape (3, n); for a
         free body (3, 6 + n), the base first: angular, then linear.
+
+    Raises:
+        ValueError: The entries overflow.
     """
     mechanism = mechanism_of(body)
     linear, angular = mechanism.jacobian(link, local_position, positions)

@@ -23,6 +23,9 @@ def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarr
     Returns:
         Symmetric matrix, shape (n, n); for a free body (6 + n, 6 + n), the base first: angular, then linear
         velocity in its own axes.
+
+    Raises:
+        ValueError: The entries overflow.
     """
     mechanism = mechanism_of(body)
     return np.array(mechanism.mass_matrix(positions)).reshape(mechanism.dofs, mechanism.dofs)

@@ -117,17 +117,21 @@ class Mechanism:
         return forces
 
     def mass_matrix(self, positions: Numbers) -> Rows:
-        """Rows of the symmetric mass matrix, (`dofs`, `dofs`), at joint positions as in `forces`."""
+        """Rows of the symmetric mass matrix, (`dofs`, `dofs`), at joint positions as in `forces`.
+
+        Raises:
+            ValueError: The entries overflow.
+        """
         self._put_positions(*positions)
         self._find_mass_matrix()
-        return self._rows(self._matrix)
+        return _finite(self._rows(self._matrix), "mass matrix")
 
     def jacobian(self, link: int, point: Numbers, positions: Numbers) -> tuple[Rows, Rows]:
         """Linear and angular Jacobian of a point on a link (-1 is the base), each (3, `dofs`).
 
         The point is an offset from the link frame's origin, for the base from its centre of mass, along the
         axes of the inertial frame [m]; joint positions are (`coordinates`,). Raises `ValueError` if there is
-        no such link.
+        no such link, or the entries overflow.
         """
         find = self._jacobians.get(link)
         if find is None:
@@ -136,7 +140,7 @@ class Mechanism:
         self._put_point(*point)
         self._put_positions(*positions)
         find()
-        rows = self._rows(self._output)
+        rows = _finite(self._rows(self._output), "Jacobian")
         return rows[:3], rows[3:]
 
     @cached_property
@@ -197,6 +201,13 @@ class Mechanism:
             self.arrays["end_node"][index] = end.node
             self.arrays["end_turn"][index] = end.rotation
             self.arrays["end_origin"][index] = end.origin
+
+
+def _finite(rows: Rows, name: str) -> Rows:
+    """The rows of a matrix, whose first entry is NaN if any is not finite; raises `ValueError` then."""
+    if rows and rows[0][0] != rows[0][0]:
+        raise ValueError(f"the {name} is not finite")
+    return rows
 
 
 def mechanism_of(body: Body) -> Mechanism:

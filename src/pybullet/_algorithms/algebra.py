@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from math import inf
 from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
@@ -92,7 +93,7 @@ def calculateInverseDynamics(
         Forces [N m or N], one for each velocity. Those on a floating base are linear, then angular.
 
     Raises:
-        pybullet.error: Not connected, there is no such body, or the lists do not fit it.
+        pybullet.error: Not connected, there is no such body, the lists do not fit it, or the forces overflow.
 
     Examples:
         >>> torques = p.calculateInverseDynamics(arm, [0, 1, 0, 0, 0, 0, 0], [0] * 7, [0] * 7)
@@ -141,17 +142,16 @@ def calculateInverseDynamics(
         from carom.algorithms.extended_model import extended_bias_forces
 
         _check_extended(body, q, _INVERSE_DYNAMICS)
-        return tuple(extended_bias_forces(body, q, qd).tolist())
+        with _refusing_overflow(_INVERSE_DYNAMICS):
+            return tuple(extended_bias_forces(body, q, qd).tolist())
 
     from carom.algorithms.mechanism import mechanism_of
 
     if floating:
         _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
     forces = client.bodies.forces_of_motion[body.id] = mechanism_of(body).forces_in_pybullet
-    try:
+    with _refusing_overflow(_INVERSE_DYNAMICS):
         return forces(client.world.parameters.gravity, q, qd, qdd)
-    except ValueError as problem:
-        fail(_INVERSE_DYNAMICS, f"{problem}.")
 
 
 @exported
@@ -183,8 +183,8 @@ def calculateJacobian(
         six columns for its angular and linear velocity come first.
 
     Raises:
-        pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, or
-            the lists do not fit the body.
+        pybullet.error: Not connected, there is no such body or link, a joint is spherical or planar, the
+            lists do not fit the body, or the result overflows.
 
     Examples:
         >>> linear, angular = p.calculateJacobian(arm, 6, [0, 0, 0], [0] * 7, [0] * 7, [0] * 7)
@@ -222,7 +222,8 @@ def calculateJacobian(
 
     from carom.algorithms import jacobian
 
-    linear, angular = jacobian(body, link, values["localPosition"], values["objPositions"])
+    with _refusing_overflow(_JACOBIAN_SIZES):
+        linear, angular = jacobian(body, link, values["localPosition"], values["objPositions"])
     return _rows(linear), _rows(angular)
 
 
@@ -247,7 +248,8 @@ def calculateMassMatrix(
         come first.
 
     Raises:
-        pybullet.error: Not connected, there is no such body, or there are too few positions.
+        pybullet.error: Not connected, there is no such body, there are too few positions, or the result
+            overflows.
 
     Examples:
         >>> matrix = p.calculateMassMatrix(arm, [0] * 7)
@@ -274,11 +276,22 @@ def calculateMassMatrix(
         from carom.algorithms.extended_model import extended_mass_matrix
 
         _check_extended(body, q, problem)
-        return _rows(extended_mass_matrix(body, q[:needed]))
+        with _refusing_overflow(problem):
+            return _rows(extended_mass_matrix(body, q[:needed]))
 
     from carom.algorithms import mass_matrix
 
-    return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
+    with _refusing_overflow(problem):
+        return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
+
+
+@contextmanager
+def _refusing_overflow(problem: str) -> Iterator[None]:
+    """Turn the `ValueError` of numbers whose results are not finite into `pybullet.error`."""
+    try:
+        yield
+    except ValueError as overflow:
+        fail(problem, f"{overflow}.")
 
 
 def joint_coordinates(body: Body, values: tuple[float, ...]) -> tuple[float, ...]:

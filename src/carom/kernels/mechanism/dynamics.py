@@ -364,16 +364,28 @@ def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
 
 @kernel
 def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
-    """Compute the mass matrix in `matrix`, at the positions in `input`."""
+    """Compute the mass matrix in `matrix`, at the positions in `input`.
+
+    Its first entry is NaN if any is not finite, so that only one number has to be checked.
+    """
     place_nodes(mechanism, sizes.nodes)
     for node in range(sizes.nodes):
         place_in_base(mechanism, node)
     composite_inertia(sizes, mechanism)
+    # No entry is greater than the greatest on the diagonal.
+    zero = real(0.0)
+    for dof in range(sizes.dofs):
+        zero += 0.0 * mechanism.matrix[dof * sizes.dofs + dof]
+    if wp.isnan(zero):
+        mechanism.matrix[0] = zero
 
 
 @kernel
 def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32):
-    """Compute the Jacobian of a point in `output`: three rows of linear, then three of angular velocity."""
+    """Compute the Jacobian of a point in `output`: three rows of linear, then three of angular velocity.
+
+    Its first entry is NaN if any is not finite, so that only one number has to be checked.
+    """
     last = mechanism.end[end].node
     place_nodes(mechanism, last + 1)
     for node in range(last + 1):
@@ -382,13 +394,17 @@ def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32
     point = mechanism.motion[last].position + mechanism.motion[last].rotation * on_node
     for entry in range(6 * sizes.dofs):
         mechanism.output[entry] = 0.0
+    zero = real(0.0)
     node = last + 0
     while node >= 0:
         first = mechanism.node[node].first_dof
         for dof in range(first, first + mechanism.node[node].dof_count):
             angular = mechanism.axis[dof].angular
             linear = mechanism.axis[dof].linear + wp.cross(angular, point)
+            zero += 0.0 * (linear[0] + linear[1] + linear[2])
             for row in range(3):
                 mechanism.output[row * sizes.dofs + dof] = linear[row]
                 mechanism.output[(3 + row) * sizes.dofs + dof] = angular[row]
         node = mechanism.node[node].parent
+    if wp.isnan(zero):
+        mechanism.output[0] = zero
