@@ -9,13 +9,14 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from carom.scene.constraint_rows import ConstraintRows
 from carom.world.world import World
 from pybullet._clients.clients import clients
 
 ROBOT = f"{pybullet_data.getDataPath()}/kuka_iiwa/model.urdf"
 
 
-def _story(seed: int) -> list[Any]:
+def _story(seed: int, *, floor: bool) -> list[Any]:
     """What a script sees that ties, unties, changes and steps a world at random."""
     random = Random(seed)
     client = p.connect(p.DIRECT)
@@ -23,15 +24,18 @@ def _story(seed: int) -> list[Any]:
     try:
         p.setGravity(0, 0, -10, physicsClientId=client)
         box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
-        p.createMultiBody(
-            0, p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client), physicsClientId=client
-        )
-        p.loadURDF(ROBOT, [0, 0, 0.5], useFixedBase=random.random() < 0.5, physicsClientId=client)
+        if floor:
+            plane = p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client)
+            p.createMultiBody(0, plane, physicsClientId=client)
+        for number in range(1 if floor else 3):
+            place = [0, 0, 0.5 + 2 * number]
+            p.loadURDF(ROBOT, place, useFixedBase=random.random() < 0.5, physicsClientId=client)
         for number in range(3):
-            p.createMultiBody(1.0, box, basePosition=[1, 0, 0.1 + 0.21 * number], physicsClientId=client)
+            shape = box if floor else -1
+            p.createMultiBody(1.0, shape, basePosition=[1, 0, 0.1 + 0.21 * number], physicsClientId=client)
         ties: list[int] = []
         for _ in range(60):
-            bodies = [body for body in clients[client].world.bodies if body > 0]
+            bodies = [body for body in clients[client].world.bodies if body > 0 or not floor]
             a, b = random.choice(bodies), random.choice([-1, *bodies])
             what = random.choice(["tie", "tie", "untie", "step", "step", "step", "weigh", "place", "near"])
             if what == "tie" and a != b:
@@ -61,10 +65,42 @@ def _story(seed: int) -> list[Any]:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_what_is_kept_is_what_would_be_made_anew(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    kept = _story(seed)
+@pytest.mark.parametrize("floor", [True, False], ids=["on a floor", "apart"])
+def test_what_is_kept_is_what_would_be_made_anew(
+    floor: bool, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = _story(seed, floor=floor)
     monkeypatch.setattr(World, "constraints_changed", World.scene_changed)
-    assert kept == _story(seed)
+    assert kept == _story(seed, floor=floor)
+
+
+def test_rows_of_other_constraints_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What ties and unties a body in each step does not make the rows of all motors anew."""
+    client = p.connect(p.DIRECT)
+    try:
+        p.loadURDF(ROBOT, useFixedBase=True, physicsClientId=client)
+        body = p.createMultiBody(1.0, physicsClientId=client)
+
+        def tie_and_untie() -> None:
+            ties = [
+                p.createConstraint(body, -1, -1, -1, kind, [0] * 3, [0] * 3, [0] * 3, physicsClientId=client)
+                for kind in (p.JOINT_FIXED, p.JOINT_POINT2POINT)
+            ]
+            p.stepSimulation(client)
+            for tie in ties:
+                p.removeConstraint(tie, physicsClientId=client)
+            p.stepSimulation(client)
+
+        tie_and_untie()
+        monkeypatch.setattr(ConstraintRows, "sort", _refuse)
+        for _ in range(3):
+            tie_and_untie()
+    finally:
+        p.disconnect(client)
+
+
+def _refuse(*_: Any) -> None:
+    raise AssertionError("what was there has been made anew")
 
 
 def test_launches_are_those_of_before(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,11 +120,8 @@ def test_launches_are_those_of_before(monkeypatch: pytest.MonkeyPatch) -> None:
 
         tie_and_step()
 
-        def refuse(*_: Any) -> None:
-            raise AssertionError("a program was loaded")
-
         engine = clients[client].world.engine
-        monkeypatch.setattr(engine, "_make_program", refuse)
+        monkeypatch.setattr(engine, "_make_program", _refuse)
         for _ in range(3):
             tie_and_step()
     finally:

@@ -93,6 +93,7 @@ class Engine:
         self._plan_before: Plan | None = None
         # The plan and the structs of the current launches of steps.
         self._loaded_for: tuple[Any, ...] | None = None
+        self._tables = self._all_tables()
         # The structs and counts of rows for which structs were bound last.
         self._bound: tuple[list[Any], tuple[int, ...]] = [], ()
         self._watched = False
@@ -126,7 +127,7 @@ class Engine:
 
     def structs(self) -> KernelStructs:
         """Structs over the current arrays, by the names of kernel arguments, for one thread."""
-        return self._bind([self.workspace])[0]
+        return self._bind()[0]
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
@@ -134,29 +135,29 @@ class Engine:
             for workspace in self._workspaces:
                 workspace.structs.changed("settings")
 
-    def _bind(self, workspaces: Sequence[Workspace]) -> list[KernelStructs]:
-        """Structs over the current arrays for some threads; the arrays are made longer if necessary."""
-        arrays, contact_arrays, soft = self.arrays, self.contact_arrays, self.contact_arrays.soft
-        tables = [arrays.model, arrays.state, contact_arrays.shapes.table, contact_arrays.contacts]
-        tables += [contact_arrays.users, soft.table]
-        for workspace in workspaces:
-            tables += workspace.tables
-        counts = (contact_arrays.user_count, contact_arrays.shapes.shape_count, len(soft.bodies))
-        counts = (*arrays.used.values(), *counts)
-        structs = [table.struct() for table in tables]
+    def _bind(self) -> list[KernelStructs]:
+        """Structs over the current arrays for each thread; the arrays are made longer if necessary."""
+        contact_arrays = self.contact_arrays
+        counts = (
+            *self.arrays.used.values(),
+            contact_arrays.user_count,
+            contact_arrays.shapes.shape_count,
+            len(contact_arrays.soft.bodies),
+        )
+        structs = [table.struct() for table in self._tables]
         if self.keeps_structs and structs == self._bound[0] and all(map(le, counts, self._bound[1])):
             # No array has been replaced since, and all were long enough for more rows than these.
-            return [workspace.structs for workspace in workspaces]
+            return [workspace.structs for workspace in self._workspaces]
         self.contact_arrays.reserve()
-        for workspace in workspaces:
+        for workspace in self._workspaces:
             workspace.fit(self.arrays, self.contact_arrays)
         shared: dict[str, Any] = {
             "settings": self._settings.struct,
             **self.arrays.structs(),
             **self.contact_arrays.structs(),
         }
-        bound = [workspace.bind(shared) for workspace in workspaces]
-        self._bound = [table.struct() for table in tables], counts
+        bound = [workspace.bind(shared) for workspace in self._workspaces]
+        self._bound = [table.struct() for table in self._tables], counts
         return bound
 
     # Steps
@@ -169,8 +170,8 @@ class Engine:
         """
         self._watched = watched
         plan = self._find_plan()
-        bound = self._bind(self._workspaces)
-        loading_for = (plan, *(struct for structs in bound for struct in structs.values()))
+        bound = self._bind()
+        loading_for = plan, *self._bound[0]
         # Structs are the same objects until arrays are replaced.
         if self._loaded_for == loading_for:
             return
@@ -302,6 +303,15 @@ class Engine:
         """A table that kernels can use together with those of the worlds."""
         return ArrayTable(struct)
 
+    def _all_tables(self) -> list[ArrayTable]:
+        """The tables whose structs kernels are given."""
+        of_contacts = self.contact_arrays
+        tables = [self.arrays.model, self.arrays.state, of_contacts.shapes.table, of_contacts.contacts]
+        tables += [of_contacts.users, of_contacts.soft.table]
+        for workspace in self._workspaces:
+            tables += workspace.tables
+        return tables
+
     def _make_status(self) -> np.ndarray:
         return self.arrays.state.numpy["status_entry"]
 
@@ -372,7 +382,7 @@ class Engine:
 
     def load(self, interpreters: list[Stepper], program: Callable[[KernelStructs], Program]) -> None:
         """Give a program to the interpreter of each thread, over the structs of that thread."""
-        self._load(interpreters, self._bind(self._workspaces), program)
+        self._load(interpreters, self._bind(), program)
 
     def _load(
         self,

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
-from carom.layouts.codes import LIMIT_KIND, MAX_ROWS_PER_CONSTRAINT, MOTOR_KIND, ConstraintKind, JointCode
+from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
-from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
-from carom.native.tables import ArrayTable
+from carom.model.solver_order import IslandTags, remove_unordered
 from carom.record import record
+from carom.scene.constraint_rows import ConstraintRows
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
 if TYPE_CHECKING:
@@ -55,13 +54,13 @@ class JointConstraints:
     Attributes:
         all: All constraints; the solver's order depends on the order of this list.
         tags: The numbers of the islands, which depend on the order of its list of links.
+        rows: Their rows in the arrays.
     """
 
     def __init__(self) -> None:
         self.all: list[JointConstraint] = []
         self.tags: IslandTags = IslandTags()
-        # What the rows of the model's fields are known to contain.
-        self._written: dict[str, list[Any]] = {}
+        self.rows: ConstraintRows = ConstraintRows()
 
     def add_body(self, body: Body) -> None:
         """Append the limits, then the motors, of a new body."""
@@ -94,6 +93,7 @@ class JointConstraints:
         def go_back() -> None:
             del constraints[count:]
             self.all = constraints
+            self.rows.forget()
             forget_links()
 
         return go_back
@@ -129,43 +129,34 @@ class JointConstraints:
 
     def add_user(self, user: UserConstraint) -> None:
         """Append a user constraint."""
-        self.all.append(JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user))
+        constraint = JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user)
+        self.all.append(constraint)
+        if self._is_active(constraint):
+            self.rows.note(constraint, added=True)
 
     def user_removal(self, user: UserConstraint) -> Callable[[], None]:
         """Prepare to remove a user constraint; the function returned can be called again."""
-        rows = [constraint.user for constraint in self.all]
-        return partial(setattr, self, "all", self._all_but(self.all[rows.index(user)]))
+        constraint = next(constraint for constraint in reversed(self.all) if constraint.user is user)
+        kept = self._all_but(constraint)
+
+        def remove() -> None:
+            if self.all is not kept and self._is_active(constraint):
+                self.all = kept
+                self.rows.note(constraint, added=False)
+            else:
+                self.all = kept
+                self.rows.forget()
+
+        return remove
 
     def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
         kept = self.all.copy()
         remove_unordered(kept, constraint)
         return kept
 
-    def _by_island(self) -> tuple[list[JointConstraint], list[int]]:
-        """The active constraints, and the island of each.
-
-        A constraint between two bodies merges their islands; one between two fixed bodies is not active.
-        """
-        tags = self.tags.tags()
-        above: dict[int, int] = {}
-
-        def root(tag: int) -> int:
-            while (higher := above.get(tag, tag)) != tag:
-                tag = higher
-            return tag
-
-        for constraint in self.all:
-            user = constraint.user
-            if (
-                user is not None
-                and user.child is not None
-                and user.child.id in tags
-                and user.parent.id in tags
-            ):
-                parent, child = root(tags[user.parent.id]), root(tags[user.child.id])
-                above[parent] = child
-        active = [constraint for constraint in self.all if constraint.moving_body.id in tags]
-        return active, [root(tags[constraint.moving_body.id]) for constraint in active]
+    def _is_active(self, constraint: JointConstraint) -> bool:
+        """Whether a constraint can move something: one between two fixed bodies is not active."""
+        return constraint.moving_body.id in self.tags.tags()
 
     def _moving_links(self) -> list[tuple[int, int]]:
         """Body and link (the base is 0) of all links that can move, as Bullet numbers them."""
@@ -193,7 +184,7 @@ class JointConstraints:
         user_rows: dict[int, int],
         minimum_island_size: int,
     ) -> None:
-        """Write the sorted constraints, the numbers of links, and which trees are solved together.
+        """Bring the rows of the constraints, and the numbers of links, up to date.
 
         Args:
             arrays: The arrays of the world.
@@ -201,64 +192,14 @@ class JointConstraints:
             user_rows: Row of each user constraint, by number.
             minimum_island_size: Islands are merged until they have more constraints than this.
         """
-        constraints, keys = self._by_island()
-        order = quicksort_order(keys)
-        islands = batch_islands([keys[i] for i in order], minimum_island_size)
-        ordered = [constraints[i] for i in order]
-        users = [constraint.user for constraint in ordered if constraint.user is not None]
-        count = len(ordered)
-        used = {"constraint": count, "row": count * MAX_ROWS_PER_CONSTRAINT}
-        arrays.model.reserve(used)
-        arrays.state.reserve(used)
-        arrays.used.update(used)
+        if self.rows.update(arrays, user_rows):
+            return
         numbers = [-1] * arrays.used["link"]
         for number, (body, link) in enumerate(self._moving_links()):
             numbers[bodies[body].first_link + link] = number
-        trees = [constraint.moving_body.rows.tree for constraint in ordered]
-        tree_count = arrays.used["tree"]
-        counts, batches = [0] * tree_count, list(range(tree_count))
-        first_constraints, lengths = [0] * tree_count, [0] * tree_count
-        for tree in (*trees, *[user.child.rows.tree for user in users if user.child is not None]):
-            counts[tree] += 1
-        for first, length in islands:
-            root = min(trees[first : first + length])
-            for tree in trees[first : first + length]:
-                batches[tree] = root
-            first_constraints[root], lengths[root] = first, length
-        fields = {
-            "constraint_kind": [constraint.kind for constraint in ordered],
-            "constraint_tree": trees,
-            "constraint_link": [
-                constraint.body.first_link + 1 + constraint.joint
-                if constraint.user is None
-                else user_rows[constraint.user.id]
-                for constraint in ordered
-            ],
-            "constraint_place": order,
-            "constraint_lower": [constraint.lower for constraint in ordered],
-            "constraint_upper": [constraint.upper for constraint in ordered],
-            "constraint_twist": [constraint.twist for constraint in ordered],
-            "constraint_max_impulse": [constraint.max_impulse for constraint in ordered],
-            "link_number": numbers,
-            "tree_constraint_count": counts,
-            "tree_batch": batches,
-            "tree_first_constraint": first_constraints,
-            "tree_batch_constraints": lengths,
-        }
-        self._write_fields(arrays.model, fields)
-
-    def forget_written(self) -> None:
-        """Write all fields the next time: the arrays may have other contents now."""
-        self._written = {}
-
-    def _write_fields(self, model: ArrayTable, fields: dict[str, list[Any]]) -> None:
-        """Set the first rows of those fields that have changed, in all worlds."""
-        # Until all have been written, none is known.
-        written, self._written = self._written, {}
-        for name, values in fields.items():
-            if written.get(name) != values:
-                model.numpy[name][..., : len(values)] = values
-        self._written = fields
+        arrays.model.numpy["link_number"][: len(numbers)] = numbers
+        active = [constraint for constraint in self.all if self._is_active(constraint)]
+        self.rows.sort(arrays, active, self.tags.tags(), user_rows, minimum_island_size)
 
 
 def moving_links(body: Body) -> list[bool]:

@@ -42,6 +42,8 @@ _FIELDS = (
     "user_frame_b",
     "user_axis",
 )
+# Terms of a row whose contents are not known.
+_UNKNOWN = (None,) * (1 + len(_FIELDS))
 
 
 @record(frozen=False, eq=False, hot=True)
@@ -218,10 +220,12 @@ class UserConstraints:
         written, self._written = self._written, []
         now = [constraint.terms() for constraint in self._by_id.values()]
         for row, terms in enumerate(now):
-            if row >= len(written) or terms != written[row]:
+            known = written[row] if row < len(written) else _UNKNOWN
+            if terms != known:
                 *shared, users["user_enabled"][:, row] = terms
-                for field, value in zip(_FIELDS, shared, strict=True):
-                    users[field][row] = value
+                for field, value, old in zip(_FIELDS, shared, known, strict=False):
+                    if value != old:
+                        users[field][row] = value
         self._written = now
         contact_arrays.forget_order()
 

@@ -328,7 +328,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         self.quick.forget()
         self._derived = Derived()
         self._made_for: tuple[int, int] | None = None
-        self.constraints.forget_written()
+        self.constraints.rows.forget()
         self.user_constraints.forget_written()
         self.engine.changed()
         if self.arrays.state is not self._viewed or self.arrays.state.replacements != self._replacements:

@@ -8,7 +8,7 @@ from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import UserConstraintKind
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
-from pybullet._calls.constants import JOINT_FIXED, JOINT_GEAR, JOINT_POINT2POINT, JOINT_PRISMATIC
+from pybullet._calls.constants import JOINT_GEAR, JOINT_POINT2POINT
 from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
 from pybullet._clients.clients import Client, client_of
@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 _WORLD = -1
-_KINDS = (JOINT_PRISMATIC, JOINT_FIXED, JOINT_POINT2POINT, JOINT_GEAR)
+_KINDS = {int(kind): kind for kind in UserConstraintKind}
 _FAILED = "createConstraint failed."
 _CHANGE_FAILED = "changeConstraint failed."
 _UNCHANGED_TARGET = 1e32
@@ -95,9 +95,9 @@ def createConstraint(
     if integer(childBodyUniqueId, "childBodyUniqueId") >= 0:
         child = _body(client, childBodyUniqueId, "childBodyUniqueId")
         child_link = link_of(child, childLinkIndex, "childLinkIndex", _FAILED)
-    kind = integer(jointType, "jointType")
-    if kind not in _KINDS:
-        fail(_FAILED, f"jointType is {kind}; expected JOINT_POINT2POINT, _FIXED, _PRISMATIC or _GEAR.")
+    kind = _KINDS.get(integer(jointType, "jointType"))
+    if kind is None:
+        fail(_FAILED, f"jointType is {jointType}; expected JOINT_POINT2POINT, _FIXED, _PRISMATIC or _GEAR.")
     if kind == JOINT_GEAR:
         _check_gear(parent, parent_link, child, child_link)
 
@@ -106,7 +106,7 @@ def createConstraint(
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     with client.lock:
         constraint = client.world.tie(
-            UserConstraintKind(kind),
+            kind,
             parent,
             parent_link,
             child,
