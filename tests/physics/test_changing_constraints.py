@@ -37,13 +37,17 @@ def _story(seed: int, *, floor: bool) -> list[Any]:
         for _ in range(60):
             bodies = [body for body in clients[client].world.bodies if body > 0 or not floor]
             a, b = random.choice(bodies), random.choice([-1, *bodies])
-            what = random.choice(["tie", "tie", "untie", "step", "step", "step", "weigh", "place", "near"])
+            what = random.choice(
+                ["tie", "tie", "untie", "untie", "pull", "step", "step", "step", "weigh", "place", "near"]
+            )
             if what == "tie" and a != b:
                 kind = random.choice([p.JOINT_FIXED, p.JOINT_POINT2POINT])
                 ends = [0.0, 0.0, 0.2], [random.uniform(-0.3, 0.3) for _ in range(3)]
                 ties.append(p.createConstraint(a, -1, b, -1, kind, [0, 0, 0], *ends, physicsClientId=client))
             elif what == "untie" and ties:
                 p.removeConstraint(ties.pop(random.randrange(len(ties))), physicsClientId=client)
+            elif what == "pull" and ties:
+                p.changeConstraint(random.choice(ties), [0, 0, 1], maxForce=9.0, physicsClientId=client)
             elif what == "step":
                 p.stepSimulation(client)
             elif what == "weigh":
@@ -54,6 +58,8 @@ def _story(seed: int, *, floor: bool) -> list[Any]:
                 seen.append(p.getClosestPoints(a, 0, 1.0, physicsClientId=client))
             elif random.random() < 0.2:
                 p.createMultiBody(1.0, box, basePosition=[2, 0, 1], physicsClientId=client)
+            elif random.random() < 0.2:
+                p.loadURDF(ROBOT, [0, 0, 10 + 2 * len(bodies)], useFixedBase=True, physicsClientId=client)
             seen += [
                 (p.getBasePositionAndOrientation(body, client), p.getBaseVelocity(body, client))
                 for body in bodies
@@ -126,3 +132,31 @@ def test_launches_are_those_of_before(monkeypatch: pytest.MonkeyPatch) -> None:
             tie_and_step()
     finally:
         p.disconnect(client)
+
+
+def _robot_after_a_tie() -> list[Any]:
+    """Joints of a robot that was loaded while a body was tied, after that was let go."""
+    client = p.connect(p.DIRECT)
+    try:
+        p.setGravity(0, 0, -10, physicsClientId=client)
+        body = p.createMultiBody(1.0, physicsClientId=client)
+        tie = p.createConstraint(
+            body, -1, -1, -1, p.JOINT_FIXED, [0] * 3, [0] * 3, [0] * 3, physicsClientId=client
+        )
+        robot = p.loadURDF(ROBOT, useFixedBase=True, physicsClientId=client)
+        for joint in range(7):
+            p.setJointMotorControl2(robot, joint, p.POSITION_CONTROL, 0.5, force=80, physicsClientId=client)
+        p.stepSimulation(client)
+        p.removeConstraint(tie, physicsClientId=client)
+        for _ in range(20):
+            p.stepSimulation(client)
+        return [p.getJointState(robot, joint, client) for joint in range(7)]
+    finally:
+        p.disconnect(client)
+
+
+def test_motors_are_relaxed_in_the_order_that_a_removal_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The last motor takes the place of the tie in Bullet's list, so all have to be sorted again."""
+    kept = _robot_after_a_tie()
+    monkeypatch.setattr(World, "constraints_changed", World.scene_changed)
+    assert kept == _robot_after_a_tie()
