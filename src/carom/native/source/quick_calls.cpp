@@ -39,7 +39,17 @@ struct QuickCall {
     int32_t is_flat;  // there is one group, and it is the result
 };
 
+// What follows from the parameters of a call, found once.
+struct Arrangement {
+    double missing[MOST_NUMBERS];  // the numbers of a call without arguments
+    int32_t number_count;
+    uint32_t required;  // a bit for each parameter
+    int32_t first_number[MOST_PARAMETERS], sequence[MOST_PARAMETERS];
+    int32_t body, connection;  // indices of these numbers, -1 if there is no such parameter
+};
+
 QuickCall calls[MOST_CALLS];
+Arrangement arrangements[MOST_CALLS];
 const Client* clients[MOST_CLIENTS];
 
 bool read_number(PyObject* value, double* number) {
@@ -86,8 +96,32 @@ int width_of(int kind) {
     return kind == '-' || kind == 's' || kind == 'v' ? 0 : kind == '3' ? 3 : kind == '4' || kind == 'q' ? 4 : 1;
 }
 
+bool is_sequence(int kind) { return kind == 's' || kind == 'v'; }
+
+Arrangement arranged(const QuickCall& made) {
+    Arrangement arrangement = {};
+    arrangement.body = arrangement.connection = -1;
+    int sequence_count = 0;
+    for (int i = 0; i < made.parameter_count; ++i) {
+        const Parameter& parameter = made.parameters[i];
+        const int first = arrangement.number_count;
+        arrangement.first_number[i] = first;
+        for (int k = 0; k < width_of(parameter.kind); ++k)
+            arrangement.missing[arrangement.number_count++] = parameter.missing;
+        if (is_sequence(parameter.kind))
+            arrangement.sequence[i] = sequence_count++;
+        if (parameter.is_required)
+            arrangement.required |= 1u << i;
+        if (parameter.kind == 'b')
+            arrangement.body = first;
+        if (parameter.kind == 'c')
+            arrangement.connection = first;
+    }
+    return arrangement;
+}
+
 // Reads an argument; false if it is not of this kind.
-bool read(int kind, PyObject* value, double* numbers, Call* call) {
+bool read(int kind, PyObject* value, double* numbers, PyObject** sequence) {
     switch (kind) {
     case '-':  // not used
         return true;
@@ -107,10 +141,10 @@ bool read(int kind, PyObject* value, double* numbers, Call* call) {
         return LEAST_SQUARE < squared && squared < GREATEST_SQUARE;
     }
     case 'v':  // numbers, or None
-        call->sequences[call->sequence_count++] = value;
+        *sequence = value;
         return true;
     case 's':  // a sequence of integers
-        call->sequences[call->sequence_count++] = value;
+        *sequence = value;
         return value->type == python.list_type || value->type == python.tuple_type || value->type == python.range_type;
     case 'b':  // the number of a body
     case 'c':  // the number of a connection
@@ -120,59 +154,63 @@ bool read(int kind, PyObject* value, double* numbers, Call* call) {
 }
 
 // Finds the connection and the body that the arguments name; false if Python has to handle the call.
-bool find(const QuickCall& made, const double* numbers, Call* call) {
-    const double* body = nullptr;
-    for (int i = 0; i < made.parameter_count; ++i) {
-        const int kind = made.parameters[i].kind;
-        if (kind == 'b')
-            body = numbers;
-        if (kind == 'c') {
-            call->client = find_client(*numbers);
-            if (!call->client)
-                return false;
-        }
-        numbers += width_of(kind);
+bool find(const Arrangement& arrangement, const double* numbers, Call* call) {
+    if (arrangement.connection >= 0) {
+        call->client = find_client(numbers[arrangement.connection]);
+        if (!call->client)
+            return false;
     }
-    if (body) {
-        call->body = call->client ? find_body(*call->client, *body) : nullptr;
+    if (arrangement.body >= 0) {
+        call->body = call->client ? find_body(*call->client, numbers[arrangement.body]) : nullptr;
         return call->body;
     }
     return true;
 }
 
+// Reads the argument for a parameter; false if Python has to handle the call. None stands for an optional one that is
+// left out.
+bool take(
+    const QuickCall& made, const Arrangement& arrangement, int place, PyObject* value, double* numbers, Call* call
+) {
+    const Parameter& parameter = made.parameters[place];
+    if (value == python.None && parameter.missing != parameter.missing && !parameter.is_required)
+        return true;
+    const int sequence = arrangement.sequence[place];
+    return read(parameter.kind, value, numbers + arrangement.first_number[place], &call->sequences[sequence]);
+}
+
 // Reads all arguments of a call; false if Python has to handle the call.
 bool read_all(
-    const QuickCall& made, PyObject* const* arguments, intptr_t count, PyObject* names, double* numbers, Call* call
+    const QuickCall& made,
+    const Arrangement& arrangement,
+    PyObject* const* arguments,
+    intptr_t count,
+    PyObject* names,
+    double* numbers,
+    Call* call
 ) {
-    const intptr_t named = names ? python.PyTuple_Size(names) : 0;
     if (count > made.parameter_count)
         return false;
-    intptr_t used = 0;
-    for (int i = 0; i < made.parameter_count; ++i) {
-        const Parameter& parameter = made.parameters[i];
-        PyObject* value = i < count ? arguments[i] : nullptr;
-        for (intptr_t k = 0; !value && k < named; ++k)
-            if (python.PyTuple_GetItem(names, k) == parameter.name) {
-                value = arguments[count + k];
-                ++used;
-            }
-        const int width = width_of(parameter.kind);
-        const bool is_none = value == python.None && parameter.missing != parameter.missing;
-        if (value && !(is_none && !parameter.is_required)) {
-            if (!read(parameter.kind, value, numbers, call))
-                return false;
-        } else {
-            if (parameter.is_required)
-                return false;
-            if (parameter.kind == 's' || parameter.kind == 'v')
-                call->sequences[call->sequence_count++] = nullptr;
-            for (int k = 0; k < width; ++k)
-                numbers[k] = parameter.missing;
-        }
-        numbers += width;
+    __builtin_memcpy(numbers, arrangement.missing, arrangement.number_count * sizeof(double));
+    uint32_t given = 0;
+    for (int i = 0; i < count; ++i) {
+        if (!take(made, arrangement, i, arguments[i], numbers, call))
+            return false;
+        given |= 1u << i;
     }
-    // A named argument that was not used is misspelt or given twice.
-    return used == named;
+    const intptr_t named = names ? python.PyTuple_Size(names) : 0;
+    for (intptr_t k = 0; k < named; ++k) {
+        PyObject* name = python.PyTuple_GetItem(names, k);
+        int place = static_cast<int>(count);
+        while (place < made.parameter_count && made.parameters[place].name != name)
+            ++place;
+        // A name that is not found is misspelt, or given twice.
+        if (place == made.parameter_count ||
+            !take(made, arrangement, place, arguments[count + k], numbers, call))
+            return false;
+        given |= 1u << place;
+    }
+    return !(arrangement.required & ~given);
 }
 
 PyObject* group_of(const double* numbers, int length) {
@@ -194,12 +232,12 @@ PyObject* result_of(const QuickCall& made, const double* numbers, int count) {
     return row.tuple;
 }
 
-PyObject* answer(
-    const QuickCall& made, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names
-) {
+PyObject* answer(int place, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names) {
+    const QuickCall& made = calls[place];
+    const Arrangement& arrangement = arrangements[place];
     double numbers[MOST_NUMBERS], results[MOST_RESULTS];
     Call call = {};
-    if (read_all(made, arguments, count, names, numbers, &call) && find(made, numbers, &call)) {
+    if (read_all(made, arrangement, arguments, count, names, numbers, &call) && find(arrangement, numbers, &call)) {
         if (made.maker) {
             PyObject* result = made.maker(numbers, &call);
             if (result || python.PyErr_Occurred())
@@ -217,7 +255,7 @@ typedef PyObject* (*Entry)(PyObject*, PyObject* const*, intptr_t, PyObject*);
 
 template <int place>
 PyObject* entry(PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names) {
-    return answer(calls[place], function, arguments, count, names);
+    return answer(place, function, arguments, count, names);
 }
 
 template <int count>
@@ -342,5 +380,8 @@ extern "C" CAROM_EXPORT int carom_claim_quick_calls(void** of_python, QuickCall*
     return 1;
 }
 
-// The C code of the builtin of a quick call.
-extern "C" CAROM_EXPORT Entry carom_quick_entry(int place) { return Entries<MOST_CALLS>::at(place); }
+// The C code of the builtin of a quick call, whose description is complete.
+extern "C" CAROM_EXPORT Entry carom_quick_entry(int place) {
+    arrangements[place] = arranged(calls[place]);
+    return Entries<MOST_CALLS>::at(place);
+}

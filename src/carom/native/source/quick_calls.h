@@ -185,7 +185,6 @@ struct Call {
     const Body* body;
     // Arguments of any length (lists, tuples, ranges and arrays); null for those left out.
     PyObject* sequences[6];
-    int sequence_count;
 };
 
 // Performs a call. Numbers are the arguments in order; those left out are NaN if they have no default.
