@@ -19,8 +19,8 @@ SURFACES = ("mesh", "heightfield")
 """What is made of triangles."""
 RESTING = (*MOVING, "plane", *SURFACES)
 PLACES = ("base", "turned", "offset", "compound", "pair", "link", "link offset")
-"""Of the moving shape: in place at the base's centre of mass, turned there, away from there, one of two shapes of
-the base, beside a fixed link, on a hinged link, and there away from its centre of mass."""
+"""Of the moving shape: in place at the base's centre of mass, turned there, away from there, one of two
+shapes of the base, beside a fixed link, on a hinged link, and there away from its centre of mass."""
 MOTIONS = ("fall", "fall tilted", "slide", "roll")
 BREAKING = (0.02, 0.1)
 SUPPORTS = ("base", "offset", "link")
@@ -62,7 +62,7 @@ class Case:
 
 
 def cases() -> Iterator[Case]:
-    """All cases: each kind on each in each place, motion and breaking distance, some also on other supports."""
+    """Each kind on each in each place, motion and breaking distance, some also on other supports."""
     for moving, resting in product(MOVING, RESTING):
         for place, motion, breaking in product(PLACES, MOTIONS, BREAKING):
             yield Case(moving, resting, place, motion, breaking)
@@ -74,8 +74,8 @@ def follow(p: Any, case: Case) -> list[dict[str, Any]]:
     """The first three steps with contact, in a connection of their own.
 
     Returns:
-        Of each its number, and of each point of contact the distance, the normal, the point on the moving body,
-        and the normal force.
+        Of each its number, and of each point of contact the distance, the normal, the point on the moving
+        body, and the normal force.
     """
     client = p.connect(p.DIRECT)
     try:

@@ -177,17 +177,18 @@ _INTRODUCTION = """# First contacts
 <!-- Written by tests/first_contacts/compare.py. -->
 
 What decides how a motion goes on is the first contact. Bodies of every kind of shape come into contact with
-every other: in place at the centre of mass, turned there, away from it, as one of two shapes of a link, beside
-another link, and on a hinged link, in place or not. They fall straight and tilted, slide and roll, with the usual
-`contactBreakingThreshold` and with one of 0.1, onto shapes that are bases, links, or away from their body's origin.
-The first three steps with contact of these {cases} motions are compared with those recorded in PyBullet 3.2.7: the
-number of the step, the least gap (within {gap} mm), the mean normal (within {normal}), the number of points, their
-places (within {point} mm), and the sum of the normal forces (within {force}).
+every other: in place at the centre of mass, turned there, away from it, as one of two shapes of a link,
+beside another link, and on a hinged link, in place or not. They fall straight and tilted, slide and roll,
+with the usual `contactBreakingThreshold` and with one of 0.1, onto shapes that are bases, links, or away from
+their body's origin. The first three steps with contact of these {cases} motions are compared with those
+recorded in PyBullet 3.2.7: the number of the step, the least gap (within {gap} mm), the mean normal (within
+{normal}), the number of points, their places (within {point} mm), and the sum of the normal forces (within
+{force}).
 """
 
 _BY_KINDS = """
-By kinds of shape, the motions whose first, second and third contact are the same in all of this, of those there
-are:
+By kinds of shape, the motions whose first, second and third contact are the same in all of this, of those
+there are:
 """
 
 _DIFFERENCES = """

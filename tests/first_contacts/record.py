@@ -33,10 +33,8 @@ def recorded() -> dict[str, list[dict[str, Any]]]:
 
 def main() -> None:
     pybullet: Any = importlib.import_module("pybullet")
-    lines = [
-        f"{json.dumps(case.name)}:{json.dumps([*map(rounded, follow(pybullet, case))], separators=(',', ':'))}"
-        for case in cases()
-    ]
+    found = {case.name: [rounded(step) for step in follow(pybullet, case)] for case in cases()}
+    lines = [f'"{name}":{json.dumps(steps, separators=(",", ":"))}' for name, steps in found.items()]
     RECORDED.write_text("{" + ",\n".join(lines) + "}\n", encoding="utf-8")
 
 

@@ -10,8 +10,8 @@ from tests.first_contacts.compare import outcomes
 from tests.first_contacts.record import recorded
 
 # Of the motions of two kinds of shape, so many may differ in anything at the first, second and third contact;
-# `docs/conformance/first-contacts.md` has the figures. Flat cylinders have all points at once here, and PyBullet keeps
-# old points beside balls.
+# `docs/conformance/first-contacts.md` has the figures. Flat cylinders have all points at once here, and
+# PyBullet keeps old points beside balls.
 ELSEWHERE = {
     ("box", "cylinder"): (15, 18, 17),
     ("cylinder", "box"): (12, 25, 26),
