@@ -95,6 +95,11 @@ def test_permissions_links_and_devices_are_kept(tmp_path: Path) -> None:
         p.saveBullet(str(link))
         assert link.is_symlink()
         assert new.stat().st_size > 0
+        link.unlink()
+        link.symlink_to(link)
+        with pytest.raises(p.error, match="Couldn't save"):
+            p.saveBullet(str(link))
+        assert link.is_symlink()
         p.saveBullet("/dev/null")
         assert Path("/dev/null").is_char_device()
     finally:
@@ -128,6 +133,8 @@ def test_pipes_and_devices_are_no_files_to_load(tmp_path: Path) -> None:
         for load in (p.loadURDF, p.loadSDF, p.loadMJCF, p.loadBullet, p.loadTexture):
             with pytest.raises(p.error):
                 load(str(name))
+    with pytest.raises(p.error, match="not a regular file"):
+        p.loadURDF("/dev/zero")
     p.disconnect(client)
 
 

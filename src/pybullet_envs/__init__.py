@@ -12,10 +12,10 @@ from typing import Any, NoReturn
 
 import pybullet as p
 from pybullet_envs._absent_modules import ABSENT
-from pybullet_envs._gymnasium import INSTALLED, gymnasium
+from pybullet_envs._gymnasium import INSTALLED, gymnasium, require_gymnasium
 from pybullet_utils._absent import announce
 
-__all__ = ["getList"]
+__all__ = ["getList", "register"]
 
 _SWINGUP = "gym_pendulum_envs:InvertedPendulumSwingupBulletEnv"
 _FLAGRUN_HARDER = "gym_locomotion_envs:HumanoidFlagrunHarderBulletEnv"
@@ -112,6 +112,13 @@ def _register_all() -> None:
 announce(__name__, ABSENT)
 if INSTALLED:
     _register_all()
+
+
+def register(id: str, *args: Any, **kvargs: Any) -> None:
+    """Registers an environment in Gymnasium, unless there is one of that name."""
+    require_gymnasium()
+    if id not in gymnasium.registry:
+        gymnasium.register(id, *args, **kvargs)
 
 
 def getList() -> list[str]:

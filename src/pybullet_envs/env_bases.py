@@ -38,6 +38,13 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
         self.render_mode = "human" if render and render_mode is None else render_mode
         self._p: Any = None
 
+    def seed(self, seed: int | None = None) -> list[int]:
+        """Seeds the random numbers of episodes to come, as scripts for the old gym do; see also `reset`."""
+        from gymnasium.utils import seeding
+
+        self.np_random, used = seeding.np_random(seed)
+        return [used]
+
     def _connect(self) -> bool:
         """Makes the world if there is none; returns whether it is new."""
         if self._p is not None:
@@ -121,6 +128,10 @@ class MJCFBaseBulletEnv(BulletEnv):
         self.camera = Camera(self)
         self.action_space = robot.action_space
         self.observation_space = robot.observation_space
+
+    def configure(self, args: Any) -> None:
+        """Hands the robot arguments of its own."""
+        self.robot.args = args
 
     def create_single_player_scene(self, bullet_client: Any) -> Any:
         """The scene, a `pybullet_envs.scene_abstract.Scene`."""

@@ -253,3 +253,37 @@ class URDFBasedRobot(XmlBasedRobot):
         state = self.calc_state()
         self.potential = self.calc_potential()
         return state
+
+
+class SDFBasedRobot(XmlBasedRobot):
+    """A robot in an SDF file, which is loaded again for each episode: its scene has to be empty then.
+
+    Attributes:
+        model_sdf: The file, from the folder `models_robot` of the search path if it is not absolute.
+    """
+
+    def __init__(
+        self,
+        model_sdf: str,
+        robot_name: str,
+        action_dim: int,
+        obs_dim: int,
+        basePosition: Sequence[float] = (0, 0, 0),
+        baseOrientation: Sequence[float] = (0, 0, 0, 1),
+        fixed_base: bool = False,
+        self_collision: bool = False,
+    ) -> None:
+        """Sets the file; see `XmlBasedRobot`. SDF files say where bodies are and whether they are fixed."""
+        super().__init__(robot_name, action_dim, obs_dim, self_collision)
+        self.model_sdf = model_sdf
+        self.fixed_base = fixed_base
+
+    def reset(self, bullet_client: Any) -> np.ndarray:
+        """Begins an episode; returns the first observation."""
+        self.forget()
+        self.objects = bullet_client.loadSDF(os.path.join("models_robot", self.model_sdf))
+        self.addToScene(bullet_client, self.objects)
+        self.robot_specific_reset(bullet_client)
+        state = self.calc_state()
+        self.potential = self.calc_potential()
+        return state

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+import pybullet_data
+from pybullet_envs.robot_parts import BodyPart
 from pybullet_envs.robot_people import Humanoid, HumanoidFlagrun, HumanoidFlagrunHarder
 from pybullet_envs.robot_walker import WalkerBase
 
@@ -17,6 +20,8 @@ __all__ = [
     "HumanoidFlagrunHarder",
     "Walker2D",
     "WalkerBase",
+    "get_cube",
+    "get_sphere",
 ]
 
 
@@ -81,3 +86,21 @@ class Ant(WalkerBase):
     def alive_bonus(self, z: float, pitch: float) -> float:
         """1 while the sphere is off the ground, otherwise -1."""
         return 1.0 if z > 0.26 else -1.0
+
+
+def get_cube(_p: Any, x: float, y: float, z: float) -> BodyPart:
+    """Loads a small cube of 1.2 kg at a position [m] and returns its only link."""
+    part = _lone_part(_p, "cube_small.urdf", (x, y, z))
+    _p.changeDynamics(part.body, -1, mass=1.2)
+    return part
+
+
+def get_sphere(_p: Any, x: float, y: float, z: float) -> BodyPart:
+    """Loads a red ball without collisions at a position [m] and returns its only link."""
+    return _lone_part(_p, "sphere2red_nocol.urdf", (x, y, z))
+
+
+def _lone_part(bullet_client: Any, file: str, position: tuple[float, float, float]) -> BodyPart:
+    body = bullet_client.loadURDF(os.path.join(pybullet_data.getDataPath(), file), position)
+    name = bullet_client.getBodyInfo(body)[0].decode()
+    return BodyPart(bullet_client, name, [body], 0, -1)

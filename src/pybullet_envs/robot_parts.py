@@ -159,6 +159,9 @@ class Joint:
         """Velocity [rad/s or m/s]."""
         return self.get_state()[1]
 
+    get_orientation = get_velocity
+    """PyBullet's other name of it."""
+
     def set_state(self, x: float, vx: float) -> None:
         """Sets position and velocity; the motor keeps its settings."""
         self._p.resetJointState(self.body, self.jointIndex, x, vx)

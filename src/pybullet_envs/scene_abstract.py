@@ -50,6 +50,7 @@ class Scene:
         dt: Duration of an environment step [s].
         cpp_world: The world.
         multiplayer: Whether several robots share the scene.
+        multiplayer_robots: These robots, by their `player_n`.
     """
 
     multiplayer = False
@@ -68,9 +69,23 @@ class Scene:
         self.frame_skip = frame_skip
         self.dt = timestep * frame_skip
         self.cpp_world = World(bullet_client, gravity, timestep, frame_skip)
+        self.multiplayer_robots: dict[int, Any] = {}
+        self.test_window_still_open = True
+        self.human_render_detected = False
+
+    def test_window(self) -> bool:
+        """Notes that somebody looks at the scene; whether the window is open still."""
+        self.human_render_detected = True
+        return self.test_window_still_open
 
     def actor_introduce(self, robot: Any) -> None:
-        """Called by each robot when its episode begins; does nothing here."""
+        """Called by each robot when its episode begins; notes those that share the scene."""
+        if self.multiplayer:
+            self.multiplayer_robots[robot.player_n] = robot
+
+    def actor_is_active(self, robot: Any) -> bool:
+        """Whether a robot is alone in the scene."""
+        return not self.multiplayer
 
     def episode_restart(self, bullet_client: Any) -> None:
         """Begins an episode."""

@@ -36,3 +36,15 @@ class StadiumScene(Scene):
 
 class SinglePlayerStadiumScene(StadiumScene):
     """A stadium for one robot."""
+
+
+class MultiplayerStadiumScene(StadiumScene):
+    """A stadium for three robots, each on a lane of its own."""
+
+    multiplayer = True
+    players_count = 3
+
+    def actor_introduce(self, robot: Any) -> None:
+        """Moves a robot sideways, onto the lane of its `player_n`."""
+        super().actor_introduce(robot)
+        robot.move_robot(0, robot.player_n - 1, 0)

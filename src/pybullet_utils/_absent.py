@@ -7,7 +7,7 @@ object raises `pybullet.error`, with the reason, when it is called or subclassed
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import CodeType, ModuleType
@@ -106,6 +106,18 @@ def announce(package: str, listing: str) -> None:
             _finder.packages.add(inside)
             _finder.reasons.setdefault(inside, reason)
             inside = inside.rpartition(".")[0]
+
+
+def absent_names(module: str, names: str, reason: str) -> Callable[[str], Absent]:
+    """A module's `__getattr__`, which gives placeholders for the names that it lacks."""
+    lacking = names.split()
+
+    def find(name: str) -> Absent:
+        if name not in lacking:
+            raise AttributeError(f"module {module!r} has no attribute {name!r}")
+        return Absent(f"{module}.{name}", reason)
+
+    return find
 
 
 def _lines(listing: str) -> Iterator[tuple[str, list[str], str]]:

@@ -7,6 +7,10 @@ from typing import Any
 
 import numpy as np
 
+RAD_TO_DEG = 57.2957795
+DEG_TO_RAD = 1.0 / RAD_TO_DEG
+INVALID_IDX = -1
+
 
 def lerp(x: Any, y: Any, t: Any) -> Any:
     """Linear interpolation from x (t = 0) to y (t = 1)."""

@@ -12,6 +12,8 @@ from math import acos, atan2, cos, pi, sin, sqrt
 
 import numpy as np
 
+from pybullet_utils._absent import absent_names
+
 Numbers = Sequence[float] | np.ndarray
 
 _AXES = "xyz"
@@ -353,3 +355,12 @@ def _parsed(axes: str) -> tuple[bool, tuple[int, int, int]]:
         if first != second != third:
             return axes[0] == "s", (first, second, third)
     raise ValueError(f"axes must be like 'sxyz' or 'rzyx', not {axes!r}")
+
+
+__getattr__ = absent_names(
+    __name__,
+    """reflection_from_matrix scale_from_matrix projection_matrix projection_from_matrix clip_matrix
+    shear_matrix shear_from_matrix orthogonalization_matrix superimposition_matrix Arcball
+    arcball_map_to_sphere arcball_constrain_to_axis arcball_nearest_axis""",
+    "scripts for PyBullet do not use it; C. Gohlke's package `transformations` has it",
+)

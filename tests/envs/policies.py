@@ -47,7 +47,7 @@ TASKS = {
     "Walker2D": Task("gym_locomotion_envs:Walker2DBulletEnv", 22, 4, 6, 300),
     "HalfCheetah": Task("gym_locomotion_envs:HalfCheetahBulletEnv", 26, 4, 6, 300),
     "Ant": Task("gym_locomotion_envs:AntBulletEnv", 28, 4, 8, 300),
-    "Humanoid": Task("gym_locomotion_envs:HumanoidBulletEnv", 44, 4, 17, 300),
+    "Humanoid": Task("gym_locomotion_envs:HumanoidBulletEnv", 44, 17, 17, 300),
 }
 
 

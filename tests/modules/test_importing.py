@@ -1,6 +1,7 @@
 """All that PyBullet's wheel lets one import can be imported; what is missing says so at its use.
 
-`wheel_modules.txt` names the modules of PyBullet 3.2.7's distribution besides `pybullet` and `pybullet_data`.
+`wheel_modules.txt` names the modules of PyBullet 3.2.7's distribution besides `pybullet`, and
+`wheel_names.txt` the public functions, classes and constants of those that Carom has, but for scripts.
 """
 
 from __future__ import annotations
@@ -42,6 +43,17 @@ def test_logs_of_the_minitaur_can_be_imported() -> None:
     for name in NAMES:
         if name.startswith(NEED_PROTOBUF):
             import_module(name)
+
+
+def test_modules_have_the_names_that_they_have_in_the_wheel() -> None:
+    listing = Path(__file__).with_name("wheel_names.txt").read_text(encoding="utf-8")
+    missing = []
+    for line in listing.splitlines():
+        module, _, names = line.partition(": ")
+        if not module.startswith(NEED_PROTOBUF):
+            found = import_module(module)
+            missing += [f"{module}.{name}" for name in names.split() if not hasattr(found, name)]
+    assert not missing
 
 
 def test_what_is_missing_says_so_when_it_is_used() -> None:
@@ -103,3 +115,48 @@ for make in (KukaGymEnv, Ant):
         print(error.name, 'pip install' in str(error))
 """
     assert run(WITHOUT_GYMNASIUM + code).splitlines() == ["gymnasium True"] * 2
+
+
+def test_parts_of_multiplayer_scenes_are_there() -> None:
+    from pybullet_envs.robot_locomotors import get_cube, get_sphere
+    from pybullet_envs.scene_stadium import MultiplayerStadiumScene
+    from pybullet_utils.bullet_client import BulletClient
+
+    class Robot:
+        player_n = 2
+        moved: tuple[float, ...] = ()
+
+        def move_robot(self, *place: float) -> None:
+            self.moved = place
+
+    client, robot = BulletClient(p.DIRECT), Robot()
+    scene = MultiplayerStadiumScene(client, 9.8, 0.0165 / 4, 4)
+    scene.episode_restart(client)
+    scene.actor_introduce(robot)
+    assert robot.moved == (0, 1, 0)
+    assert scene.multiplayer_robots == {2: robot}
+    assert not scene.actor_is_active(robot)
+    cube, ball = get_cube(client, 0, 0, 1), get_sphere(client, 1, 0, 1)
+    assert client.getDynamicsInfo(cube.body, -1)[0] == 1.2
+    assert list(ball.get_position()) == [1, 0, 1]
+    client.disconnect()
+
+
+def test_names_that_a_module_lacks_say_so_when_they_are_used() -> None:
+    transformations = import_module("pybullet_utils.transformations")
+    with pytest.raises(p.error, match=r"transformations\.Arcball is not available"):
+        transformations.Arcball()
+    with pytest.raises(AttributeError):
+        _ = transformations.nothing
+
+
+def test_environments_are_seeded_as_by_scripts_for_the_old_gym() -> None:
+    pytest.importorskip("gymnasium")
+    from pybullet_envs.gym_pendulum_envs import InvertedPendulumBulletEnv
+
+    env = InvertedPendulumBulletEnv()
+    assert env.seed(3) == [3]
+    first, _ = env.reset()
+    again, _ = env.reset(seed=3)
+    assert list(first) == list(again)
+    env.close()

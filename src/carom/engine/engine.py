@@ -222,9 +222,12 @@ class Engine:
         if self._plan is None:
             self.prepare(watched=self._watched)
         self.due[: len(due)] = due
-        self.run(self._steppers, worlds, step_count=len(due))
-        self.recover(step_count=len(due))
-        self.due[: len(due)] = 1
+        try:
+            self.run(self._steppers, worlds, step_count=len(due))
+            self.recover(step_count=len(due))
+        finally:
+            # Also after Ctrl-C, or the next steps would have as many substeps.
+            self.due[: len(due)] = 1
 
     def substep(self, due: int, substep: int) -> bool:
         """Perform one substep of a step of all worlds; the first begins it, the last ends it.
@@ -233,8 +236,10 @@ class Engine:
             False if arrays were too short: the worlds are back at the start of the step; repeat the step.
         """
         self.due[0] = due
-        self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
-        self.due[0] = 1
+        try:
+            self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
+        finally:
+            self.due[0] = 1
         short = self._short_of_room()
         if len(short):
             self._grow(short)

@@ -26,10 +26,12 @@ def advice(name: Path, searched: tuple[Path | None, ...]) -> str:
 
     `searched` are the directories that were searched besides the working directory.
     """
+    # `os.path`, which accepts names that no file can have.
+    if os.path.exists(name):
+        return "; it is not a regular file"
     folder = shipped_folder()
     near = _near(name, Path(name).parent)
     if folder is not None and not name.is_absolute() and folder not in searched:
-        # `os.path`, which accepts names that no file can have.
         if os.path.isfile(folder / name):
             return f"; pybullet_data has one: call {_CALL} before"
         if meant := _near(name, folder / name.parent, name.parent):

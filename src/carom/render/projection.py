@@ -51,7 +51,12 @@ def is_singular(matrix: Matrix) -> bool:
 
 def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:
     """World to eye coordinates: x right, y up, z backwards; `up` may be parallel to the viewing direction."""
-    forward = np.asarray(target, dtype=np.float64) - np.asarray(eye, dtype=np.float64)
+    start = np.asarray(eye, dtype=np.float64)
+    return look_along(start, np.asarray(target, dtype=np.float64) - start, up)
+
+
+def look_along(eye: Matrix, forward: Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:
+    """World to eye coordinates as `look_at`, for a viewing direction of any length."""
     forward = unit_vector(forward)
     right = np.cross(forward, up)
     if length(right) < 1e-9:
@@ -60,7 +65,7 @@ def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0,
     rotation = np.stack([right, np.cross(right, forward), -forward])
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
-    matrix[:3, 3] = product(-rotation, np.asarray(eye, dtype=np.float64)[:, None])[:, 0]
+    matrix[:3, 3] = product(-rotation, eye[:, None])[:, 0]
     return matrix
 
 

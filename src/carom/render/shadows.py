@@ -9,7 +9,7 @@ import numpy as np
 from carom.native.products import product
 from carom.record import record
 from carom.render.lights import Light
-from carom.render.projection import Matrix, look_at, parallel_projection, unit_vector
+from carom.render.projection import Matrix, look_along, look_at, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
 
 PARALLEL_MAP_SIDE = 1024
@@ -55,7 +55,8 @@ def shadow_camera(
     direction = unit_vector(np.array(light.direction))
     if not isinf(light.distance):
         eye = light.distance * direction
-        view = look_at(eye, eye - direction)
+        # A lamp may be so far away that the place in front of it has the same numbers.
+        view = look_along(eye, -direction)
         return ShadowCamera(view, projection, width, height, _LAMP_BIAS)
     centre, radius = _casters(scene, link_to_world)
     return ShadowCamera(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from math import hypot
 from typing import TYPE_CHECKING, Any
 
-from pybullet._calls.arguments import Vector, integer, numbers, real, vector3
+from pybullet._calls.arguments import Vector, integer, numbers, quantity, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import (
     ER_NO_SEGMENTATION_MASK,
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 __all__ = ["getCameraImage"]
 
 _FAILED = "getCameraImage failed."
+# Shorter directions of the light have no length in floating-point numbers [m].
+_LEAST_LENGTH = 1e-30
 _BODY_BITS = (1 << 24) - 1
 _COEFFICIENTS = {
     "lightDistance": "distance",
@@ -177,14 +180,14 @@ def _changed_light(light: Light, given: Mapping[str, Any]) -> Light:
     """The light with the changes of a call's arguments; None and negative numbers stand for no change."""
     changes: dict[str, Any] = {}
     for argument, name in _COEFFICIENTS.items():
-        value = real(given[argument], argument)
+        value = quantity(given[argument], argument)
         if value >= 0.0:
             changes[name] = value
     shadow = integer(given["shadow"], "shadow")
     if has_length(given["lightDirection"], 3, "lightDirection"):
         changes["direction"] = vector3(given["lightDirection"], _FAILED, "lightDirection")
-        if not any(changes["direction"]):
-            fail(_FAILED, "lightDirection has length 0.")
+        if hypot(*changes["direction"]) < _LEAST_LENGTH:
+            fail(_FAILED, f"lightDirection has length {hypot(*changes['direction']):g}.")
     if has_length(given["lightColor"], 3, "lightColor"):
         changes["colour"] = vector3(given["lightColor"], _FAILED, "lightColor")
     if shadow >= 0:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from carom.scene.observers import Observer, SubstepObserver
+from pybullet._calls.errors import error, logger
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client
@@ -55,7 +56,11 @@ class Logs:
         return number
 
     def stop(self, client: Client, number: int) -> None:
-        """Ends a log and finishes its file, if it exists."""
+        """Ends a log and finishes its file, if it exists.
+
+        Raises:
+            pybullet.error: The file is incomplete; the log has ended all the same.
+        """
         log = self.by_id.pop(number, None)
         if log is not None:
             client.world.observers.remove(log)
@@ -64,6 +69,9 @@ class Logs:
             log.close()
 
     def stop_all(self, client: Client) -> None:
-        """Ends all logs."""
+        """Ends all logs; of incomplete files it only warns."""
         for number in list(self.by_id):
-            self.stop(client, number)
+            try:
+                self.stop(client, number)
+            except error as problem:
+                logger.warning("%s", problem)

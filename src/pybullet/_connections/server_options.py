@@ -20,7 +20,7 @@ from pybullet._calls.options import Target
 KEY_VARIABLE = "CAROM_SERVER_KEY"
 """Environment variable with the key of a server."""
 
-_LEAST_KEY = 16
+_LEAST_KEY, _MOST_KEY = 16, 4096
 _LOOPBACK = "127.0.0.1"
 _FOR_EVER, _A_MINUTE = 1e30, 60.0
 _SHARED_MEMORY, _GRAPHICS, _TCP, _UDP = "shared-memory", "graphics", "tcp", "udp"
@@ -126,7 +126,9 @@ def _given_key(target: Target) -> bytes | None:
     file = target.option("key-file")
     if file:
         try:
-            return _fit(Path(file).read_text(encoding="utf-8"), file)
+            # A device may have no end.
+            with open(file, encoding="utf-8") as stream:
+                return _fit(stream.read(_MOST_KEY), file)
         except (OSError, UnicodeError) as problem:
             fail("Cannot read the key of the physics server:", f"{problem}.")
     text = os.environ.get(KEY_VARIABLE)

@@ -14,9 +14,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from zlib import crc32
 
+from carom.errors import DescriptionError
+from carom.formats.files import read_bounded
 from carom.remote.errors import Malformed
 from carom.remote.values import pack, padded, unpack
 from pybullet._calls.detours import Function, add_detour, call_on, detour_of, functions, remove_detour
+from pybullet._logs.log_file import LogFile
 
 if TYPE_CHECKING:
     from pybullet._clients.clients import Client
@@ -38,6 +41,7 @@ stepSimulation unloadPlugin unsupportedChangeScaling
 COMMANDS = frozenset(_NAMES.split())
 """Functions that a log records: those that change the results of later steps or queries."""
 
+_MOST_BYTES = 1 << 29
 _HEADER = struct.Struct("<8s2I")
 _MAGIC, _VERSION = b"\x89CALOG\r\n", 1
 _CHECK = struct.Struct("<I")
@@ -66,7 +70,7 @@ class CommandLog:
     def __init__(self, number: int, client: Client, path: Path) -> None:
         self._number = index(number)
         self._client = client
-        self._file = open(path, "wb", buffering=0)  # noqa: SIM115 (it is written to until the log is closed)
+        self._file = LogFile(path, buffered=False)
         self._file.write(_HEADER.pack(_MAGIC, _VERSION, 0))
         self._step = _record(Command(_STEP, [], {}, None))
         self._way = detour_of(self._number)
@@ -110,11 +114,15 @@ def replay(number: int, client: Client, path: Path) -> None:
     """Replays the commands of a log. The whole file is checked before the first command.
 
     Raises:
-        OSError: The file cannot be read.
-        ValueError: The file is not such a log, or damaged; then nothing is done. Or a command fails, or its
-            result differs from the recorded one; then the commands before it have been performed.
+        ValueError: The file cannot be read, is not such a log, or damaged; then nothing is done. Or a
+            command fails, or its result differs from the recorded one; then the commands before it have been
+            performed.
     """
-    content = memoryview(path.read_bytes())
+    try:
+        data, _ = read_bounded(path, _MOST_BYTES)
+    except DescriptionError as problem:
+        raise ValueError(str(problem)) from problem
+    content = memoryview(data)
     try:
         for _ in _commands(content):
             pass

@@ -18,6 +18,7 @@ import numpy as np
 
 from pybullet._calls.constants import STATE_LOG_JOINT_MOTOR_TORQUES, STATE_LOG_JOINT_USER_TORQUES
 from pybullet._contacts.contacts import getContactPoints
+from pybullet._logs.log_file import LogFile
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -37,7 +38,7 @@ class BinaryLog:
     """
 
     def __init__(self, path: Path, columns: Sequence[str], types: str) -> None:
-        self._file = open(path, "wb")  # noqa: SIM115 (it is written to until the log is closed)
+        self._file = LogFile(path)
         self._file.write(f"{','.join(columns)}\n{types}\n".encode())
         self._pack = Struct(f"<{types}").pack
         self._steps = 0
@@ -206,7 +207,7 @@ class TimingLog:
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = open(f"{path}_0.json", "w", encoding="utf-8")  # noqa: SIM115 (as above)
+        self._file = LogFile(Path(f"{path}_0.json"))
         self._events: list[str] = []
         self._start = perf_counter_ns()
 
@@ -233,6 +234,6 @@ class TimingLog:
 
     def close(self) -> None:
         """Writes the file."""
-        with self._file:
-            events = ",\n".join(self._events)
-            self._file.write(f'{{"traceEvents":[\n{events}\n],\n"displayTimeUnit": "ns"}}')
+        events = ",\n".join(self._events)
+        self._file.write(f'{{"traceEvents":[\n{events}\n],\n"displayTimeUnit": "ns"}}'.encode())
+        self._file.close()

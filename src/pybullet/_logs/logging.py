@@ -146,7 +146,7 @@ def stopStateLogging(loggingId: int, physicsClientId: int = 0) -> None:
         physicsClientId: The connection.
 
     Raises:
-        pybullet.error: Not connected.
+        pybullet.error: Not connected, or not everything could be written: the disk is full.
 
     Examples:
         >>> log = p.startStateLogging(p.STATE_LOGGING_CONTACT_POINTS, folder + "/contacts.bin")

@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 
 from pybullet_envs._gymnasium import gymnasium
-from pybullet_envs.bullet.kukaGymEnv import KukaGymEnv
+from pybullet_envs.bullet.kukaGymEnv import RENDER_HEIGHT, RENDER_WIDTH, KukaGymEnv
+
+__all__ = [
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "KukaCamGymEnv",
+    "maxSteps",
+]
+
+maxSteps = 1000
 
 _VIEW = (
     *(-0.5120397806167603, 0.7171027660369873, -0.47284144163131714, 0.0),

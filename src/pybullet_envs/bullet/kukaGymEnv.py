@@ -10,8 +10,26 @@ import numpy as np
 
 from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.bullet.kuka import Kuka
-from pybullet_envs.bullet.urdf_env import UrdfEnv
+from pybullet_envs.bullet.urdf_env import RENDER_HEIGHT, RENDER_WIDTH, UrdfEnv
 
+__all__ = [
+    "BLOCK_HIGH",
+    "CHOICES",
+    "CLOSING_RISE",
+    "CLOSING_STEPS",
+    "FINGER_OPEN",
+    "GRASP_DISTANCE",
+    "LIFTING_RISE",
+    "LIFTING_STEPS",
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "SINK",
+    "WRIST_HIGH",
+    "KukaGymEnv",
+    "largeValObservation",
+]
+
+largeValObservation = 100
 FINGER_OPEN = 0.3
 CLOSING_STEPS, LIFTING_STEPS = 100, 1000
 # Heights at which lifting ends [m].

@@ -22,6 +22,12 @@ from pybullet_envs.minitaur_bases import (
     MinitaurBody,
 )
 
+# Links of the robot in `minitaur.urdf`.
+BASE_LINK_ID = -1
+MOTOR_LINK_ID = [1, 4, 7, 10, 14, 17, 20, 23]
+LEG_LINK_ID = [2, 3, 5, 6, 8, 9, 11, 12, 15, 16, 18, 19, 21, 22, 24, 25]
+FOOT_LINK_ID = LEG_LINK_ID[1::2]
+
 __all__ = [
     "INIT_ORIENTATION",
     "INIT_POSITION",

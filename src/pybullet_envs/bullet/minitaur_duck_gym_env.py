@@ -4,7 +4,35 @@ from __future__ import annotations
 
 import os
 
-from pybullet_envs.bullet.minitaur_gym_env import MinitaurBulletEnv
+from pybullet_envs.bullet.minitaur_gym_env import (
+    ACTION_EPS,
+    BASE_ORIENTATION_OBSERVATION_INDEX,
+    MOTOR_ANGLE_OBSERVATION_INDEX,
+    MOTOR_TORQUE_OBSERVATION_INDEX,
+    MOTOR_VELOCITY_OBSERVATION_INDEX,
+    NUM_MOTORS,
+    NUM_SUBSTEPS,
+    OBSERVATION_EPS,
+    RENDER_HEIGHT,
+    RENDER_WIDTH,
+    MinitaurBulletEnv,
+)
+
+__all__ = [
+    "ACTION_EPS",
+    "BASE_ORIENTATION_OBSERVATION_INDEX",
+    "MOTOR_ANGLE_OBSERVATION_INDEX",
+    "MOTOR_TORQUE_OBSERVATION_INDEX",
+    "MOTOR_VELOCITY_OBSERVATION_INDEX",
+    "NUM_MOTORS",
+    "NUM_SUBSTEPS",
+    "OBSERVATION_EPS",
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "MinitaurBulletDuckEnv",
+    "duckStartOrn",
+    "duckStartPos",
+]
 
 duckStartPos = (0.0, 0.0, 0.25)
 duckStartOrn = (0.5, 0.5, 0.5, 0.5)

@@ -10,10 +10,31 @@ import numpy as np
 from pybullet_envs.bullet.env_randomizer_base import EnvRandomizerBase
 from pybullet_envs.bullet.minitaur import Minitaur, observation_bound
 from pybullet_envs.bullet.minitaur_env_randomizer import MinitaurEnvRandomizer
-from pybullet_envs.minitaur_env_bases import MinitaurEnvBase, Step
+from pybullet_envs.minitaur_env_bases import ACTION_EPS, OBSERVATION_EPS, MinitaurEnvBase, Step
+
+__all__ = [
+    "ACTION_EPS",
+    "BASE_ORIENTATION_OBSERVATION_INDEX",
+    "MOTOR_ANGLE_OBSERVATION_INDEX",
+    "MOTOR_TORQUE_OBSERVATION_INDEX",
+    "MOTOR_VELOCITY_OBSERVATION_INDEX",
+    "NUM_MOTORS",
+    "NUM_SUBSTEPS",
+    "OBSERVATION_EPS",
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "MinitaurBulletEnv",
+]
 
 NUM_SUBSTEPS = 5
 NUM_MOTORS = 8
+# Where in an observation the values of the motors and of the base begin.
+MOTOR_ANGLE_OBSERVATION_INDEX = 0
+MOTOR_VELOCITY_OBSERVATION_INDEX = MOTOR_ANGLE_OBSERVATION_INDEX + NUM_MOTORS
+MOTOR_TORQUE_OBSERVATION_INDEX = MOTOR_VELOCITY_OBSERVATION_INDEX + NUM_MOTORS
+BASE_ORIENTATION_OBSERVATION_INDEX = MOTOR_TORQUE_OBSERVATION_INDEX + NUM_MOTORS
+# Size of the images of `render` [pixels].
+RENDER_HEIGHT, RENDER_WIDTH = 720, 960
 _TIME_STEP = 0.01
 _SOLVER_ITERATIONS = 300
 _SETTLING_STEPS = 100
@@ -29,7 +50,7 @@ class MinitaurBulletEnv(MinitaurEnvBase[Minitaur]):
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 50}  # noqa: RUF012  # as Gymnasium has it
-    picture_size = (960, 720)
+    picture_size = (RENDER_WIDTH, RENDER_HEIGHT)
 
     def __init__(
         self,

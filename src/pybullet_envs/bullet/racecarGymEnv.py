@@ -11,7 +11,13 @@ import numpy as np
 
 from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.bullet.racecar import Racecar
-from pybullet_envs.bullet.urdf_env import UrdfEnv
+from pybullet_envs.bullet.urdf_env import RENDER_HEIGHT, RENDER_WIDTH, UrdfEnv
+
+__all__ = [
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "RacecarGymEnv",
+]
 
 _MOST_STEPS = 1000
 _LOCK = 0.6

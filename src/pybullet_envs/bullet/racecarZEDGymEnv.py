@@ -7,7 +7,13 @@ from typing import Any
 import numpy as np
 
 from pybullet_envs._gymnasium import gymnasium
-from pybullet_envs.bullet.racecarGymEnv import RacecarGymEnv
+from pybullet_envs.bullet.racecarGymEnv import RENDER_HEIGHT, RENDER_WIDTH, RacecarGymEnv
+
+__all__ = [
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "RacecarZEDGymEnv",
+]
 
 _NEAR, _FAR, _HEIGHT = 0.3, 1.0, 0.3
 _PROJECTION = (

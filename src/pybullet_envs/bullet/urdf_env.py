@@ -11,11 +11,14 @@ import pybullet_data
 from pybullet_envs._gymnasium import gymnasium
 from pybullet_envs.env_bases import BulletEnv
 
+# Size of the images of `render` [pixels].
+RENDER_HEIGHT, RENDER_WIDTH = 720, 960
+
 
 class UrdfEnv(BulletEnv, ABC):
     """A robot and objects from the files of a folder, with continuous or discrete actions."""
 
-    picture_size = (960, 720)
+    picture_size = (RENDER_WIDTH, RENDER_HEIGHT)
     _timeStep: float
     """Time step of the simulation [s]."""
 

@@ -1,6 +1,8 @@
 """OBJ files for drawing: corners of every form, normals, materials, and clear errors."""
 
 import logging
+from pathlib import Path
+from time import process_time
 
 import numpy as np
 import pytest
@@ -140,3 +142,21 @@ def test_a_changed_file_is_read_anew(tmp_path):
     assert len(read_mesh_visual(path).triangles) == 1
     path.write_text(SQUARE + "f 1 2 3 4")
     assert len(read_mesh_visual(path).triangles) == 2
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        b"mtllib\n" * 100_000,
+        b"mtllib missing.mtl\n" * 100_000,
+        b"".join(b"mtllib %d.mtl\n" % number for number in range(100_000)),
+        b"".join(b"usemtl %d\nf 1 2 3\n" % number for number in range(50_000)),
+    ],
+    ids=["no name", "one name", "many names", "many materials"],
+)
+def test_materials_take_linear_time(tmp_path: Path, lines: bytes) -> None:
+    path = tmp_path / "mesh.obj"
+    path.write_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + lines)
+    start = process_time()
+    read_obj_visual(path)
+    assert process_time() - start < 3.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -304,3 +305,17 @@ def test_files_may_be_removed_once_they_are_loaded(client, tmp_path, way):
     view = p.computeViewMatrix([0, -3, 2], [0, 0, 0], [0, 0, 1])
     image = p.getCameraImage(32, 24, view, p.computeProjectionMatrixFOV(60, 4 / 3, 0.1, 10))
     assert (image[4] == 0).sum() > 30
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("argument", "value"), [("lightDistance", far) for far in (0, 1e17, 1e30)])
+def test_lamps_may_be_anywhere(cube: int, argument: str, value: float) -> None:
+    assert np.ptp(colours(shadow=1, **{argument: value})) > 100
+
+
+@pytest.mark.parametrize(
+    "light", [{"lightDistance": 1e31}, {"lightDirection": [1e-300, 0, 0]}, {"lightDirection": [1e300, 0, 0]}]
+)
+def test_lights_without_direction_are_refused(client: int, light: dict[str, Any]) -> None:
+    with pytest.raises(p.error, match="light"):
+        colours(shadow=1, **light)

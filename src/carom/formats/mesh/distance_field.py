@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import struct
-from math import isfinite
 from pathlib import Path
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 
 _DOMAIN = struct.Struct("<6d")
+_FURTHEST = 1e30
 
 
 def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
     """Lowest and highest corner of the grid [m], read from the start of the file.
 
     Raises:
-        DescriptionError: The file is missing or too short, or the corners are not finite or not in order.
+        DescriptionError: The file is missing or too short, or the corners are too far away or not in order.
     """
     try:
         with open(path, "rb") as stream:
@@ -27,6 +27,6 @@ def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
         raise DescriptionError("cut off before the bounds of the grid", file=path)
     x0, y0, z0, x1, y1, z1 = _DOMAIN.unpack(header)
     sides = ((x0, x1), (y0, y1), (z0, z1))
-    if not all(isfinite(low) and isfinite(high) and low <= high for low, high in sides):
-        raise DescriptionError("the bounds of the grid are not finite, or not in order", file=path)
+    if not all(-_FURTHEST <= low <= high <= _FURTHEST for low, high in sides):
+        raise DescriptionError("the bounds of the grid are too far away, or not in order", file=path)
     return (x0, y0, z0), (x1, y1, z1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import field
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,8 @@ from carom.record import record
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.
 _GREATEST = float(np.finfo(np.float32).max)
+# More material files than anybody has would take long to look for.
+_MOST_LIBRARIES = 1000
 # Keyword: kind of value, and how many numbers are used and required; colours or weights may follow.
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
@@ -34,16 +36,16 @@ class _Lines:
         faces: Text after the `f` of each face.
         face_lines: Line number of each face.
         known: How many positions, texture coordinates and normals were known at each face.
-        libraries: Names of the material files.
-        materials: Names of the materials that have faces, in the order of use.
+        libraries: Names of the material files, once each.
+        materials: Names of the materials that have faces, once each, in the order of use.
     """
 
     values: tuple[list[tuple[int, bytes]], ...] = field(default_factory=lambda: ([], [], []))
     faces: list[bytes] = field(default_factory=list)
     face_lines: list[int] = field(default_factory=list)
     known: list[tuple[int, int, int]] = field(default_factory=list)
-    libraries: list[str] = field(default_factory=list)
-    materials: list[str] = field(default_factory=list)
+    libraries: dict[str, None] = field(default_factory=dict)
+    materials: dict[str, None] = field(default_factory=dict)
 
 
 def read_obj_visual(file: Path) -> RenderMesh:
@@ -77,12 +79,11 @@ def _take_apart(data: bytes) -> _Lines:
             lines.faces.append(rest)
             lines.face_lines.append(number)
             lines.known.append((len(vertices), len(uvs), len(normals)))
-            if material not in lines.materials:
-                lines.materials.append(material)
+            lines.materials.setdefault(material)
         elif keyword == b"usemtl":
             material = rest.strip().decode("utf-8", errors="surrogateescape")
         elif keyword == b"mtllib":
-            lines.libraries.append(rest.strip().decode("utf-8", errors="surrogateescape"))
+            lines.libraries.setdefault(rest.strip().decode("utf-8", errors="surrogateescape"))
     return lines
 
 
@@ -166,7 +167,7 @@ def _bad_face(lines: _Lines) -> int | None:
 
 def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
     known: dict[str, ObjMaterial] = {}
-    for name in lines.libraries:
+    for name in islice(lines.libraries, _MOST_LIBRARIES):
         known.update(read_materials(file.parent / name))
     used = [known[name] for name in lines.materials if name in known]
     with_texture = [material for material in used if material.texture is not None]

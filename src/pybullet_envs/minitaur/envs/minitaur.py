@@ -34,10 +34,12 @@ __all__ = [
     "OVERHEAT_SHUTDOWN_TIME",
     "OVERHEAT_SHUTDOWN_TORQUE",
     "SENSOR_NOISE_STDDEV",
+    "TWO_PI",
     "MapToMinusPiToPi",
     "Minitaur",
 ]
 
+TWO_PI = 2.0 * pi
 INIT_RACK_POSITION = (0.0, 0.0, 1.0)
 SENSOR_NOISE_STDDEV = (0.0, 0.0, 0.0, 0.0, 0.0)
 _PD_KD = 0.3

@@ -9,6 +9,7 @@ import numpy as np
 from pybullet_envs.minitaur.envs.leg_pose_env import NUM_LEGS, BentLegsEnv
 from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, Randomizers
 
+DESIRED_PITCH = 0
 INIT_EXTENSION_POS = 2.6
 INIT_SWING_POS = 0.0
 STEP_PERIOD = 1.0 / 3.0

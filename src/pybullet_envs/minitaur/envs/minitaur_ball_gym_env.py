@@ -8,7 +8,17 @@ from math import atan2, cos, hypot, pi, sin
 import numpy as np
 
 from pybullet_envs._gymnasium import gymnasium
-from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, MinitaurGymEnv
+from pybullet_envs.minitaur.envs.minitaur_gym_env import ACTION_EPS, NUM_MOTORS, MinitaurGymEnv
+
+__all__ = [
+    "ACTION_EPS",
+    "GOAL_DISTANCE_THRESHOLD",
+    "GOAL_REWARD",
+    "INIT_BALL_ANGLE",
+    "INIT_BALL_DISTANCE",
+    "REWARD_SCALING",
+    "MinitaurBallGymEnv",
+]
 
 GOAL_DISTANCE_THRESHOLD = 0.8
 GOAL_REWARD = 1000.0

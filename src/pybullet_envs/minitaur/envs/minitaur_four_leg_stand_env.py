@@ -5,8 +5,31 @@ from __future__ import annotations
 import numpy as np
 
 from pybullet_envs.minitaur.envs.leg_pose_env import NUM_LEGS, BentLegsEnv
-from pybullet_envs.minitaur.envs.minitaur_gym_env import Randomizers
+from pybullet_envs.minitaur.envs.minitaur_gym_env import (
+    DERPY_V0_URDF_VERSION,
+    NUM_MOTORS,
+    RAINBOW_DASH_V0_URDF_VERSION,
+    Randomizers,
+)
 
+__all__ = [
+    "DERPY_V0_URDF_VERSION",
+    "DESIRED_PITCH",
+    "INIT_EXTENSION_POS",
+    "INIT_SWING_POS",
+    "MOVING_FLOOR_TOTAL_STEP",
+    "NUM_MOTORS",
+    "PERTURBATION_TOTAL_STEP",
+    "RAINBOW_DASH_V0_URDF_VERSION",
+    "STEP_AMPLITUDE",
+    "STEP_PERIOD",
+    "MinitaurFourLegStandEnv",
+]
+
+DESIRED_PITCH = 0
+STEP_PERIOD = 1.0 / 3.0
+STEP_AMPLITUDE = 0.75
+PERTURBATION_TOTAL_STEP = 100
 INIT_EXTENSION_POS = 2.0
 INIT_SWING_POS = 0.0
 MOVING_FLOOR_TOTAL_STEP = 100

@@ -14,9 +14,36 @@ from pybullet_envs.minitaur.envs.env_randomizer_base import EnvRandomizerBase
 from pybullet_envs.minitaur.envs.minitaur import SENSOR_NOISE_STDDEV, Minitaur
 from pybullet_envs.minitaur.envs.minitaur_derpy import MinitaurDerpy
 from pybullet_envs.minitaur.envs.minitaur_rainbow_dash import MinitaurRainbowDash
-from pybullet_envs.minitaur_env_bases import MinitaurEnvBase, Step
+from pybullet_envs.minitaur_env_bases import ACTION_EPS, OBSERVATION_EPS, MinitaurEnvBase, Step
+
+__all__ = [
+    "ACTION_EPS",
+    "BASE_ORIENTATION_OBSERVATION_INDEX",
+    "DEFAULT_URDF_VERSION",
+    "DERPY_V0_URDF_VERSION",
+    "MINIATUR_URDF_VERSION_MAP",
+    "MOTOR_ANGLE_OBSERVATION_INDEX",
+    "MOTOR_TORQUE_OBSERVATION_INDEX",
+    "MOTOR_VELOCITY_OBSERVATION_INDEX",
+    "NUM_MOTORS",
+    "NUM_SIMULATION_ITERATION_STEPS",
+    "OBSERVATION_EPS",
+    "RAINBOW_DASH_V0_URDF_VERSION",
+    "RENDER_HEIGHT",
+    "RENDER_WIDTH",
+    "MinitaurGymEnv",
+    "Randomizers",
+    "convert_to_list",
+]
 
 NUM_MOTORS = 8
+# Where in an observation the values of the motors and of the base begin.
+MOTOR_ANGLE_OBSERVATION_INDEX = 0
+MOTOR_VELOCITY_OBSERVATION_INDEX = MOTOR_ANGLE_OBSERVATION_INDEX + NUM_MOTORS
+MOTOR_TORQUE_OBSERVATION_INDEX = MOTOR_VELOCITY_OBSERVATION_INDEX + NUM_MOTORS
+BASE_ORIENTATION_OBSERVATION_INDEX = MOTOR_TORQUE_OBSERVATION_INDEX + NUM_MOTORS
+# Size of the images of `render` [pixels].
+RENDER_HEIGHT, RENDER_WIDTH = 360, 480
 DEFAULT_URDF_VERSION = "default"
 DERPY_V0_URDF_VERSION = "derpy_v0"
 RAINBOW_DASH_V0_URDF_VERSION = "rainbow_dash_v0"
@@ -32,6 +59,11 @@ _STEPS = {True: (0.01, 5), False: (0.01, 1)}
 Randomizers = EnvRandomizerBase | Iterable[EnvRandomizerBase] | None
 
 
+def convert_to_list(obj: Any) -> Any:
+    """What can be iterated over as it is, anything else in a list."""
+    return obj if isinstance(obj, Iterable) else [obj]
+
+
 class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
     """A Minitaur learns to walk far along x with little energy.
 
@@ -44,7 +76,7 @@ class MinitaurGymEnv(MinitaurEnvBase[Minitaur]):
     """
 
     metadata = {"render_modes": ["human", "rgb_array"], "render_fps": 100}  # noqa: RUF012  # as Gymnasium has it
-    picture_size = (480, 360)
+    picture_size = (RENDER_WIDTH, RENDER_HEIGHT)
     _reset_duration = 1.0
 
     def __init__(

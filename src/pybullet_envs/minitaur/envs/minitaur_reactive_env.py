@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
-from pybullet_envs.minitaur.envs.leg_pose_env import LegPoseEnv
+from collections import namedtuple
+
+from pybullet_envs.minitaur.envs.leg_pose_env import NUM_LEGS, LegPoseEnv
 from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, Randomizers
+
+__all__ = [
+    "INIT_EXTENSION_POS",
+    "INIT_SWING_POS",
+    "NUM_LEGS",
+    "MinitaurPose",
+    "MinitaurReactiveEnv",
+]
 
 INIT_EXTENSION_POS = 2.0
 INIT_SWING_POS = 0.0
 _MOST_ACTION = 0.5
+
+MinitaurPose = namedtuple(
+    "MinitaurPose",
+    [f"{part}_angle_{leg}" for part in ("swing", "extension") for leg in range(1, NUM_LEGS + 1)],
+)
+"""Swings, then extensions of all legs [rad]."""
 
 
 class MinitaurReactiveEnv(LegPoseEnv):

@@ -10,8 +10,15 @@ import numpy as np
 
 import pybullet
 from pybullet_envs.minitaur.envs.minitaur import SENSOR_NOISE_STDDEV
-from pybullet_envs.minitaur.envs.minitaur_gym_env import MinitaurGymEnv
+from pybullet_envs.minitaur.envs.minitaur_gym_env import ACTION_EPS, MinitaurGymEnv
 from pybullet_envs.minitaur_env_bases import Step
+
+__all__ = [
+    "ACTION_EPS",
+    "LIMIT_FALLEN",
+    "RANGE_OF_LEG_MOTION",
+    "MinitaurStandGymEnv",
+]
 
 RANGE_OF_LEG_MOTION = 0.7
 LIMIT_FALLEN = 0.7
