@@ -27,6 +27,7 @@ from tests.surface.scene import build
 
 import pybullet as p
 import pybullet_data
+from pybullet._clients.clients import clients
 
 LONGEST = 5.0
 """A call may take so long [s]: time of the processor, of which a busy machine gives less."""
@@ -35,7 +36,7 @@ ALLOWED = (p.error, TypeError, OverflowError)
 _SHOWN = 40
 _SCENE_LASTS = 1000
 _MOST_BODIES = 40
-_MOST_SUBSTEPS, _MOST_ITERATIONS = 100, 1000
+_MOST_SUBSTEPS, _MOST_SWEEPS = 100, 1000
 
 
 class Fuzzer:
@@ -90,13 +91,14 @@ class Fuzzer:
         seconds = process_time() - start
         self.slowest = max(self.slowest, (seconds, str(operation)))
         if seconds > LONGEST:
-            raise Broken(f"it took {seconds:.1f} s")
+            raise Broken(f"it took {seconds:.1f} s, with {clients[0].world.parameters}")
 
 
 def _lighten() -> None:
     """Take back parameters with which a step takes seconds, or a million operations would take weeks."""
-    parameters = p.getPhysicsEngineParameters()
-    if parameters["numSubSteps"] > _MOST_SUBSTEPS or parameters["numSolverIterations"] > _MOST_ITERATIONS:
+    parameters = clients[0].world.parameters
+    sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations
+    if parameters.substeps > _MOST_SUBSTEPS or sweeps > _MOST_SWEEPS:
         p.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=50, numNonContactInnerIterations=1)
 
 
