@@ -278,3 +278,16 @@ def test_axisangle_turns_bodies_in_mujoco_alone(tmp_path: Path) -> None:
     turned, left = (only(read_mjcf(file, as_mujoco=so)).pose.orientation for so in (True, False))
     assert_allclose(turned, (0, 0, HALF, HALF), rtol=0, atol=1e-6)
     assert_allclose(left, (HALF, 0, 0, HALF), rtol=0, atol=1e-6)
+
+
+def test_a_class_that_does_not_exist_is_the_main_one_in_pybullet(tmp_path: Path) -> None:
+    file = tmp_path / "file.xml"
+    body = (
+        '<body><joint name="j" class="nowhere"/><geom type="sphere" class="nowhere" rgba="1 0 0 1"/></body>'
+    )
+    defaults = '<default><joint limited="true" range="-1 2"/><geom size="3"/></default>'
+    file.write_text(f"<mujoco><compiler angle='radian'/>{defaults}<worldbody>{body}</worldbody></mujoco>")
+    limit = only(read_mjcf(file, as_mujoco=False)).robot.joints[0].limit
+    assert (limit.lower, limit.upper) == (-1, 2)
+    with pytest.raises(DescriptionError, match="there is no default class 'nowhere'"):
+        read_mjcf(file, as_mujoco=True)

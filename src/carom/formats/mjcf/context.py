@@ -58,7 +58,7 @@ class MjcfContext(FileContext):
         unnamed: Number of names generated so far.
         colours: Geoms have the colours that the file states.
         implicit: Capsules given by their ends are capsules, not PyBullet's swept spheres.
-        as_mujoco: `axisangle` turns bodies, and classes limit joints; PyBullet ignores both.
+        as_mujoco: `axisangle` turns bodies, and classes limit joints and have to exist, unlike in PyBullet.
     """
 
     def __init__(self, file: Path, root: Element, search: AssetSearch) -> None:

@@ -32,13 +32,18 @@ def read_defaults(context: MjcfContext, element: Element, parent: str | None = N
 
 
 def class_defaults(context: MjcfContext, element: Element, child_class: str | None) -> Attributes:
-    """The defaults of an element: from its class, that of the enclosing bodies, or the main one."""
+    """The defaults of an element: from its class, that of the enclosing bodies, or the main one.
+
+    A class that does not exist is an error for MuJoCo; PyBullet takes the main one instead.
+    """
     name = element.attributes.get("class") or child_class or MAIN
-    if name not in context.classes:
-        if name != MAIN:
-            raise context.error(element, f"there is no default class {shown(name)}")
-        return {}
-    return context.classes[name].get(element.tag, {})
+    if name not in context.classes and name != MAIN:
+        problem = f"there is no default class {shown(name)}"
+        if context.as_mujoco:
+            raise context.error(element, problem)
+        context.warn(element, f"{problem}; the main one is used")
+        name = MAIN
+    return context.classes.get(name, {}).get(element.tag, {})
 
 
 def limits_left_out(
