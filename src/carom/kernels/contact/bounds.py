@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_velocity
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
+from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, FIRST_PART, PLANE, SPHERE
@@ -63,7 +64,7 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
     also gets the bounds of its link.
     """
     pose = state.link_pose[world, shapes.shape_link[shape]] * shapes.shape_pose[shape]
-    frame = wp.quat_to_matrix(wp.transform_get_rotation(pose))
+    frame = rotation_matrix(wp.transform_get_rotation(pose))
     position = wp.transform_get_translation(pose)
     pairs.shape_position[world, shape] = position
     pairs.shape_frame[world, shape] = frame
@@ -86,7 +87,7 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
         pairs.shape_part_upper[world, shape] = center + half_extents
         if kind != PLANE and half_extents[0] >= 0.0:
             link = shapes.shape_link[shape]
-            axes = wp.quat_to_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
+            axes = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
             place = wp.transform_get_translation(state.link_pose[world, link])
             center = place + axes * shapes.link_center[link]
             half_extents = magnitudes(axes) * shapes.link_extents[link]
