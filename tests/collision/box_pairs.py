@@ -17,6 +17,8 @@ OFFSETS = ((0.1, 0.0), (0.0, 0.1), (0.1, 0.1), (-0.1, 0.05), (0.03, 0.0), (0.0, 
 STACKS = (0, 3, 5, 9)
 """Seeds of stacks that a shift by 1e-13 m does not make move another way in PyBullet, as it does others."""
 STEPS = 480
+DROPS = (1e-3, 5e-3)
+"""Heights from which cubes fall [m]."""
 
 
 def _about(axis: Numbers, angle: float) -> Numbers:
@@ -102,6 +104,19 @@ def build_stack(p: Any, seed: int) -> list[int]:
         place = [random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), 0.0799 + 0.1599 * height]
         bodies.append(p.createMultiBody(1, shape, -1, place, _about([0, 0, 1], random.uniform(-0.6, 0.6))))
     return bodies
+
+
+def build_cubes(p: Any, drop: float) -> list[int]:
+    """27 cubes with gaps of 5 mm, each `drop` above what is below it, over a large box."""
+    p.resetSimulation()
+    p.setGravity(0, 0, -9.81)
+    ground = p.createCollisionShape(p.GEOM_BOX, halfExtents=[20, 20, 0.5])
+    p.createMultiBody(0, ground, basePosition=[0, 0, -0.5])
+    cube = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+    return [
+        p.createMultiBody(1, cube, basePosition=[0.205 * x, 0.205 * y, 0.1 + drop + (0.2 + drop) * z])
+        for x, y, z in product(range(3), repeat=3)
+    ]
 
 
 def follow(p: Any, bodies: list[int]) -> list[Numbers]:

@@ -6,7 +6,16 @@ import json
 from pathlib import Path
 from typing import Any
 
-from tests.collision.box_pairs import STACKS, aligned_pairs, build_stack, follow, points, tilted_pairs
+from tests.collision.box_pairs import (
+    DROPS,
+    STACKS,
+    aligned_pairs,
+    build_cubes,
+    build_stack,
+    follow,
+    points,
+    tilted_pairs,
+)
 
 import pybullet as p
 
@@ -21,6 +30,8 @@ def main() -> None:
     }
     for seed in STACKS:
         found[f"stack {seed}"] = follow(p, build_stack(p, seed))
+    for drop in DROPS:
+        found[f"cubes {drop}"] = follow(p, build_cubes(p, drop))
     lines = [
         f"{json.dumps(name)}: {json.dumps([[round(number, 10) for number in row] for row in rows])}"
         for name, rows in found.items()

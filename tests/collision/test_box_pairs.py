@@ -9,7 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.collision.box_pairs import STACKS, aligned_pairs, build_stack, follow, points, tilted_pairs
+from tests.collision.box_pairs import (
+    DROPS,
+    STACKS,
+    aligned_pairs,
+    build_cubes,
+    build_stack,
+    follow,
+    points,
+    tilted_pairs,
+)
 
 import pybullet as p
 from pybullet._clients.clients import client_of
@@ -40,3 +49,10 @@ def test_a_stack_of_turned_boxes_moves_as_recorded(seed: int) -> None:
     bodies = build_stack(p, seed)
     client_of(0).world.parameters.contact_warm_starting = 0.0
     assert_allclose(follow(p, bodies), RECORDED[f"stack {seed}"], atol=1e-9)
+
+
+@pytest.mark.parametrize("drop", DROPS)
+def test_cubes_land_as_recorded_although_their_faces_are_equally_deep(drop: float) -> None:
+    bodies = build_cubes(p, drop)
+    client_of(0).world.parameters.contact_warm_starting = 0.0
+    assert_allclose(follow(p, bodies), RECORDED[f"cubes {drop}"], atol=1e-9)

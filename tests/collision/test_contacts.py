@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, box, capsule, cylinder, hull, plane, sphere
 
+from carom.layouts.codes import Part
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * 0.5
@@ -213,7 +214,7 @@ def test_parts_of_a_compound_make_contacts_only_where_their_bounds_meet():
     scene = Scene([box((0.5, 0.5, 0.5)), sphere(0.5, position=(0, 0, 1.01))])
     scene.collide()
     assert len(scene.contacts("distance")) == 1
-    scene.numpy("shapes")["link_shape_count"][1] = 2
+    scene.numpy("shapes")["shape_part"][1] = Part.OTHER
     scene.collide()
     assert len(scene.contacts("distance")) == 0
     scene.place(1, (0, 0, 0.9999))
@@ -223,7 +224,7 @@ def test_parts_of_a_compound_make_contacts_only_where_their_bounds_meet():
 
 def test_parts_of_a_compound_always_meet_the_bounds_of_a_plane():
     scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.51))])
-    scene.numpy("shapes")["link_shape_count"][1] = 2
+    scene.numpy("shapes")["shape_part"][1] = Part.OTHER
     scene.collide()
     assert len(scene.contacts("distance")) == 1
     scene.place(1, (0, 0, 0.5201))

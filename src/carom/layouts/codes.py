@@ -56,6 +56,14 @@ class ShapeKind(IntEnum):
     HEIGHTFIELD = 7  # half extents of its bounds
 
 
+class Part(IntEnum):
+    """Whether Bullet has a shape in a compound: its link has other shapes, or its pose is no identity."""
+
+    ALONE = 0
+    FIRST = 1  # of its link; it stands for the link where bounds of links matter
+    OTHER = 2
+
+
 class Rolling(IntEnum):
     """How a shape can roll: about an axis of its frame; OFF_FACES: a hull, unless it lies on a face."""
 
@@ -111,6 +119,7 @@ MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER = map(int, ConstraintKind)
 USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR = map(int, UserConstraintKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)
+ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 NO_ROLLING = int(Rolling.NONE)
 ROLLING_ABOUT_X = int(Rolling.ABOUT_X)
 ROLLING_ABOUT_ANY = int(Rolling.ABOUT_ANY)

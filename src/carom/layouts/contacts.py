@@ -85,6 +85,7 @@ class Shapes:
     shape_size: Vectors3  # see `codes.ShapeKind`
     shape_pose: Transforms  # in the link's inertial frame
     shape_rolling: Ints  # see `codes.Rolling`
+    shape_part: Ints  # see `codes.Part`
     shape_margin: Reals
     shape_breaking: Reals  # breaking distance of contacts [m]
     shape_ccd_radius: Reals  # of the swept sphere of continuous detection [m]
@@ -111,6 +112,9 @@ class Shapes:
 
     link_first_shape: Ints
     link_shape_count: Ints
+    # Of links whose shapes are in a compound: bounds along the axes of the inertial frame, margins included.
+    link_center: Vectors3
+    link_extents: Vectors3  # half the size
     link_group: Ints
     link_mask: Ints
     link_self_collision: Ints  # loading flags for self-collision
@@ -166,8 +170,12 @@ class Pairs:
 
     shape_position: Vector3Rows  # of the shape frame, in world axes
     shape_frame: Matrix3Rows  # its rotation matrix
-    shape_lower: Vector3Rows  # bounds in world axes, without any threshold
+    # Bounds in world axes, without any threshold. The first part of a compound has those of its whole link
+    # here, as they are in Bullet, and its own in `shape_part_lower` and `shape_part_upper`.
+    shape_lower: Vector3Rows
     shape_upper: Vector3Rows
+    shape_part_lower: Vector3Rows
+    shape_part_upper: Vector3Rows
     shape_code: IntRows  # position along a space-filling curve
     shape_order: IntRows  # shapes sorted by this position, then the planes
     shape_sorted: IntRows  # workspace of the sort

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field
+from math import hypot
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from carom.layouts.codes import Part
 from carom.layouts.contacts import Shapes
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
@@ -29,6 +31,11 @@ FIXED_GROUP, FIXED_MASK = 2, -1 ^ 2
 
 BREAKING_FRACTION = 0.02
 """Breaking distance of a contact, relative to the reach of the smaller shape."""
+
+# A shape whose pose in its link differs from the identity by less is in no compound.
+_IDENTITY_TOLERANCE = 1e-12
+# Half extent of links with planes [m]; its square is still finite.
+_UNBOUNDED = 1e18
 
 # Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
 _INDEX_FIELDS = {
@@ -217,6 +224,8 @@ class ShapeArrays:
             numpy["link_shape_count"][link] += 1
             self._write_piece(body, placed, at)
             at["shape"] += 1
+        for link in {placed.link for placed in pieces}:
+            self._write_link_bounds(body, link)
 
     def _write_piece(self, body: BodyShapes, placed: PlacedPiece, at: dict[str, int]) -> None:
         """Write what can change in a piece, to the rows `at`; those of vertices, faces and nodes advance."""
@@ -369,6 +378,19 @@ class ShapeArrays:
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
             at["corner"] = int(numpy["face_first_corner"][at["face"]]) if placed.piece.polyhedron else 0
             self._write_piece(body, placed, at | {"shape": row})
+        self._write_link_bounds(body, link)
+
+    def _write_link_bounds(self, body: BodyShapes, link: int) -> None:
+        """Write the bounds of a link with shapes, and whether these are in a compound."""
+        numpy, row, bounds = self.table.numpy, body.rows.first["link"] + link, body.bounds[link]
+        shapes = self._shapes_of(row)
+        pose = numpy["shape_pose"][shapes.start]
+        alone = shapes.stop - shapes.start == 1 and hypot(*pose[:6]) <= _IDENTITY_TOLERANCE
+        numpy["shape_part"][shapes] = Part.ALONE if alone else Part.OTHER
+        if not alone:
+            numpy["shape_part"][shapes.start] = Part.FIRST
+        numpy["link_center"][row] = bounds.center
+        numpy["link_extents"][row] = np.minimum(bounds.half, _UNBOUNDED)
 
     def _fits(self, piece: ShapePiece, row: int) -> bool:
         """Whether a piece has the same kind and the same numbers of rows as the piece in a row."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ..scenario import scenario, simulate
+from ..scenario import scenario, simulate, under
 
 HALF = 0.1
 
@@ -48,3 +48,33 @@ def boxes_of_a_stack_in_order_of_bodies_slide(p: Any) -> dict[str, Any]:
     p.setPhysicsEngineParameter(deterministicOverlappingPairs=1)
     bodies = _boxes(p, [HALF + 0.005 + 0.205 * i for i in (2, 0, 4, 5, 1, 3)])
     return simulate(p, 0.25, lambda: _places(p, bodies))
+
+
+def _cubes(p: Any, floor: int, places: Sequence[tuple[float, ...]]) -> list[int]:
+    """Cubes above an infinite plane or on top of a large box."""
+    p.resetSimulation()
+    p.setGravity(0, 0, -9.81)
+    if floor == p.GEOM_PLANE:
+        p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    else:
+        ground = p.createCollisionShape(p.GEOM_BOX, halfExtents=[20, 20, 0.5])
+        p.createMultiBody(0, ground, basePosition=[0, 0, -0.5])
+    shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[HALF, HALF, HALF])
+    return [p.createMultiBody(1, shape, basePosition=place) for place in places]
+
+
+@scenario(tolerance=1e-9)
+def cubes_that_touch_slide(p: Any) -> dict[str, Any]:
+    """Rows and columns of three cubes that touch each other exactly slide on a box and on a plane.
+
+    Several faces are equally deep, so rounding decides which one touches; they agree to rounding.
+    """
+    results: dict[str, Any] = {}
+    for name, floor in {"box": p.GEOM_BOX, "plane": p.GEOM_PLANE}.items():
+        for layout, step in {"row": (2 * HALF, 0.0), "column": (0.0, 2 * HALF)}.items():
+            bodies = _cubes(p, floor, [(i * step[0], 0.0, HALF + i * step[1]) for i in range(3)])
+            for body in bodies:
+                p.resetBaseVelocity(body, [1, 0, 0])
+            observed = simulate(p, 0.3, lambda b=bodies: _places(p, b), stride=12)
+            results |= under(f"{layout} on a {name}", observed)
+    return results

@@ -5,10 +5,11 @@ The scenarios end before bodies come to rest, since those are solved more precis
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
-from ..scenario import scenario, simulate, under
+from ..scenario import load_asset, scenario, simulate, under
 
 HALF = 0.1
 
@@ -89,3 +90,85 @@ def arms_side_by_side_swing(p: Any) -> dict[str, Any]:
         }
 
     return simulate(p, 0.25, observe, stride=4)
+
+
+def _crooked_arm(p: Any, y: float) -> int:
+    """An arm like `_arm`, of links with two shapes each, centres of mass beside them and inertias turned."""
+    half = [[0.02, 0.03, 0.07], [0.03, 0.01, 0.02]]
+    count = 4
+    shapes = [
+        p.createCollisionShapeArray(
+            shapeTypes=[p.GEOM_BOX, p.GEOM_SPHERE],
+            halfExtents=half,
+            radii=[0.0, 0.015 + 0.002 * i],
+            collisionFramePositions=[[0.01, 0, 0], [0.03, 0.02 * (i - 1), 0.04]],
+        )
+        for i in range(count)
+    ]
+    return p.createMultiBody(
+        baseMass=0,
+        basePosition=[0, y, 0],
+        linkMasses=[1.0, 0.8, 0.6, 0.4],
+        linkCollisionShapeIndices=shapes,
+        linkVisualShapeIndices=[-1] * count,
+        linkPositions=[[0, 0, 0.1]] + [[0, 0, 0.2]] * (count - 1),
+        linkOrientations=[[0, 0, 0, 1]] * count,
+        linkInertialFramePositions=[[0.01, 0.005, 0.02]] * count,
+        linkInertialFrameOrientations=[p.getQuaternionFromEuler([0.3, 0.2, 0.5])] * count,
+        linkParentIndices=list(range(count)),
+        linkJointTypes=[p.JOINT_REVOLUTE] * count,
+        linkJointAxis=[[1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 0, 1]],
+    )
+
+
+@scenario(tolerance=1e-9)
+def arms_of_compounds_side_by_side_swing(p: Any) -> dict[str, Any]:
+    """Links of several shapes: the box around a link counts, at several distances. They agree to rounding."""
+    results: dict[str, Any] = {}
+    for gap in (0.2, 0.22, 0.24):
+        p.resetSimulation()
+        p.setGravity(0, 0, -9.81)
+        arms = [_crooked_arm(p, gap * i) for i in range(3)]
+        for i, arm in enumerate(arms):
+            for joint in range(4):
+                p.resetJointState(arm, joint, 0.02 * (joint + 1), 0.1 * (i + 1))
+                p.setJointMotorControl2(
+                    arm, joint, p.POSITION_CONTROL, targetPosition=0.05, force=3.0 + i + joint
+                )
+        observed = simulate(
+            p,
+            0.25,
+            lambda arms=arms: {
+                f"joints of {i}": [state[0] for state in p.getJointStates(arm, range(4))]
+                for i, arm in enumerate(arms)
+            },
+            stride=4,
+        )
+        results |= under(f"{gap} apart", observed)
+    return results
+
+
+@scenario(tolerance=1e-9)
+def kukas_side_by_side_reach(p: Any) -> dict[str, Any]:
+    """Three arms whose bounds meet on the way, 55 cm apart, driven to each side: they agree to rounding."""
+    p.setGravity(0, 0, -9.81)
+    arms = [
+        load_asset(p, "kuka_iiwa/model.urdf", basePosition=[0, 0.55 * i, 0], useFixedBase=True)
+        for i in range(3)
+    ]
+
+    def control(step: int) -> None:
+        for i, arm in enumerate(arms):
+            for joint in range(7):
+                reach = 0.6 * math.sin(0.01 * step * (1 + 0.1 * joint) + i + joint)
+                if joint == 1:
+                    reach *= 0.8 if i % 2 else -0.8
+                p.setJointMotorControl2(arm, joint, p.POSITION_CONTROL, targetPosition=reach, force=60)
+
+    def observe() -> dict[str, Any]:
+        return {
+            f"joints of {i}": [state[0] for state in p.getJointStates(arm, range(7))]
+            for i, arm in enumerate(arms)
+        }
+
+    return simulate(p, 1.6, observe, control, stride=24)

@@ -4,9 +4,10 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_velocity
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
+from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, PLANE, SPHERE
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, FIRST_PART, PLANE, SPHERE
 
 # Half extent of a shape without bounds, such as a plane [m]; its square is still finite.
 UNBOUNDED = real(1.0e18)
@@ -59,10 +60,11 @@ def magnitudes(matrix: Matrix3) -> Matrix3:
 def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape: Int32):
     """Write the world pose and bounds of one shape; as in Bullet, the box around its rotated local box.
 
-    A shape whose pose is not finite gets empty bounds, so that it is in no pair.
+    A shape whose pose is not finite gets empty bounds, so that it is in no pair. The first part of a compound
+    also gets the bounds of its link.
     """
     pose = state.link_pose[world, shapes.shape_link[shape]] * shapes.shape_pose[shape]
-    frame = wp.quat_to_matrix(wp.transform_get_rotation(pose))
+    frame = rotation_matrix(wp.transform_get_rotation(pose))
     position = wp.transform_get_translation(pose)
     pairs.shape_position[world, shape] = position
     pairs.shape_frame[world, shape] = frame
@@ -80,8 +82,25 @@ def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape:
     if not wp.isfinite(total):
         center = Vector3(0.0, 0.0, 0.0)
         half_extents = -Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
+    if shapes.shape_part[shape] == FIRST_PART:
+        pairs.shape_part_lower[world, shape] = center - half_extents
+        pairs.shape_part_upper[world, shape] = center + half_extents
+        if kind != PLANE and half_extents[0] >= 0.0:
+            link = shapes.shape_link[shape]
+            axes = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
+            place = wp.transform_get_translation(state.link_pose[world, link])
+            center = place + axes * shapes.link_center[link]
+            half_extents = magnitudes(axes) * shapes.link_extents[link]
     pairs.shape_lower[world, shape] = center - half_extents
     pairs.shape_upper[world, shape] = center + half_extents
+
+
+@func
+def own_bounds(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32):
+    """Minimum and maximum corner of the bounds of a shape itself, not of its link."""
+    if shapes.shape_part[shape] == FIRST_PART:
+        return pairs.shape_part_lower[world, shape], pairs.shape_part_upper[world, shape]
+    return pairs.shape_lower[world, shape], pairs.shape_upper[world, shape]
 
 
 @func

@@ -13,8 +13,9 @@ import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
 from carom.kernels.maths.min_max import lower_corner, upper_corner
-from carom.kernels.structs import Pairs, Settings
+from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.layouts.codes import OTHER_PART
 
 _NONE = wp.constant(-1)
 
@@ -164,11 +165,14 @@ def end_of_turn(pairs: Pairs, world: Int32, first: Int32, count: Int32, turn: In
 
 
 @func
-def sort_as_in_new_scene(settings: Settings, pairs: Pairs, world: Int32, count: Int32, widening: real):
+def sort_as_in_new_scene(
+    settings: Settings, shapes: Shapes, pairs: Pairs, world: Int32, count: Int32, widening: real
+):
     """Sort new overlaps of the same turn, of which there are `count` in all, by building Bullet's tree.
 
     Args:
         settings: Number of shapes.
+        shapes: Which of them stand for their links: these are the leaves.
         pairs: Bounds of the shapes; `queue_turn` has the new overlaps sorted by turn, see `overlaps.turn_of`.
         world: The world.
         count: Number of new overlaps.
@@ -181,7 +185,7 @@ def sort_as_in_new_scene(settings: Settings, pairs: Pairs, world: Int32, count: 
         shape = turn % settings.shape_count
         lower = pairs.shape_lower[world, shape]
         upper = pairs.shape_upper[world, shape]
-        if lower[0] <= upper[0]:
+        if lower[0] <= upper[0] and shapes.shape_part[shape] != OTHER_PART:
             node = settings.shape_count + shape
             if turn >= settings.shape_count:
                 root, node = remove_leaf(pairs, world, root, shape)

@@ -7,11 +7,12 @@ lasts for several substeps (`neighbour_list.py`).
 
 import warp as wp
 
-from carom.kernels.contact.bounds import gap_between, is_bounded, look_ahead, place_shapes
+from carom.kernels.contact.bounds import gap_between, is_bounded, look_ahead, own_bounds, place_shapes
 from carom.kernels.contact.contact_margins import bounds_margin, is_part_of_compound
 from carom.kernels.contact.neighbour_list import renew_list
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, Shapes, State
-from carom.kernels.types import Int32, func
+from carom.kernels.types import Int32, func, real
+from carom.layouts.codes import OTHER_PART
 from carom.layouts.contacts import (
     CLOSE,
     CLOSE_WITH_MANIFOLD,
@@ -39,8 +40,7 @@ def nearness_to_plane(
     normal = pairs.shape_frame[world, plane] * shapes.shape_size[plane]
     along = wp.abs(normal)
     height = wp.dot(normal, pairs.shape_position[world, plane])
-    lower = pairs.shape_lower[world, b]
-    upper = pairs.shape_upper[world, b]
+    lower, upper = own_bounds(shapes, pairs, world, b)
     nearest = 0.5 * (wp.dot(normal, lower + upper) - wp.dot(along, upper - lower)) - height
     if nearest <= bounds_margin(shapes, pairs, world, plane, b):
         return Int32(MEETING)
@@ -49,21 +49,47 @@ def nearness_to_plane(
 
 @func
 def nearness_of(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> Int32:
-    """The nearness of two bounded shapes."""
+    """The nearness of two bounded shapes.
+
+    Bullet compares the bounds of links. Of a compound, only parts whose own bounds meet the other shape have
+    a manifold; the first part stands for the link as well.
+    """
     gap = gap_between(
         pairs.shape_lower[world, a],
         pairs.shape_upper[world, a],
         pairs.shape_lower[world, b],
         pairs.shape_upper[world, b],
     )
-    if gap <= bounds_margin(shapes, pairs, world, a, b):
-        return Int32(MEETING)
-    if gap > NEAR:
-        return Int32(FAR)
-    # Bullet has no manifold for them if one is a part of a compound.
+    margin = bounds_margin(shapes, pairs, world, a, b)
     if is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b):
-        return Int32(CLOSE)
-    return Int32(CLOSE_WITH_MANIFOLD)
+        return nearness_of_parts(shapes, pairs, world, a, b, gap, margin)
+    if gap <= margin:
+        return Int32(MEETING)
+    return wp.where(gap > NEAR, Int32(FAR), Int32(CLOSE_WITH_MANIFOLD))
+
+
+@func
+def nearness_of_parts(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, gap: real, margin: real
+) -> Int32:
+    """The nearness of two shapes of which one is a part of a compound.
+
+    Args:
+        shapes: All shapes.
+        pairs: Their bounds.
+        world: The world.
+        a: A shape.
+        b: The other one.
+        gap: Gap between their bounds, which are those of the link for the first part of a compound [m].
+        margin: Largest gap between their own bounds at which they meet [m].
+    """
+    if gap <= margin:
+        lower_a, upper_a = own_bounds(shapes, pairs, world, a)
+        lower_b, upper_b = own_bounds(shapes, pairs, world, b)
+        if gap_between(lower_a, upper_a, lower_b, upper_b) <= margin:
+            return Int32(MEETING)
+    stand_for_links = shapes.shape_part[a] != OTHER_PART and shapes.shape_part[b] != OTHER_PART
+    return wp.where(stand_for_links and gap <= NEAR, Int32(CLOSE), Int32(FAR))
 
 
 @func

@@ -10,9 +10,7 @@ from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
 from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.structs import Pairs, Shapes
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import BOX, PLANE, SPHERE, TRIANGLES
-
-IDENTITY_TOLERANCE = real(1.0e-12)
+from carom.layouts.codes import ALONE, BOX, PLANE, SPHERE, TRIANGLES
 
 
 @func
@@ -24,14 +22,7 @@ def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
 @func
 def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
     """Whether Bullet puts a shape in a compound: its link has other shapes, or its pose is no identity."""
-    if shapes.link_shape_count[shapes.shape_link[shape]] > 1:
-        return True
-    pose = shapes.shape_pose[shape]
-    offset = wp.transform_get_translation(pose)
-    turn = wp.transform_get_rotation(pose)
-    return wp.dot(offset, offset) + turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2] > (
-        IDENTITY_TOLERANCE * IDENTITY_TOLERANCE
-    )
+    return shapes.shape_part[shape] != ALONE
 
 
 @func

@@ -73,8 +73,9 @@ def turn_of(
         pair: The two shapes.
         known: Number of shapes that are not new.
     """
-    a = pair[0]
-    b = pair[1]
+    # What stands for the links of both.
+    a = shapes.link_first_shape[shapes.shape_link[pair[0]]]
+    b = shapes.link_first_shape[shapes.shape_link[pair[1]]]
     b_is_new = b >= known
     if b_is_new:
         widening = wp.where(a < known, WIDENING, real(0.0))
@@ -128,4 +129,4 @@ def sort_new(
                 pairs.queue_turn[world, place] = i
                 pairs.shape_pair_end[world, turn] = place + 1
     if known == 0:
-        sort_as_in_new_scene(settings, pairs, world, count, WIDENING)
+        sort_as_in_new_scene(settings, shapes, pairs, world, count, WIDENING)

@@ -5,7 +5,6 @@ import math
 import warp as wp
 
 from carom.kernels.contact.bounds import magnitudes
-from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.maths.rotation import column
 from carom.kernels.shapes.cores import toward
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real, shared_func
@@ -18,10 +17,6 @@ EDGE_SHARE = real(0.05)
 # Edges reach further than they do by this share of the boxes' half extents: where boxes just touch, all gaps
 # are equal.
 EDGE_REACH = real(1.0e-5)
-# The gap of a face axis of b must exceed that of a face axis of a by this share.
-FACE_SHARE = real(1.0e-6)
-# Tolerance on the largest gap, as a share of the boxes' size: rounding must not decide whether boxes touch.
-TOUCHING_SHARE = real(1.0e-12)
 # Squared sine of the angle below which edges are parallel; the face axes are then sufficient.
 PARALLEL_SQ = real(math.ulp(1.0) ** 2)
 # Squared sine of the angle up to which edges have no nearest points.
@@ -57,9 +52,15 @@ def box_axis(
     turn = wp.transpose(frame_a) * frame_b
     t = wp.transpose(frame_a) * offset
     size = magnitudes(turn)
-    gaps_a = wp.abs(t) - half_a - size * half_b
-    t_in_b = wp.transpose(turn) * t
-    gaps_b = wp.abs(t_in_b) - half_b - wp.transpose(size) * half_a
+    t_in_b = wp.transpose(frame_b) * offset
+    gaps_a = Vector3(0.0, 0.0, 0.0)
+    gaps_b = Vector3(0.0, 0.0, 0.0)
+    for i in range(3):
+        # Summed in Bullet's order: rounding decides where boxes just touch, and between parallel faces.
+        reach_a = half_a[i] + half_b[0] * size[i, 0] + half_b[1] * size[i, 1] + half_b[2] * size[i, 2]
+        reach_b = half_a[0] * size[0, i] + half_a[1] * size[1, i] + half_a[2] * size[2, i] + half_b[i]
+        gaps_a[i] = wp.abs(t[i]) - reach_a
+        gaps_b[i] = wp.abs(t_in_b[i]) - reach_b
 
     code = Int32(FACE_A)
     axis = Int32(0)
@@ -72,11 +73,11 @@ def box_axis(
         axis = Int32(2)
     normal = column(frame_a, axis) * -toward(t[axis], 1.0)
     for i in range(3):
-        if gaps_b[i] > best + FACE_SHARE * wp.abs(best):
+        if gaps_b[i] > best:
             best = gaps_b[i]
             code = Int32(FACE_B)
             normal = column(frame_b, i) * -toward(t_in_b[i], 1.0)
-    if best > max_distance + TOUCHING_SHARE * (greatest_entry(wp.abs(t) + half_a + half_b)):
+    if best > max_distance:
         return Int32(APART), normal, best
 
     pair = Int32(0)
