@@ -8,7 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, OVERLAPS, SORTED, THERE, Contacts, UserConstraints
+from carom.layouts.contacts import (
+    CONTACT_COLUMNS,
+    KNOWN,
+    MOST_RESETS,
+    OVERLAPS,
+    RESETS,
+    RESETS_SEEN,
+    SORTED,
+    THERE,
+    Contacts,
+    UserConstraints,
+)
 from carom.model.builder import TreeRows, WorldArrays
 from carom.model.overlap_order import without_shapes
 from carom.model.shape_arrays import ShapeArrays
@@ -60,7 +71,7 @@ class ContactArrays:
 
     def forget_contacts(self) -> None:
         """Drop all contacts and overlaps, because the rows of their shapes will change."""
-        self.contacts.numpy["count_contacts"][:] = 0
+        self.contacts.numpy["count_contacts"][:, :RESETS] = 0
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
         """Prepare to remove a body's shapes from a single world, and all contacts; overlaps keep their order.
@@ -108,6 +119,23 @@ class ContactArrays:
         count = self.contact_count
         if count > 0:
             self.contacts.numpy["contact_warm_start"][0, :count] = 0.0
+
+    def note_reset(self, tree: int, *, moved: bool) -> None:
+        """Note that a body of a single world was reset, for the order in which its contacts are relaxed.
+
+        Only PyBullet's functions do so, since only there the order of calls is known to matter.
+
+        Args:
+            tree: Its tree.
+            moved: Whether it has another pose now; else only the first call after a step counts.
+        """
+        counts = self.contacts.numpy["count_contacts"][0]
+        numbers = self._arrays.state.numpy["tree_reset"][0]
+        if not moved and abs(numbers[tree]) > counts[RESETS_SEEN]:
+            return
+        count = min(int(counts[RESETS]) + 1, MOST_RESETS)
+        counts[RESETS] = count
+        numbers[tree] = -count if moved else count
 
     def reserve(self) -> None:
         """Grow arrays to the capacity of the arrays with the same axes."""

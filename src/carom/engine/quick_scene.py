@@ -110,6 +110,7 @@ class QuickScene:
         self.record.contact_count = contacts.count_contacts.data
         self.record.contact_warm_starts = contacts.contact_warm_start.data
         self.record.contact_room = contact_arrays.contacts.capacity["contact"]
+        self.record.tree_resets = state.tree_reset.data
         return TreeLaunch(forward_kinematics_kernel, KernelStructs(model=model, state=state))
 
     def know_step(

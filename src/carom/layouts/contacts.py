@@ -40,7 +40,8 @@ MARGIN = 0.001
 PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH = 0, 1, 2, 3, 4, 5
 START_CONTACTS, START_OVERLAPS, START_KNOWN = 6, 7, 8
 LISTED, LIST_AGE, LIST_IS_WIDE, LIST_FILTER = 9, 10, 11, 12
-COLUMNS = 13
+START_RESETS_SEEN = 13
+COLUMNS = 14
 # The neighbour list: number of its pairs; substeps since it was made; 1 if it has slack; `NO_LIST`, or one
 # more than `Settings.filter_both` was.
 NO_LIST = 0
@@ -53,9 +54,12 @@ STALE, PLACED, IN_HIERARCHY = 0, 1, 2
 # Number of buckets of the radix sort along the space-filling curve.
 RADIX = 256
 # Columns of `Contacts.count_contacts`: numbers of contacts, of overlaps, and of shapes whose overlaps
-# have been looked for; length of `overlap_sorted` plus one, at most 0 if it has to be made anew.
-THERE, OVERLAPS, KNOWN, SORTED = 0, 1, 2, 3
-CONTACT_COLUMNS = 4
+# have been looked for; length of `overlap_sorted` plus one, at most 0 if it has to be made anew; number of
+# resets of trees so far (`State.tree_reset`), and those of them before the last substep.
+THERE, OVERLAPS, KNOWN, SORTED, RESETS, RESETS_SEEN = 0, 1, 2, 3, 4, 5
+CONTACT_COLUMNS = 6
+# Resets are counted from 0 again after so many, and never beyond the second number.
+MANY_RESETS, MOST_RESETS = 2**30, 2**31 - 1
 # Place among manifolds of overlaps without a manifold.
 NO_MANIFOLD = -1
 # How near two shapes are: far; close, so that Bullet takes their bounds for overlapping, without and with a
@@ -181,6 +185,10 @@ class Pairs:
     shape_sorted: IntRows  # workspace of the sort
     shape_motion: RealRows  # distance by which continuous detection looks ahead [m]
     shape_pair_end: IntRows  # end of the pairs with it as first shape; of the new overlaps that it finds
+    # Shapes of trees that were reset since the last substep, in Bullet's order, and by shape its place there;
+    # see `kernels.contact.resets`.
+    shape_reset: IntRows
+    shape_reset_place: IntRows  # -1: not reset
     # Bounds and look-ahead distances for which the neighbour list was made.
     shape_listed_lower: Vector3Rows
     shape_listed_upper: Vector3Rows
@@ -265,7 +273,7 @@ class Contacts:
     overlap_place: IntRows  # in the pair cache
     overlap_manifold: IntRows  # place among manifolds, or NO_MANIFOLD
     overlap_sorted: IntRows  # the overlaps of trees that can move, in the order of relaxation
-    count_contacts: IntRows  # columns: THERE to SORTED
+    count_contacts: IntRows  # columns: THERE to RESETS_SEEN
 
 
 @struct

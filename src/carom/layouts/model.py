@@ -172,6 +172,8 @@ class State:
     tree_activity: IntRows  # see `codes.Activity`
     tree_wants_sleep: IntRows  # 1: falls asleep as soon as no tree of its island is active
     tree_idle_time: RealRows  # time with velocities below its sleep threshold [s]
+    # Number of the last reset that moved it, negative, or of the first one since a step; see `RESETS`.
+    tree_reset: IntRows
     batch_tree: IntRows  # by tree: first tree of those that Bullet sweeps over together with it
     batch_constraint: IntRows  # constraints in the order of relaxation
     user_impulse: Vector6Rows  # of the last substep, by row of the user constraint

@@ -130,6 +130,7 @@ class Scene(ctypes.Structure):
         *_fields(Launch, "find_poses find_twists"),
         *_fields(_Address, "contact_count contact_warm_starts"),
         ("contact_room", _Count),
+        ("tree_resets", _Address),
         *_fields(_Address * len(SURFACE), "surface surface_names"),
         ("damping", _Address * len(DAMPING)),
         *_fields(_Address, "mass inertia mass_name inertia_name fixed_base_name"),

@@ -185,6 +185,15 @@ class Body:
                 self.world.velocity[first : first + count] = velocity
         self.update_link_poses()
 
+    def coordinates(self) -> list[float]:
+        """All position coordinates: those of the base, then those of the joints."""
+        first, count = self.rows.first["position"], self.rows.count["position"]
+        return self.world.position[first : first + count].tolist()
+
+    def note_reset(self, *, moved: bool) -> None:
+        """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_reset`."""
+        self.world.contact_arrays.note_reset(self.rows.tree, moved=moved)
+
     def update_link_poses(self) -> None:
         """Update the body's rows of `World.link_pose` from its coordinates."""
         self.world.update_link_poses(self)

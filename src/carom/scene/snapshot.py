@@ -161,6 +161,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
             _write_contacts(world, snapshot)
         else:
             world.contact_arrays.forget_contacts()
+            world.arrays.state.numpy["tree_reset"][0] = 0
         impulses = world.arrays.state.numpy["user_impulse"][0]
         if len(snapshot.user_impulses) == world.contact_arrays.user_count:
             impulses[: world.contact_arrays.user_count] = snapshot.user_impulses

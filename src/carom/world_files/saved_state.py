@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.formats.robot.context import MAX_MAGNITUDE
-from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, THERE
+from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.scene.snapshot import BodyLayout, Layout, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader
 
@@ -55,6 +55,7 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
         arrays["state"].setdefault(name, np.zeros((0, 3)))
     split_impulses(arrays["contacts"])
     add_overlaps(arrays["contacts"])
+    add_resets(arrays["state"], arrays["contacts"])
     # Nor do files from the first versions with soft bodies have this array; the next step computes it.
     arrays["state"].setdefault("node_push", np.zeros_like(arrays["state"]["node_position"]))
     _check_counts(reader, bodies, arrays["state"])
@@ -87,6 +88,14 @@ def add_overlaps(contacts: dict[str, np.ndarray]) -> None:
         contacts["overlap_shapes"] = np.zeros((0, 2), dtype=np.int32)
         for name in ("overlap_place", "overlap_manifold", "overlap_sorted"):
             contacts[name] = np.zeros(0, dtype=np.int32)
+
+
+def add_resets(state: dict[str, np.ndarray], contacts: dict[str, np.ndarray]) -> None:
+    """Add the numbers of resets that older files do not have: nothing was reset."""
+    counts = contacts.get("count_contacts")
+    if counts is not None and counts.ndim == 1 and "tree_reset" not in state and "tree_activity" in state:
+        contacts["count_contacts"] = np.append(counts[:RESETS], np.zeros(2, dtype=counts.dtype))
+        state["tree_reset"] = np.zeros_like(state["tree_activity"])
 
 
 def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.ndarray]) -> None:

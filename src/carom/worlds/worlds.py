@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
+from carom.layouts.contacts import RESETS
 from carom.layouts.status import STATUS, WELL
 from carom.scene.body import Body
 from carom.scene.user_constraints import UserConstraint
@@ -152,7 +153,7 @@ class Worlds:
         self.halted[worlds] = True
         state["link_reaction"][worlds] = 0.0
         state["dof_motor_impulse"][worlds] = 0.0
-        self._engine.contact_arrays.contacts.numpy["count_contacts"][worlds] = 0
+        self._engine.contact_arrays.contacts.numpy["count_contacts"][worlds, :RESETS] = 0
         self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
         names = {batch.rows.tree: batch.name for batch in self}
         for world in worlds[:_MOST_NAMED].tolist():

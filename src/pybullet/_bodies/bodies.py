@@ -291,5 +291,6 @@ def resetBaseVelocity(
         with client.lock:
             present_linear, present_angular = client.bodies[body.id].base_velocity()
             body.set_base_velocity(linear or present_linear, angular or present_angular)
+            body.note_reset(moved=False)
             # As in PyBullet, `getLinkState` returns up-to-date poses from now on.
             body.update_link_poses()

@@ -186,7 +186,9 @@ class BodyAccess:
             if self.body.spec.soft is not None:
                 self.body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
             _write_spatial(self._velocities, self._velocity_at, *_AT_REST)
+            before = self.body.coordinates()
             self.body.set_base_pose(position, orientation)
+            self.body.note_reset(moved=self.body.coordinates() != before)
 
     def push(self, link: int, force: Vector3, torque: Vector3) -> None:
         """Add a force [N] and a torque about the centre of mass [N m] to a link, in world axes; -1: base."""

@@ -123,6 +123,7 @@ class AxisJoint(JointAccess):
 
     def reset(self, position: float, velocity: float) -> None:
         with self.client.lock:
+            self.body.note_reset(moved=self.positions[self.q] != position)
             self.positions[self.q] = position
             self.velocities[self.u] = velocity
             self.body.update_link_poses()

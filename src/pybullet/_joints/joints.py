@@ -356,4 +356,6 @@ def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[floa
     freedoms = body.velocity_count[index]
     if len(position) != freedoms:
         check_rotation(position, "expected a targetValue sequence.", "targetValue")
+    before = body.coordinates()
     body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)
+    body.note_reset(moved=body.coordinates() != before)

@@ -78,3 +78,39 @@ def cubes_that_touch_slide(p: Any) -> dict[str, Any]:
             observed = simulate(p, 0.3, lambda b=bodies: _places(p, b), stride=12)
             results |= under(f"{layout} on a {name}", observed)
     return results
+
+
+def _reset_in_order(p: Any, floor: int, order: Sequence[int], start: tuple[float, ...] | None) -> list[int]:
+    """27 cubes with gaps of 5 mm above a plane or a box, which all get a velocity in some order.
+
+    With `start` they are created elsewhere, and put in their places in this order.
+    """
+    places = [
+        (0.205 * i + 0.01 * k, 0.205 * j + 0.02 * k, HALF + 0.005 + 0.205 * k)
+        for i in range(3)
+        for j in range(3)
+        for k in range(3)
+    ]
+    elsewhere = None if start is None else [(start[0] + 2.0 * i, *start[1:]) for i in range(27)]
+    bodies = _cubes(p, floor, elsewhere or places)
+    for i in order:
+        if elsewhere is not None:
+            p.resetBasePositionAndOrientation(bodies[i], places[i], [0, 0, 0, 1])
+        p.resetBaseVelocity(bodies[i], [1.0, 0.5, 0.0])
+    return bodies
+
+
+@scenario(tolerance=1e-9)
+def cubes_are_reset_before_the_first_step(p: Any) -> dict[str, Any]:
+    """Cubes get velocities, and places, in another order than they were created, before pairs are known.
+
+    They agree to rounding.
+    """
+    shuffled = [7 * i % 27 for i in range(27)]
+    results: dict[str, Any] = {}
+    for name, floor in {"box": p.GEOM_BOX, "plane": p.GEOM_PLANE}.items():
+        for case, start in {"velocities": None, "places": (5.0, 5.0, 1.0)}.items():
+            bodies = _reset_in_order(p, floor, shuffled, start)
+            observed = simulate(p, 0.2, lambda b=bodies: _places(p, b), stride=12)
+            results |= under(f"{case} on a {name}", observed)
+    return results

@@ -12,12 +12,15 @@ bounds; later it does not, and `overlaps` has a simple rule in its place.
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
+from carom.kernels.contact.resets import is_moved
 from carom.kernels.maths.min_max import lower_corner, upper_corner
-from carom.kernels.structs import Pairs, Settings, Shapes
+from carom.kernels.structs import Pairs, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.codes import OTHER_PART
 
 _NONE = wp.constant(-1)
+# When bounds are brought up to date: when a body is created; when it is reset; in the step.
+STAGES = wp.constant(3)
 
 
 @func
@@ -165,36 +168,70 @@ def end_of_turn(pairs: Pairs, world: Int32, first: Int32, count: Int32, turn: In
 
 
 @func
+def shape_of_turn(settings: Settings, pairs: Pairs, world: Int32, turn: Int32, resets: Int32) -> Int32:
+    """The shape whose bounds are brought up to date in a turn; -1 for none."""
+    place = turn % settings.shape_count
+    stage = turn // settings.shape_count
+    if stage == 1:
+        return wp.where(place < resets, pairs.shape_reset[world, place], Int32(_NONE))
+    if stage == 2 and resets > 0 and pairs.shape_reset_place[world, place] >= 0:
+        # Bounds that have not changed since the reset.
+        return _NONE
+    return place
+
+
+@func
 def sort_as_in_new_scene(
-    settings: Settings, shapes: Shapes, pairs: Pairs, world: Int32, count: Int32, widening: real
+    settings: Settings,
+    shapes: Shapes,
+    state: State,
+    pairs: Pairs,
+    world: Int32,
+    count: Int32,
+    resets: Int32,
+    widening: real,
 ):
     """Sort new overlaps of the same turn, of which there are `count` in all, by building Bullet's tree.
+
+    Where bodies were that a reset has moved is not known: they are inserted where it has put them.
 
     Args:
         settings: Number of shapes.
         shapes: Which of them stand for their links: these are the leaves.
-        pairs: Bounds of the shapes; `queue_turn` has the new overlaps sorted by turn, see `overlaps.turn_of`.
+        state: Which trees have been moved.
+        pairs: Bounds of the shapes, those that have been reset; `queue_turn` has the new overlaps sorted by
+            turn, see `overlap_turns.turn_of`.
         world: The world.
         count: Number of new overlaps.
+        resets: Number of shapes that have been reset.
         widening: How far bounds are widened in a step [m].
     """
     wide = Vector3(widening, widening, widening)
     root = Int32(_NONE)
     first = Int32(0)
-    for turn in range(2 * settings.shape_count):
-        shape = turn % settings.shape_count
+    for turn in range(STAGES * settings.shape_count):
+        shape = shape_of_turn(settings, pairs, world, turn, resets)
+        if shape < 0:
+            continue
+        end = end_of_turn(pairs, world, first, count, turn)
+        is_creation = turn < settings.shape_count
+        comes_later = is_moved(shapes, state, pairs, world, shape, resets)
         lower = pairs.shape_lower[world, shape]
         upper = pairs.shape_upper[world, shape]
-        if lower[0] <= upper[0] and shapes.shape_part[shape] != OTHER_PART:
+        if (
+            lower[0] <= upper[0]
+            and shapes.shape_part[shape] != OTHER_PART
+            and not (is_creation and comes_later)
+        ):
             node = settings.shape_count + shape
-            if turn >= settings.shape_count:
-                root, node = remove_leaf(pairs, world, root, shape)
+            if not is_creation:
+                if not comes_later:
+                    root, node = remove_leaf(pairs, world, root, shape)
                 lower = lower - wide
                 upper = upper + wide
             pairs.twig_lower[world, shape] = lower
             pairs.twig_upper[world, shape] = upper
             root = insert_leaf(pairs, world, root, shape, node)
-            end = end_of_turn(pairs, world, first, count, turn)
             if end - first > 1:
                 sort_found(pairs, world, root, shape, first, end)
-            first = end + 0
+        first = end + 0

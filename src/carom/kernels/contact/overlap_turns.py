@@ -2,9 +2,10 @@
 
 import warp as wp
 
-from carom.kernels.contact.bounds import boxes_meet
-from carom.kernels.contact.bounds_tree import sort_as_in_new_scene
-from carom.kernels.structs import Model, Pairs, Settings, Shapes, State
+from carom.kernels.contact.bounds import boxes_meet, is_bounded
+from carom.kernels.contact.bounds_tree import STAGES, sort_as_in_new_scene
+from carom.kernels.contact.resets import is_moved, list_resets
+from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, Vector3, func, real
 from carom.layouts.contacts import NEAR
 
@@ -56,12 +57,13 @@ def turn_of(
     world: Int32,
     pair: Index2,
     known: Int32,
+    resets: Int32,
 ) -> Int32:
     """When Bullet finds a new overlap, as a number that increases with time.
 
-    New bodies are compared with those before them, by bounds that are not widened. Then the bounds of one
-    body after the other are brought up to date and compared with those of all others, of which the later
-    ones are still where they were.
+    New bodies are compared with those before them, by bounds that are not widened; then those that have been
+    reset, see `resets`. Then the bounds of one body after the other are brought up to date and compared with
+    those of all others, of which the later ones are still where they were.
 
     Args:
         settings: Time step, number of shapes.
@@ -72,19 +74,58 @@ def turn_of(
         world: The world.
         pair: The two shapes.
         known: Number of shapes that are not new.
+        resets: Number of shapes that have been reset.
     """
     # What stands for the links of both.
     a = shapes.link_first_shape[shapes.shape_link[pair[0]]]
     b = shapes.link_first_shape[shapes.shape_link[pair[1]]]
+    place_a = Int32(-1)
+    place_b = Int32(-1)
+    if resets > 0:
+        place_a = pairs.shape_reset_place[world, a]
+        place_b = pairs.shape_reset_place[world, b]
+    moved_a = is_moved(shapes, state, pairs, world, a, resets)
+    moved_b = is_moved(shapes, state, pairs, world, b, resets)
     b_is_new = b >= known
-    if b_is_new:
+    # The bounds of a plane meet those of all others wherever they are.
+    is_with_plane = not (is_bounded(shapes, pair[0]) and is_bounded(shapes, pair[1]))
+    if b_is_new and (is_with_plane or not (moved_a or moved_b)):
         widening = wp.where(a < known, WIDENING, real(0.0))
         if meet_after(settings, shapes, model, state, pairs, world, b, a, widening, a >= known):
             return b
+    if place_a >= 0 or place_b >= 0:
+        if place_b >= 0 and (place_a < 0 or place_b < place_a):
+            return turn_of_reset(settings, shapes, model, state, pairs, world, b, a, moved_a, known)
+        return turn_of_reset(settings, shapes, model, state, pairs, world, a, b, moved_b, known)
     widening = wp.where(b_is_new, WIDENING, real(NEAR))
     if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new):
-        return settings.shape_count + a
-    return settings.shape_count + b
+        return 2 * settings.shape_count + a
+    return 2 * settings.shape_count + b
+
+
+@func
+def turn_of_reset(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    pairs: Pairs,
+    world: Int32,
+    a: Int32,
+    b: Int32,
+    b_was_moved: bool,
+    known: Int32,
+) -> Int32:
+    """`turn_of` where shape a has been reset, and b later, which `b_was_moved`, or not."""
+    place = pairs.shape_reset_place[world, b]
+    if not b_was_moved:
+        b_is_new = b >= known
+        widening = wp.where(b_is_new, WIDENING, real(NEAR))
+        if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new or place >= 0):
+            return settings.shape_count + pairs.shape_reset_place[world, a]
+    if place >= 0:
+        return settings.shape_count + place
+    return 2 * settings.shape_count + b
 
 
 @func
@@ -93,6 +134,7 @@ def sort_new(
     shapes: Shapes,
     model: Model,
     state: State,
+    contacts: Contacts,
     pairs: Pairs,
     world: Int32,
     known: Int32,
@@ -103,12 +145,15 @@ def sort_new(
     One body's overlaps are found in the order of a tree of bounds, which depends on all motion so far. It is
     known only in a new scene; else those with later bodies come first.
     """
+    resets = Int32(0)
+    if count > 0:
+        resets = list_resets(settings, shapes, state, contacts, pairs, world)
     for i in range(count):
         pair = pairs.queue_new[world, i].pair
-        turn = turn_of(settings, shapes, model, state, pairs, world, pair, known)
+        turn = turn_of(settings, shapes, model, state, pairs, world, pair, known, resets)
         pairs.queue_new[world, i].turn = turn
     first = Int32(0)
-    for stage in range(2):
+    for stage in range(STAGES):
         lowest = stage * settings.shape_count
         for shape in range(settings.shape_count):
             pairs.shape_pair_end[world, shape] = 0
@@ -129,4 +174,4 @@ def sort_new(
                 pairs.queue_turn[world, place] = i
                 pairs.shape_pair_end[world, turn] = place + 1
     if known == 0:
-        sort_as_in_new_scene(settings, shapes, pairs, world, count, WIDENING)
+        sort_as_in_new_scene(settings, shapes, state, pairs, world, count, resets, WIDENING)

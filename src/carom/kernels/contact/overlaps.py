@@ -15,6 +15,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import is_bounded
 from carom.kernels.contact.overlap_turns import sort_new
+from carom.kernels.contact.resets import forget_resets
 from carom.kernels.structs import Contacts, Model, NewOverlap, Overlap, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, func
 from carom.layouts.contacts import (
@@ -24,9 +25,11 @@ from carom.layouts.contacts import (
     NONE_KEPT,
     OVERLAPS,
     PAIRS,
+    RESETS_SEEN,
     SORTED,
     START_KNOWN,
     START_OVERLAPS,
+    START_RESETS_SEEN,
 )
 
 # Value of `Pairs.queue_wanted` for overlaps that have ended; else 1 if there is to be a manifold, 0 if not.
@@ -295,6 +298,7 @@ def update_overlaps(
     """
     known = contacts.count_contacts[world, KNOWN]
     if known == settings.shape_count and are_same(shapes, contacts, pairs, world):
+        forget_resets(settings, state, contacts, world)
         return 0
     gone, fresh = find_changes(shapes, contacts, pairs, world)
     old_count = contacts.count_contacts[world, OVERLAPS]
@@ -302,7 +306,8 @@ def update_overlaps(
     if count > contacts.overlap_shapes.shape[1]:
         return count
     keep_overlaps(contacts, pairs, world)
-    sort_new(settings, shapes, model, state, pairs, world, known, fresh)
+    sort_new(settings, shapes, model, state, contacts, pairs, world, known, fresh)
+    forget_resets(settings, state, contacts, world)
     manifolds = list_entries(contacts, pairs, world, fresh)
     manifolds = remove_ended(contacts, pairs, world, old_count + fresh, manifolds)
     visit_pairs(contacts, pairs, world, count, manifolds)
@@ -322,6 +327,7 @@ def keep_overlaps(contacts: Contacts, pairs: Pairs, world: Int32):
         pairs.queue_start[world, row] = read_overlap(contacts, world, row)
     pairs.count_pairs[world, START_OVERLAPS] = count
     pairs.count_pairs[world, START_KNOWN] = contacts.count_contacts[world, KNOWN]
+    pairs.count_pairs[world, START_RESETS_SEEN] = contacts.count_contacts[world, RESETS_SEEN]
 
 
 @func
@@ -334,4 +340,5 @@ def restore_overlaps(contacts: Contacts, pairs: Pairs, world: Int32):
         write_overlap(contacts, world, row, pairs.queue_start[world, row])
     contacts.count_contacts[world, OVERLAPS] = count
     contacts.count_contacts[world, KNOWN] = pairs.count_pairs[world, START_KNOWN]
+    contacts.count_contacts[world, RESETS_SEEN] = pairs.count_pairs[world, START_RESETS_SEEN]
     contacts.count_contacts[world, SORTED] = 0

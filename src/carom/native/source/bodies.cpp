@@ -94,7 +94,14 @@ CAROM_QUICK(place_base) {
     const double scale = __builtin_fabs(squared - 1.0) < ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
     for (int i = 0; i < SPATIAL; ++i)
         body.velocity[i] = 0.0;
+    double before[POSE];
+    for (int i = 0; i < POSE; ++i)
+        before[i] = body.position[i];
     put(put(body.position, vector_at(in + 1)), Quaternion{q.x * scale, q.y * scale, q.z * scale, q.w * scale});
+    bool moved = false;
+    for (int i = 0; i < POSE; ++i)
+        moved |= body.position[i] != before[i];
+    note_reset(scene, body.tree, moved);
     for (int32_t i = 0; i < *scene.contact_count; ++i)
         scene.contact_warm_starts[i] = 0.0;
     run(scene.find_poses, body.tree);
@@ -114,6 +121,7 @@ CAROM_QUICK(set_base_velocity) {
         put(body.velocity + 3, vector_at(in + 1));
     if (is_given(in[4]))
         put(body.velocity, vector_at(in + 4));
+    note_reset(scene, body.tree, false);
     // As in PyBullet, getLinkState returns current poses after this call.
     run(scene.find_poses, body.tree);
     return 1;

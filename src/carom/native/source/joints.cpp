@@ -93,6 +93,7 @@ extern "C" CAROM_EXPORT int carom_reset_joint(const double* in, double* out, con
     const Lock lock(*call->client);
     if (!lock.is_held || !scene.find_poses.function || joint.dof_count != 1)
         return 0;
+    note_reset(scene, body.tree, body.position[joint.position] != in[2]);
     body.position[joint.position] = in[2];
     body.velocity[joint.velocity] = in[3];
     run(scene.find_poses, body.tree);

@@ -92,6 +92,7 @@ struct Scene {
     int32_t* contact_count;
     double* contact_warm_starts;  // impulses at which the solver starts, one for each contact
     int64_t contact_room;      // number of contacts that fit
+    int32_t* tree_resets;      // by row of tree, see `note_reset`
     double* surface[6];  // by row of link: friction, restitution, softness; see `dynamics.cpp`
     PyObject* surface_names[6];
     double* damping[2];  // by row of tree
@@ -221,6 +222,20 @@ bool read_integer(PyObject* value, double* number);
 
 // Reads a sequence of at most `most` integers from 0 to `end` - 1; returns their number, or -1 if it is none.
 intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* indices);
+
+// Notes that a body was reset, which moved it or not, for the order of contacts; see `carom.kernels.contact.resets`.
+inline void note_reset(const Scene& scene, int64_t tree, bool moved) {
+    // Columns of `contact_count`: the number of resets, and those before the last substep.
+    enum { RESETS = 4, RESETS_SEEN = 5 };
+    int32_t& resets = scene.contact_count[RESETS];
+    int32_t& number = scene.tree_resets[tree];
+    const int32_t present = number < 0 ? -number : number;
+    if (!moved && present > scene.contact_count[RESETS_SEEN])
+        return;
+    if (resets < INT32_MAX)
+        ++resets;
+    number = moved ? -resets : resets;
+}
 
 inline void run(const KernelCall& call) { call.function(call.bounds, call.arguments); }
 
