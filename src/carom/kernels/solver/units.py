@@ -1,4 +1,8 @@
-"""Units of an island's sweeps: its contacts, grouped into manifold blocks or single."""
+"""Units of an island's sweeps: its contacts, grouped into manifold blocks or single.
+
+The code of a unit, in `PairRows.unit_code`, is -1 - block for a manifold block, `SINGLES` + i for single
+contact i of rigid bodies, and the contact itself for any other.
+"""
 
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
@@ -6,6 +10,7 @@ from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_imp
 from carom.kernels.solver.contact_terms import contact_friction, contact_terms
 from carom.kernels.solver.manifold_writing import keep_manifold_impulses, write_manifold_block
 from carom.kernels.solver.pair_rows import has_room, tree_blocks
+from carom.kernels.solver.single_contacts import SINGLES, keep_single_impulses, write_single_contact
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, func, real
@@ -58,6 +63,12 @@ def next_unit(
 
 
 @func
+def is_single(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32, rigid: bool) -> bool:
+    """Whether a contact without others in its unit is a single contact of `PairRows.single_contact`."""
+    return rigid and not twists(shapes, contacts, world, contact)
+
+
+@func
 def write_units(
     model: Model,
     settings: Settings,
@@ -82,6 +93,7 @@ def write_units(
         rolling or spinning friction.
     """
     units, manifold_blocks, torsion, next_matrices = Int32(0), Int32(0), Int32(0), Int32(0)
+    singles = Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
@@ -110,6 +122,15 @@ def write_units(
             )  # fmt: skip
             pair_rows.unit_code[world, units] = -1 - manifold_blocks
             manifold_blocks += 1
+        elif is_single(shapes, contacts, world, contact, rigid):
+            if singles == pair_rows.single_normal.shape[1]:
+                return Int32(-1), manifold_blocks, torsion
+            write_single_contact(
+                settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
+                singles,
+            )  # fmt: skip
+            pair_rows.unit_code[world, units] = SINGLES + singles
+            singles += 1
         else:
             if not room:
                 return Int32(-1), manifold_blocks, torsion
@@ -132,5 +153,7 @@ def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, un
         code = pair_rows.unit_code[world, unit]
         if code < 0:
             keep_manifold_impulses(contacts, pair_rows, world, -1 - code, outcome)
+        elif code >= SINGLES:
+            keep_single_impulses(contacts, pair_rows, world, code - SINGLES)
         else:
             keep_contact_impulses(contacts, pair_rows, world, code)
