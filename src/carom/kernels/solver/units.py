@@ -13,15 +13,20 @@ from carom.kernels.solver.pair_rows import has_room, tree_blocks
 from carom.kernels.solver.single_contacts import SINGLES, keep_single_impulses, write_single_contact
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
+
+
+@func
+def has_torsion(friction: Vector3) -> bool:
+    """Whether a contact with these coefficients has rolling or spinning friction."""
+    return friction[1] > 0.0 or friction[2] > 0.0
 
 
 @func
 def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
     """Whether a contact has rolling or spinning friction."""
     pair = contacts.contact_shapes[world, contact]
-    friction = contact_friction(shapes, world, pair[2], pair[3])
-    return friction[1] > 0.0 or friction[2] > 0.0
+    return has_torsion(contact_friction(shapes, world, pair[2], pair[3]))
 
 
 @func
@@ -122,7 +127,7 @@ def write_units(
             )  # fmt: skip
             pair_rows.unit_code[world, units] = -1 - manifold_blocks
             manifold_blocks += 1
-        elif is_single(shapes, contacts, world, contact, rigid):
+        elif rigid and not has_torsion(pair_rows.terms[world, 0].friction):
             if singles == pair_rows.single_normal.shape[1]:
                 return Int32(-1), manifold_blocks, torsion
             write_single_contact(
@@ -134,7 +139,7 @@ def write_units(
         else:
             if not room:
                 return Int32(-1), manifold_blocks, torsion
-            if pair_rows.terms[world, 0].friction[1] > 0.0 or pair_rows.terms[world, 0].friction[2] > 0.0:
+            if has_torsion(pair_rows.terms[world, 0].friction):
                 torsion = Int32(1)
             row, block = add_contact_rows(
                 settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
