@@ -140,8 +140,7 @@ _DIFFERENCES = """
 On meshes and height fields PyBullet makes a point for each triangle it comes across; Carom leaves out what
 inner edges would only push sideways. So normals lean in PyBullet where here they are upright, points are
 more, and forces are shared out in another way, while their sum and the gap are the same.
-[Differences](../differences.md#contact) has what comes of it. On other shapes one case is left: a cylinder
-that lands flat on a box has all its points at once here, and one more in each step in PyBullet.
+[Differences](../differences.md#contact) has what comes of it. On other shapes nothing differs.
 
 | case | steps later | gap here, there [mm] | points here, there | force here, there [N] |
 |---|---:|---:|---:|---:|"""
