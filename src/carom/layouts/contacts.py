@@ -87,7 +87,6 @@ class Shapes:
     shape_kind: Ints
     shape_size: Vectors3  # see `codes.ShapeKind`
     shape_pose: Transforms  # in the link's inertial frame
-    shape_rolling: Ints  # see `codes.Rolling`
     shape_part: Ints  # see `codes.Part`
     shape_margin: Reals
     shape_breaking: Reals  # breaking distance of contacts [m]
@@ -96,7 +95,6 @@ class Shapes:
     shape_vertex_count: Ints
     shape_first_face: Ints
     shape_face_count: Ints
-    shape_flat_faces: Ints  # of hulls: number of faces large enough to lie on; they come first
     shape_center: Vectors3  # of the bounds in the shape frame; of hulls, triangle meshes, height fields
     shape_columns: Ints  # of height fields: points in one row
     shape_first_node: Ints  # of triangle meshes: first node of the hierarchy, see `triangle_hierarchy`
