@@ -13,7 +13,7 @@ from carom.engine.detection_capacity import scratch_capacity
 from carom.geometry.hull import convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
-from carom.layouts.codes import Rolling, ShapeKind
+from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MEETING, Contacts, Pairs, Shapes
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, Settings, State
 from carom.layouts.queries import Places, Rays, Searches
@@ -47,7 +47,6 @@ class Shape:
     polyhedron: Polyhedron | None = None
     hierarchy: TriangleHierarchy | None = None
     columns: int = 0
-    rolling: Rolling = Rolling.NONE
     static: bool = False
 
 
@@ -147,9 +146,6 @@ class Scene:
         arrays["shape_pose"][row] = (0, 0, 0, *IDENTITY)
         arrays["shape_margin"][row] = shape.margin
         arrays["shape_breaking"][row] = shape.breaking
-        arrays["shape_rolling"][row] = shape.rolling
-        if shape.kind == ShapeKind.HULL and shape.polyhedron is not None:
-            arrays["shape_flat_faces"][row] = len(shape.polyhedron.planes)
         arrays["link_shape_count"][row] = 1
         arrays["link_first_shape"][row] = row
         arrays["link_group"][row] = 1

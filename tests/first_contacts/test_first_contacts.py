@@ -10,12 +10,12 @@ from tests.first_contacts.compare import outcomes
 from tests.first_contacts.record import recorded
 
 # Of the motions of two kinds of shape, so many may differ in anything at the first, second and third contact;
-# `docs/conformance/first-contacts.md` has the figures. Flat cylinders have all points at once here, and
-# PyBullet keeps old points beside balls.
+# `docs/conformance/first-contacts.md` has the figures. Flat cylinders that land fast touch with another point
+# of the face first, and PyBullet keeps old points beside balls.
 ELSEWHERE = {
-    ("box", "cylinder"): (15, 18, 17),
-    ("cylinder", "box"): (12, 25, 26),
-    ("cylinder", "cylinder"): (18, 17, 19),
+    ("box", "cylinder"): (4, 6, 4),
+    ("cylinder", "box"): (6, 6, 6),
+    ("cylinder", "cylinder"): (6, 5, 7),
     ("box", "sphere"): (0, 10, 13),
     ("cylinder", "sphere"): (0, 12, 14),
     ("hull", "sphere"): (0, 2, 1),

@@ -21,7 +21,7 @@ SPILLS = {
 }
 """Bytes that kernels may write and read for want of registers; all others none."""
 
-STACK = 4_000
+STACK = 4_100
 """Bytes of stack that a thread may take."""
 
 REPORT = """

@@ -18,9 +18,9 @@ import warp as wp
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.islands import unite_tied
 from carom.kernels.solver.sleeping import watch
-from carom.kernels.solver.union_find import find_root
 from carom.kernels.structs import Model, Settings, State, UserConstraints
 from carom.kernels.types import Int32, kernel, real
 from carom.kernels.warp_types import warp_type

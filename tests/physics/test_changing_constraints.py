@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from random import Random
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from carom.native.launch import KernelStructs
 from carom.scene.constraint_rows import ConstraintRows
 from carom.world.world import World
 from pybullet._clients.clients import clients
@@ -160,3 +162,40 @@ def test_motors_are_relaxed_in_the_order_that_a_removal_leaves(monkeypatch: pyte
     kept = _robot_after_a_tie()
     monkeypatch.setattr(World, "constraints_changed", World.scene_changed)
     assert kept == _robot_after_a_tie()
+
+
+def _tied_box(break_off: Callable[[], None]) -> list[Any]:
+    """Where a box on a floor is that is tied, after the first step has been broken off."""
+    client = p.connect(p.DIRECT)
+    try:
+        p.setGravity(0, 0, -10, physicsClientId=client)
+        plane = p.createCollisionShape(p.GEOM_PLANE, physicsClientId=client)
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3, physicsClientId=client)
+        bodies = [
+            p.createMultiBody(mass, shape, physicsClientId=client) for mass, shape in enumerate([plane, box])
+        ]
+        p.stepSimulation(client)
+        kind, none = p.JOINT_POINT2POINT, [0, 0, 0]
+        p.createConstraint(bodies[1], -1, -1, -1, kind, none, none, [1, 0, 1], physicsClientId=client)
+        break_off()
+        for _ in range(10):
+            p.stepSimulation(client)
+        return [p.getBasePositionAndOrientation(bodies[1], client)]
+    finally:
+        p.disconnect(client)
+
+
+def test_a_step_that_is_broken_off_leaves_no_old_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels count on the numbers of constraints in their copies of the settings."""
+
+    def break_off() -> None:
+        with monkeypatch.context() as patch:
+            patch.setattr(KernelStructs, "changed", _interrupt)
+            with pytest.raises(KeyboardInterrupt):
+                p.stepSimulation(max(clients))
+
+    assert _tied_box(break_off) == _tied_box(lambda: None)
+
+
+def _interrupt(*_: Any) -> None:
+    raise KeyboardInterrupt

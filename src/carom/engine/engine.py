@@ -131,9 +131,12 @@ class Engine:
 
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
-        if self._settings.update(parameters, self.arrays, self.contact_arrays):
-            for workspace in self._workspaces:
-                workspace.structs.changed("settings")
+        self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
+
+    def _tell_settings(self) -> None:
+        """Launches have copies of the settings: update them."""
+        for workspace in self._workspaces:
+            workspace.structs.changed("settings")
 
     def _bind(self) -> list[KernelStructs]:
         """Structs over the current arrays for each thread; the arrays are made longer if necessary."""

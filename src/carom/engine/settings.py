@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields
 from operator import attrgetter
 from typing import Any
@@ -30,9 +31,16 @@ class EngineSettings:
         self._gravity = (0.0, 0.0, 0.0)
 
     def update(
-        self, parameters: EngineParameters, arrays: WorldArrays, contact_arrays: ContactArrays
-    ) -> bool:
-        """Update the struct, and the gravity of all worlds; true if the struct has changed."""
+        self,
+        parameters: EngineParameters,
+        arrays: WorldArrays,
+        contact_arrays: ContactArrays,
+        tell: Callable[[], None],
+    ) -> None:
+        """Update the struct, and the gravity of all worlds; `tell` is called if the struct has changed.
+
+        If this is interrupted before `tell` has returned, it is called the next time.
+        """
         if parameters.gravity != self._gravity:
             arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
             arrays.model.written("gravity_vector")
@@ -42,15 +50,15 @@ class EngineSettings:
         of_shapes = (shapes.shape_count, shapes.filter_count, shapes.looks_ahead)
         given = (*_PARAMETERS(parameters), *counts, *of_shapes)
         if given == self._given:
-            return False
+            return
         self._given = ()
         for name, value in _values(parameters, arrays, contact_arrays).items():
             # Writing a field of a struct takes a hundred times as long as comparing values.
             if self._written.get(name) != value:
                 setattr(self.struct, name, value)
                 self._written[name] = value
+        tell()
         self._given = given
-        return True
 
 
 def _values(

@@ -91,7 +91,8 @@ class Workspace:
         self.pairs.reserve({"pair": pairs})
         if rows:
             capacity = self.pair_rows.capacity
-            self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in ("row", "jacobian", "matrix")})
+            axes = "row", "jacobian", "matrix", "single"
+            self.pair_rows.reserve({axis: 2 * capacity[axis] for axis in axes})
 
     def forget_neighbours(self) -> None:
         """Make the neighbour lists anew in the next step, because other shapes may collide."""

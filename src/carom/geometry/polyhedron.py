@@ -48,18 +48,6 @@ class Polyhedron:
         """The same faces with slightly moved vertices, (n, 3)."""
         return polyhedron(vertices, self.first_corner, self.corner_count, self.corners)
 
-    def face_areas(self) -> Floats:
-        """The area of each face, shape (m,) [m²]."""
-        normals = _doubled_areas(self.vertices, self.corners, self.first_corner, self.corner_count)
-        return 0.5 * np.linalg.norm(normals, axis=1)
-
-    def with_faces_in_order(self, order: NDArray[np.integer]) -> Polyhedron:
-        """The same solid, its faces in the order of these rows."""
-        counts = self.corner_count[order]
-        firsts = (np.cumsum(counts) - counts).astype(np.int32)
-        places = np.repeat(self.first_corner[order] - firsts, counts) + np.arange(counts.sum())
-        return Polyhedron(self.vertices, self.planes[order], firsts, counts, self.corners[places])
-
 
 def polyhedron(
     vertices: Floats,

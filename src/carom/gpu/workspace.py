@@ -24,8 +24,9 @@ from carom.native.launch import KernelStructs
 
 MOST_WORKERS = 32768
 """Maximum number of threads of the narrow phase: more than a GPU runs at a time. Each needs 23 kB."""
-# Initial capacity for pairs of shapes, rows over two trees and their blocks; doubled when it is too small.
-_FIRST_ROOM = {"pair": 16, "row": 64, "jacobian": 256, "matrix": 64}
+# Initial capacity for pairs of shapes, rows over two trees and their blocks, and single contacts; doubled
+# when it is too small.
+_FIRST_ROOM = {"pair": 16, "row": 64, "jacobian": 256, "matrix": 64, "single": 16}
 # Axes of the workspace of a single pair of shapes: each worker has one, instead of each world.
 _OF_WORKERS = ("candidate", "polygon", "polytope")
 

@@ -64,17 +64,6 @@ class Part(IntEnum):
     OTHER = 2
 
 
-class Rolling(IntEnum):
-    """How a shape can roll: about an axis of its frame; OFF_FACES: a hull, unless it lies on a face."""
-
-    NONE = 0
-    ABOUT_X = 1
-    ABOUT_Y = 2
-    ABOUT_Z = 3
-    ABOUT_ANY = 4
-    OFF_FACES = 5
-
-
 DOF_COUNT = {
     JointCode.REVOLUTE: 1,
     JointCode.PRISMATIC: 1,
@@ -120,10 +109,6 @@ USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR = map(int, UserConstr
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)
 ALONE, FIRST_PART, OTHER_PART = map(int, Part)
-NO_ROLLING = int(Rolling.NONE)
-ROLLING_ABOUT_X = int(Rolling.ABOUT_X)
-ROLLING_ABOUT_ANY = int(Rolling.ABOUT_ANY)
-ROLLING_OFF_FACES = int(Rolling.OFF_FACES)
 
 # Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION = 0

@@ -22,11 +22,14 @@ from carom.layouts.types import (
     Reals,
     Rows,
     Transforms,
+    Vector2,
     Vector3,
     Vector3Rows,
     Vector4,
     Vector4Rows,
+    Vector6,
     Vector8,
+    Vector12,
     Vectors3,
     Vectors4,
     real,
@@ -88,7 +91,6 @@ class Shapes:
     shape_kind: Ints
     shape_size: Vectors3  # see `codes.ShapeKind`
     shape_pose: Transforms  # in the link's inertial frame
-    shape_rolling: Ints  # see `codes.Rolling`
     shape_part: Ints  # see `codes.Part`
     shape_margin: Reals
     shape_breaking: Reals  # breaking distance of contacts [m]
@@ -97,7 +99,6 @@ class Shapes:
     shape_vertex_count: Ints
     shape_first_face: Ints
     shape_face_count: Ints
-    shape_flat_faces: Ints  # of hulls: number of faces large enough to lie on; they come first
     shape_center: Vectors3  # of the bounds in the shape frame; of hulls, triangle meshes, height fields
     shape_columns: Ints  # of height fields: points in one row
     shape_first_node: Ints  # of triangle meshes: first node of the hierarchy, see `triangle_hierarchy`
@@ -385,6 +386,38 @@ class RowTerms:
 
 
 @struct
+class NormalRow:
+    """The normal row of a single contact of rigid bodies; see `kernels.solver.single_contacts`.
+
+    Responses are the changes of the velocities of a's and b's dofs per unit impulse. For a body that cannot
+    move, response and Jacobian are zero.
+    """
+
+    jacobian: Vector12  # of a and b in turn, dof by dof
+    response_a: Vector6
+    response_b: Vector6
+    share: real  # as in `RowTerms`, like the following
+    effective_mass: real
+    inverse_mass: real
+    kept: real  # 1 - softness
+
+
+@struct
+class LateralRows:
+    """The two friction rows of a single contact of rigid bodies; as `NormalRow`."""
+
+    jacobian_a: Vector12  # of the first and the second row in turn, dof by dof
+    jacobian_b: Vector12
+    response_a1: Vector6
+    response_a2: Vector6
+    response_b1: Vector6
+    response_b2: Vector6
+    share: Vector2
+    effective_mass: Vector2
+    inverse_mass: Vector2
+
+
+@struct
 class PairRows:
     """Constraint rows over up to two trees, manifold blocks, and islands: intermediate results."""
 
@@ -418,7 +451,14 @@ class PairRows:
     contact_rows: (
         Index4Rows  # rows of a contact: normal, lateral pair, rolling pair (or -1), spinning (or -1)
     )
-    unit_code: IntRows  # units of an island's sweep, in order: a contact, or -1 - manifold block
+    unit_code: IntRows  # units of an island's sweep, in order; see `kernels.solver.units`
+
+    # Single contacts of rigid bodies.
+    single_contact: IntRows
+    single_place: Index2Rows  # first blocks of a and b in `delta_velocity`; of the other if one cannot move
+    single_impulse: Vector4Rows  # along the normal and both friction directions; coefficient of friction
+    single_normal: Rows[NormalRow]
+    single_lateral: Rows[LateralRows]
 
     terms: Rows[ContactTerms]  # of the contacts of the unit whose rows are being written
     manifold_block: Rows[ManifoldBlock]

@@ -27,7 +27,7 @@ BEGIN, RESUME, STAY, GO_ON = 0, 1, 2, 3
 if TYPE_CHECKING:
     Window = Any
 else:
-    Window = Type("int32", (8,), "vector")
+    Window = Type("int32", (9,), "vector")
 
 
 @struct

@@ -126,6 +126,7 @@ else:
     Vector4 = Type("float64", (4,), "vector")
     Vector6 = Type("float64", (6,), "vector")
     Vector8 = Type("float64", (8,), "vector")
+    Vector12 = Type("float64", (12,), "vector")
     Quaternion = Type("float64", (4,), "quaternion")
     Matrix3 = Type("float64", (3, 3), "matrix")
     Matrix4 = Type("float64", (4, 4), "matrix")

@@ -232,8 +232,6 @@ class ShapeArrays:
         numpy, piece, row = self.table.numpy, placed.piece, at["shape"]
         numpy["shape_pose"][row] = placed.pose
         numpy["shape_size"][row] = piece.size
-        numpy["shape_rolling"][row] = piece.rolling
-        numpy["shape_flat_faces"][row] = piece.flat_faces
         numpy["shape_margin"][row] = piece.margin
         numpy["shape_center"][row] = piece.center
         numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])

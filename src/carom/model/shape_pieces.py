@@ -28,9 +28,8 @@ from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import SMALLEST, convex_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.geometry.rolling import flat_faces_first, round_about
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
-from carom.layouts.codes import Rolling, ShapeKind
+from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.trigonometry import cos, sin
 from carom.record import record
@@ -65,8 +64,6 @@ class ShapePiece:
         polyhedron: Vertices and faces, if it has any.
         columns: Points in one row of a height field.
         hierarchy: Boxes over the faces of a triangle mesh.
-        rolling: The axis of the shape frame about which it can roll; see `Rolling`.
-        flat_faces: Number of faces of a hull that are large enough to lie on; they come first.
     """
 
     kind: ShapeKind
@@ -76,8 +73,6 @@ class ShapePiece:
     polyhedron: Polyhedron | None = None
     columns: int = 0
     hierarchy: TriangleHierarchy | None = None
-    rolling: Rolling = Rolling.NONE
-    flat_faces: int = 0
 
 
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
@@ -95,13 +90,9 @@ def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[Sha
         case Box(half_extents):
             return (ShapePiece(ShapeKind.BOX, half_extents, MARGIN),)
         case Capsule(radius, length):
-            return (
-                ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0), radius, rolling=Rolling.ABOUT_Z),
-            )
+            return (ShapePiece(ShapeKind.CAPSULE, (radius, 0.5 * length, 0.0), radius),)
         case Cylinder(radius, length) if implicit_cylinder:
-            return (
-                ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0), MARGIN, rolling=Rolling.ABOUT_Z),
-            )
+            return (ShapePiece(ShapeKind.CYLINDER, (radius, 0.5 * length, 0.0), MARGIN),)
         case Cylinder(radius, length):
             return (_cylinder_hull(radius, length),)
         case Plane(normal):
@@ -131,27 +122,7 @@ def _polyhedral(
     low, high = polyhedron.bounds()
     half_x, half_y, half_z = (0.5 * (high - low)).tolist()
     x, y, z = (0.5 * (high + low)).tolist()
-    rolling, flat_faces = Rolling.NONE, 0
-    if kind == ShapeKind.HULL:
-        rolling = _rolling_of(polyhedron)
-        polyhedron, flat_faces = flat_faces_first(polyhedron)
-    return ShapePiece(
-        kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy, rolling, flat_faces
-    )
-
-
-def _rolling_of(hull: Polyhedron) -> Rolling:
-    match round_about(hull):
-        case (True, True, True):
-            return Rolling.ABOUT_ANY
-        case (True, False, False):
-            return Rolling.ABOUT_X
-        case (False, True, False):
-            return Rolling.ABOUT_Y
-        case (False, False, True):
-            return Rolling.ABOUT_Z
-        case _:
-            return Rolling.OFF_FACES
+    return ShapePiece(kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy)
 
 
 def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:

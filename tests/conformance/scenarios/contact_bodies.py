@@ -9,6 +9,8 @@ from __future__ import annotations
 from math import atan, cos, sin
 from typing import Any
 
+import numpy as np
+
 from ..scenario import base_motion, scenario, simulate, under
 
 HALF = 0.1
@@ -237,6 +239,45 @@ def boxes_tumble(p: Any) -> dict[str, Any]:
             motion = simulate(p, 0.2, lambda b=(lower, upper): _both(p, b), stride=1)
             results |= under(f"{ground}/{name}", motion)
     return results
+
+
+def _land_on_a_table(p: Any, shape: int, height: float) -> dict[str, Any]:
+    """A body of this shape lands on a table from two heights, flat and leaning, and comes to rest."""
+    results: dict[str, Any] = {}
+    for drop in (0.005, 0.02):
+        for name, lean in (("flat", 0.0), ("leaning", 0.003)):
+            table = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5, 0.5, 0.1])
+            tables = p.createMultiBody(0, table, -1, [0, 0, -0.1])
+            orientation = p.getQuaternionFromEuler([lean, 0.6 * lean, 0.3])
+            body = p.createMultiBody(0.1, shape, -1, [0.05, 0.03, height + drop], orientation)
+
+            def landing(body: int = body) -> dict[str, Any]:
+                contacts = p.getContactPoints(body)
+                return {"position": p.getBasePositionAndOrientation(body)[0], "contacts": len(contacts)}
+
+            motion = simulate(p, 0.15, landing, stride=1)
+            simulate(p, 1.5, landing)
+            position, orientation = p.getBasePositionAndOrientation(body)
+            motion["rest"] = np.array([*position, *orientation])
+            results |= under(f"{name} from {drop}", motion)
+            p.removeBody(body)
+            p.removeBody(tables)
+    return results
+
+
+@scenario(tolerance={"position": 2e-5, "rest": 2e-3})
+def pucks_land_on_a_table(p: Any) -> dict[str, Any]:
+    """A puck lands on a box flat and leaning, gathers its points one by one and comes to rest."""
+    p.setGravity(0, 0, -9.81)
+    return _land_on_a_table(p, p.createCollisionShape(p.GEOM_CYLINDER, radius=0.04, height=0.03), 0.015)
+
+
+@scenario(tolerance={"rest": 2e-3})
+def bricks_land_on_a_table(p: Any) -> dict[str, Any]:
+    """A brick that is a hull does the same."""
+    p.setGravity(0, 0, -9.81)
+    corners = [(x, y, z) for x in (-0.03, 0.03) for y in (-0.04, 0.04) for z in (-0.02, 0.02)]
+    return _land_on_a_table(p, p.createCollisionShape(p.GEOM_MESH, vertices=corners), 0.021)
 
 
 def _both(p: Any, bodies: tuple[int, int]) -> dict[str, Any]:

@@ -36,10 +36,11 @@ def test_generated_code_is_the_same_every_time_and_has_no_paths(tmp_path: Path):
     source = first[f"{SMALL_MODULE}.cpp"].decode()
     assert "CAROM_EXPORT void report_contacts_kernel_cpu_forward(" in source
     assert not any(word in source for word in ("<L ", "#line", str(ROOT), "adj_report_contacts"))
-    # Elements of arrays are accessed by the functions of `arrays.h` alone.
+    # Elements of arrays are accessed by the functions of `arrays.h` alone, and loops are those of `loops.h`.
     assert "carom::address(" in source
     assert "carom::array_store(" in source
-    assert not re.search(r"wp::(address|index|array_store)\(", source)
+    assert "carom::iter_next(" in source
+    assert not re.search(r"wp::(address|index|array_store|range|iter_next)\(", source)
 
 
 def test_the_library_exports_its_kernels_and_digest_and_needs_nothing(library: Path, target: Target):

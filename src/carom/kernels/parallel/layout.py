@@ -8,6 +8,7 @@ from carom.kernels.parallel.workspace import (
     MATRICES,
     PAIR_ROW,
     ROW,
+    SINGLE,
     TERMS,
     UNIT,
     VISIT,
@@ -15,7 +16,7 @@ from carom.kernels.parallel.workspace import (
 )
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.pair_rows import tree_blocks
-from carom.kernels.solver.units import next_unit
+from carom.kernels.solver.units import is_single, next_unit
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import (
     Contacts,
@@ -73,7 +74,9 @@ def room_for_contacts(
         members, count = next_unit(shapes, contacts, pair_rows, world, contact, rigid)
         room[UNIT] += 1
         room[TERMS] = wp.max(room[TERMS], count)
-        if count == 1:
+        if count == 1 and is_single(shapes, contacts, world, contact, rigid):
+            room[SINGLE] += 1
+        elif count == 1:
             room[PAIR_ROW] += ROWS_PER_PAIR
             room[JACOBIAN] += ROWS_PER_PAIR * blocks
         else:

@@ -14,8 +14,9 @@ from carom.layouts import parallel
 from carom.layouts.status import LEFT_OUT, STATUS, WELL
 
 # Parts of a window: rows over one tree, rows to visit, units, manifold blocks, rows over two trees, blocks of
-# their Jacobians, matrix blocks of articulated manifold blocks, and contact terms.
-ROW, VISIT, UNIT, MANIFOLD_BLOCK, PAIR_ROW, JACOBIAN, MATRICES, TERMS = 0, 1, 2, 3, 4, 5, 6, 7
+# their Jacobians, matrix blocks of articulated manifold blocks, contact terms, and single contacts of rigid
+# bodies.
+ROW, VISIT, UNIT, MANIFOLD_BLOCK, PAIR_ROW, JACOBIAN, MATRICES, TERMS, SINGLE = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 # Stage of an island: its contacts are not written yet; all its rows are written; its rows did not fit.
 UNWRITTEN, WRITTEN, GIVEN_UP = 0, 1, 2
@@ -99,6 +100,15 @@ def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, roo
     last_manifold_block = window_end(work, world, root, MANIFOLD_BLOCK, pair_rows.manifold_block.shape[1])
     own.manifold_block = pair_rows.manifold_block[:, manifold_block:last_manifold_block]
     own.side = pair_rows.side[:, 2 * manifold_block : 2 * last_manifold_block]
+
+    single = wp.min(first[SINGLE], pair_rows.single_normal.shape[1])
+    last_single = window_end(work, world, root, SINGLE, pair_rows.single_normal.shape[1])
+    own.single_contact = pair_rows.single_contact[:, single:last_single]
+    own.single_place = pair_rows.single_place[:, single:last_single]
+    own.single_impulse = pair_rows.single_impulse[:, single:last_single]
+    own.single_normal = pair_rows.single_normal[:, single:last_single]
+    own.single_lateral = pair_rows.single_lateral[:, single:last_single]
+
     own.terms = work.terms[:, terms : window_end(work, world, root, TERMS, work.terms.shape[1])]
     return own
 

@@ -272,8 +272,10 @@ def rays_kernel(
     """
     world = first_world + wp.tid() // threads
     start = world * count
-    for first in range(start + LANES * (wp.tid() % threads), start + count, LANES * threads):
+    first = start + LANES * (wp.tid() % threads)
+    while first < start + count:
         packet, limit = packet_of(rays, first, start + count)
         cast_packet(shapes, pairs, world, rays, packet, limit, mask, hit_number, separation)
         for ray in range(packet.first, packet.end):
             tell_hit(shapes, places, rays, ray)
+        first += LANES * threads

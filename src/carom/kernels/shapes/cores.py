@@ -88,7 +88,9 @@ def local_support(core: Core, vertex_position: Vectors3, direction: Vector3) -> 
         return vertex_position[best]
     if core.kind == CYLINDER:
         radial = wp.sqrt(direction[0] * direction[0] + direction[1] * direction[1])
-        scale = size[0] / radial if radial > 0.0 else 0.0
+        if radial == 0.0:
+            return Vector3(size[0], 0.0, toward(direction[2], size[1]))
+        scale = size[0] / radial
         return Vector3(direction[0] * scale, direction[1] * scale, toward(direction[2], size[1]))
     if core.kind == CAPSULE:
         return Vector3(0.0, 0.0, toward(direction[2], size[1]))

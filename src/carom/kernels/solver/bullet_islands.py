@@ -9,8 +9,8 @@ All this depends on the overlaps and user constraints only; it is kept until the
 
 import warp as wp
 
+from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.activity import is_asleep, link_moves
-from carom.kernels.solver.union_find import find_root
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func
 from carom.layouts.contacts import OVERLAPS

@@ -6,11 +6,11 @@ constraints and contacts, in the order in which they are relaxed.
 
 import warp as wp
 
+from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.activity import can_move, is_asleep, link_moves
 from carom.kernels.solver.bullet_islands import batch_islands, join_links, number_islands
 from carom.kernels.solver.contact_order import list_contacts, sort_manifolds
 from carom.kernels.solver.island_sort import sort_constraints
-from carom.kernels.solver.union_find import find_root
 from carom.kernels.solver.warm_starting import ANCHORED, MOVING, contact_traits, find_resting_islands
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func

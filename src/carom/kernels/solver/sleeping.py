@@ -8,9 +8,9 @@ active, and wakes up when one is. As in Bullet, neither forces nor motors wake a
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
+from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.activity import link_moves, squared_motion
 from carom.kernels.solver.islands import unite, unite_tied
-from carom.kernels.solver.union_find import find_root
 from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
 from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN

@@ -7,6 +7,7 @@ from carom.kernels.solver.articulated_manifolds import relax_articulated_frictio
 from carom.kernels.solver.joint_solver import relax_rows, row_sweep
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
+from carom.kernels.solver.single_contacts import SINGLES, relax_single_friction, relax_single_normal
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
@@ -79,10 +80,15 @@ def relax_friction(
 def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32) -> real:
     """Relax the normal rows of an island's contacts once; returns the maximum change squared."""
     residual = real(0.0)
-    for unit in range(units):
+    unit = Int32(0)
+    while unit < units:
         code = pair_rows.unit_code[world, unit]
+        unit += 1
         if code < 0:
             residual = maximum(residual, relax_normals(scratch, pair_rows, world, -1 - code))
+        elif code >= SINGLES:
+            change = relax_single_normal(scratch, pair_rows, world, code - SINGLES)
+            residual = maximum(residual, change * change)
         else:
             change = relax_pair_row(
                 scratch, pair_rows, world, pair_rows.contact_rows[world, code][NORMAL_ROW]
@@ -126,9 +132,15 @@ def friction_sweep(
 ) -> real:
     """Relax the spinning, rolling or lateral rows of an island's contacts; returns as `normal_sweep`."""
     residual = real(0.0)
-    for unit in range(units):
+    unit = Int32(0)
+    while unit < units:
         code = pair_rows.unit_code[world, unit]
-        if code >= 0:
+        unit += 1
+        if code >= SINGLES:
+            if kind == LATERAL_ROW:
+                change = relax_single_friction(settings, scratch, pair_rows, world, code - SINGLES)
+                residual = maximum(residual, change * change)
+        elif code >= 0:
             residual = maximum(
                 residual, relax_contact_friction(settings, scratch, pair_rows, world, code, kind)
             )

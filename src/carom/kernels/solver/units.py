@@ -1,4 +1,8 @@
-"""Units of an island's sweeps: its contacts, grouped into manifold blocks or single."""
+"""Units of an island's sweeps: its contacts, grouped into manifold blocks or single.
+
+The code of a unit, in `PairRows.unit_code`, is -1 - block for a manifold block, `SINGLES` + i for single
+contact i of rigid bodies, and the contact itself for any other.
+"""
 
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
@@ -6,17 +10,23 @@ from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_imp
 from carom.kernels.solver.contact_terms import contact_friction, contact_terms
 from carom.kernels.solver.manifold_writing import keep_manifold_impulses, write_manifold_block
 from carom.kernels.solver.pair_rows import has_room, tree_blocks
+from carom.kernels.solver.single_contacts import SINGLES, keep_single_impulses, write_single_contact
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
+
+
+@func
+def has_torsion(friction: Vector3) -> bool:
+    """Whether a contact with these coefficients has rolling or spinning friction."""
+    return friction[1] > 0.0 or friction[2] > 0.0
 
 
 @func
 def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
     """Whether a contact has rolling or spinning friction."""
     pair = contacts.contact_shapes[world, contact]
-    friction = contact_friction(shapes, world, pair[2], pair[3])
-    return friction[1] > 0.0 or friction[2] > 0.0
+    return has_torsion(contact_friction(shapes, world, pair[2], pair[3]))
 
 
 @func
@@ -58,6 +68,12 @@ def next_unit(
 
 
 @func
+def is_single(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32, rigid: bool) -> bool:
+    """Whether a contact without others in its unit is a single contact of `PairRows.single_contact`."""
+    return rigid and not twists(shapes, contacts, world, contact)
+
+
+@func
 def write_units(
     model: Model,
     settings: Settings,
@@ -82,6 +98,7 @@ def write_units(
         rolling or spinning friction.
     """
     units, manifold_blocks, torsion, next_matrices = Int32(0), Int32(0), Int32(0), Int32(0)
+    singles = Int32(0)
     contact = first_contact + 0
     while contact >= 0:
         pair = contacts.contact_shapes[world, contact]
@@ -110,10 +127,19 @@ def write_units(
             )  # fmt: skip
             pair_rows.unit_code[world, units] = -1 - manifold_blocks
             manifold_blocks += 1
+        elif rigid and not has_torsion(pair_rows.terms[world, 0].friction):
+            if singles == pair_rows.single_normal.shape[1]:
+                return Int32(-1), manifold_blocks, torsion
+            write_single_contact(
+                settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
+                singles,
+            )  # fmt: skip
+            pair_rows.unit_code[world, units] = SINGLES + singles
+            singles += 1
         else:
             if not room:
                 return Int32(-1), manifold_blocks, torsion
-            if pair_rows.terms[world, 0].friction[1] > 0.0 or pair_rows.terms[world, 0].friction[2] > 0.0:
+            if has_torsion(pair_rows.terms[world, 0].friction):
                 torsion = Int32(1)
             row, block = add_contact_rows(
                 settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
@@ -132,5 +158,7 @@ def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, un
         code = pair_rows.unit_code[world, unit]
         if code < 0:
             keep_manifold_impulses(contacts, pair_rows, world, -1 - code, outcome)
+        elif code >= SINGLES:
+            keep_single_impulses(contacts, pair_rows, world, code - SINGLES)
         else:
             keep_contact_impulses(contacts, pair_rows, world, code)

@@ -37,9 +37,11 @@ _TILE_ROOM = re.compile(
     r"^ *wp::tile_shared_storage_t tile_mem;\n#if defined\(WP_ENABLE_TILES_IN_STACK_MEMORY\)\n.*\n#endif\n",
     re.MULTILINE,
 )
-# Accesses to elements of arrays, for which `arrays.h` has functions of the same names; it uses Warp's header.
-_ACCESS = re.compile(r"\bwp::(address|index|array_store)\(")
+# Accesses to elements of arrays and loops over ranges, for which `arrays.h` and `loops.h` have functions of
+# the same names; they need Warp's header. Which `iter_cmp` is called depends on the type of its argument.
+_REPLACED = re.compile(r"\bwp::(address|index|array_store|range_t|range|iter_next)\b")
 _WARPS_HEADER = '#include "builtin.h"\n'
+_OUR_HEADERS = '#include "arrays.h"\n#include "loops.h"\n'
 
 
 # Functions for adjoints of structs have external linkage, and several modules have the same structs; so they
@@ -107,8 +109,8 @@ def _generate_module(name: str) -> tuple[str, list[Any]]:
     source, count = _TILE_ROOM.subn("", source)
     source = _NATIVE.sub("static WP_FORCEINLINE ", source)
     source = _SEEN.sub("static ", source)
-    source = _ACCESS.sub(r"carom::\1(", source)
-    source = source.replace(_WARPS_HEADER, f'{_WARPS_HEADER}#include "arrays.h"\n')
+    source = _REPLACED.sub(r"carom::\1", source)
+    source = source.replace(_WARPS_HEADER, _WARPS_HEADER + _OUR_HEADERS)
     kernels = list(builder.kernels)
     if count != len(kernels):
         raise RuntimeError(f"{name}: this version of Warp generates kernels in another form than 1.19")
