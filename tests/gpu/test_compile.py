@@ -11,7 +11,7 @@ from carom.native.kernel_modules import CUDA_MODULES
 pytest.importorskip("warp", reason="compiles kernels for GPUs")
 
 SPILLS = {
-    "pair_candidates_kernel": 12_000,
+    "pair_candidates_kernel": 12_500,
     "island_contacts_kernel": 11_000,
     "restless_sweeps_kernel": 1_500,
     "resting_sweeps_kernel": 200,

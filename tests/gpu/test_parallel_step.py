@@ -11,6 +11,7 @@ from tests.gpu.scenes import scene
 from tests.gpu.side_by_side import SideBySide
 
 from carom.errors import SimulationError
+from carom.gpu import workspace
 from carom.kernels.contact.manifold import THERE
 from carom.layouts.contacts import SORTED
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, STATUS
@@ -56,7 +57,11 @@ def test_a_velocity_that_is_not_finite_takes_its_own_world_back_and_no_other() -
 
 
 @pytest.mark.parametrize("build", ["robots", "heap"])
-def test_a_world_whose_rows_do_not_fit_goes_back_to_where_the_step_began(build: str) -> None:
+def test_a_world_whose_rows_do_not_fit_goes_back_to_where_the_step_began(
+    build: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Robots have rows over two trees, the heap has single contacts.
+    monkeypatch.setitem(workspace._FIRST_ROOM, "single", 2)
     with ExitStack() as stack:
         alone = [stack.enter_context(scene(build, seed)) for seed in range(COUNT)]
         worlds = SideBySide(alone, rows=1)
