@@ -376,7 +376,8 @@ class ShapeArrays:
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
             at["corner"] = int(numpy["face_first_corner"][at["face"]]) if placed.piece.polyhedron else 0
             self._write_piece(body, placed, at | {"shape": row})
-        self._write_link_bounds(body, link)
+        if pieces:
+            self._write_link_bounds(body, link)
 
     def _write_link_bounds(self, body: BodyShapes, link: int) -> None:
         """Write the bounds of a link with shapes, and whether these are in a compound."""

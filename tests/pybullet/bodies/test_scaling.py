@@ -7,6 +7,7 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from pybullet._clients.clients import client_of
 
 
 @pytest.fixture(autouse=True)
@@ -97,3 +98,15 @@ def test_bodies_from_the_same_file_keep_their_size() -> None:
         bounds(first) == bounds(p.loadURDF("cube.urdf")) == pytest.approx((-0.5,) * 3 + (0.5,) * 3, abs=2e-3)
     )
     assert bounds(second) == pytest.approx((-1.0,) * 3 + (1.0,) * 3, abs=2e-3)
+
+
+@pytest.mark.parametrize("later", [0, 1, 16], ids=["alone", "before another", "where the arrays are full"])
+def test_a_base_without_shapes_leaves_other_bodies_alone(later: int) -> None:
+    bare = p.createMultiBody(1)
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    for place in range(later):
+        p.createMultiBody(1, ball, basePosition=[place, 0, 0])
+    shapes = client_of(0).world.contact_arrays.shapes.table.numpy
+    before = {name: array.copy() for name, array in shapes.items()}
+    p.unsupportedChangeScaling(bare, [2, 2, 2])
+    assert all((shapes[name] == array).all() for name, array in before.items())
