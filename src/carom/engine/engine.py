@@ -91,6 +91,8 @@ class Engine:
         self._plan: Plan | None = None
         # The previous plan, if only constraints have changed since.
         self._plan_before: Plan | None = None
+        # The numbers of constraints that the current launches of steps are known to suit.
+        self._prepared_for: tuple[int, int] | None = None
         # The plan and the structs of the current launches of steps.
         self._loaded_for: tuple[Any, ...] | None = None
         self._tables = self._all_tables()
@@ -114,7 +116,7 @@ class Engine:
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or other parts of a step are needed."""
         self._plan = self._plan_before = None
-        self._loaded_for = None
+        self._loaded_for = self._prepared_for = None
         self._detection_ready = False
         self.changes += 1
 
@@ -133,6 +135,27 @@ class Engine:
         """Update the settings of kernels, also in existing launches."""
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
 
+    def resume(self, parameters: EngineParameters) -> bool:
+        """Use the launches of before constraints changed, if they still perform the right step.
+
+        Args:
+            parameters: Parameters of the world, the same as before.
+
+        Returns:
+            False if `prepare` has to be called.
+        """
+        if self._plan_before is None or self._loaded_for is None or not self.keeps_structs:
+            return False
+        counts = self._constraint_counts()
+        if counts == self._prepared_for:
+            self._plan = self._plan_before
+        # No array is replaced while all of them are long enough.
+        elif not self._is_long_enough() or self._find_plan() != self._loaded_for[0]:
+            return False
+        self._prepared_for = counts
+        self._settings.update_counts(parameters, self.arrays, self.contact_arrays, self._tell_settings)
+        return True
+
     def _tell_settings(self) -> None:
         """Launches have copies of the settings: update them."""
         for workspace in self._workspaces:
@@ -140,16 +163,7 @@ class Engine:
 
     def _bind(self) -> list[KernelStructs]:
         """Structs over the current arrays for each thread; the arrays are made longer if necessary."""
-        contact_arrays = self.contact_arrays
-        counts = (
-            *self.arrays.used.values(),
-            contact_arrays.user_count,
-            contact_arrays.shapes.shape_count,
-            len(contact_arrays.soft.bodies),
-        )
-        structs = [table.struct() for table in self._tables]
-        if self.keeps_structs and structs == self._bound[0] and all(map(le, counts, self._bound[1])):
-            # No array has been replaced since, and all were long enough for more rows than these.
+        if self.keeps_structs and self._is_bound():
             return [workspace.structs for workspace in self._workspaces]
         self.contact_arrays.reserve()
         for workspace in self._workspaces:
@@ -160,8 +174,28 @@ class Engine:
             **self.contact_arrays.structs(),
         }
         bound = [workspace.bind(shared) for workspace in self._workspaces]
-        self._bound = [table.struct() for table in self._tables], counts
+        self._bound = [table.struct() for table in self._tables], self._row_counts()
         return bound
+
+    def _is_bound(self) -> bool:
+        """Whether no array has been replaced since `_bind`, and all are long enough."""
+        return [table.struct() for table in self._tables] == self._bound[0] and self._is_long_enough()
+
+    def _is_long_enough(self) -> bool:
+        """Whether there are no more rows than at `_bind`."""
+        return all(map(le, self._row_counts(), self._bound[1]))
+
+    def _constraint_counts(self) -> tuple[int, int]:
+        return self.arrays.used["constraint"], self.contact_arrays.user_count
+
+    def _row_counts(self) -> tuple[int, ...]:
+        contact_arrays = self.contact_arrays
+        return (
+            *self.arrays.used.values(),
+            contact_arrays.user_count,
+            contact_arrays.shapes.shape_count,
+            len(contact_arrays.soft.bodies),
+        )
 
     # Steps
 
@@ -172,15 +206,19 @@ class Engine:
             watched: Whether a function is called after every substep.
         """
         self._watched = watched
+        self._prepared_for = None
         plan = self._find_plan()
         bound = self._bind()
         loading_for = plan, *self._bound[0]
         # Structs are the same objects until arrays are replaced.
-        if self._loaded_for == loading_for:
-            return
-        self._loaded_for = None
+        if self._loaded_for != loading_for:
+            self._loaded_for = None
+            self._load_steps(bound, plan)
+            self._loaded_for = loading_for
+        self._prepared_for = self._constraint_counts()
+
+    def _load_steps(self, bound: list[KernelStructs], plan: Plan) -> None:
         self._load(self._steppers, bound, lambda structs: self._make_program(structs, plan))
-        self._loaded_for = loading_for
         self.run_prepared = self._steppers[0].run
         self._abandon = []
         whole = self._steppers[0].program.whole

@@ -38,13 +38,26 @@ class QuickScene:
         record: The addresses; unknown functions are null.
     """
 
-    __slots__ = ("_is_empty", "_kept", "_posed", "_posing", "_stepped", "record")
+    __slots__ = (
+        "_detection",
+        "_is_empty",
+        "_kept",
+        "_posed",
+        "_posing",
+        "_run",
+        "_step",
+        "_stepped",
+        "record",
+    )
 
     def __init__(self) -> None:
         self.record = Scene()
         # The objects that the addresses point to.
         self._kept: list[Any] = []
         self._stepped: tuple[Any, ...] = ()
+        # The function that performs steps, also while it must not be called because constraints have changed.
+        self._run: int | None = None
+        self._step, self._detection = self.record.step, self.record.detection
         # The last launch that updates link poses, and the structs that it and other addresses are made for.
         self._posing: TreeLaunch | None = None
         self._posed: tuple[Any, ...] = ()
@@ -57,20 +70,19 @@ class QuickScene:
             return
         self.record.find_poses.function = None
         self.record.find_twists.function = None
-        self.forget_step()
+        self.pause_step()
+        self._run, self._stepped = None, ()
         self.forget_queries()
-        self.forget_detection()
         self._kept.clear()
         self._is_empty = True
 
-    def forget_detection(self) -> None:
-        """Forget the addresses that detect collisions: settings may change before the next time."""
-        self.record.detection.run = None
+    def pause_step(self) -> None:
+        """Perform no steps until `resume_step` or `know_step`; forget the addresses that detect collisions."""
+        self._step.run = self._detection.run = None
 
-    def forget_step(self) -> None:
-        """Forget the addresses for steps."""
-        self.record.step.run = None
-        self._stepped = ()
+    def resume_step(self) -> None:
+        """Perform steps again as before `pause_step`."""
+        self._step.run = self._run
 
     def forget_queries(self) -> None:
         """Forget the addresses for queries of contacts and shapes, which will be replaced."""
@@ -127,14 +139,14 @@ class QuickScene:
         contacts = engine.contact_arrays.contacts.struct()
         self._stepped = engine, time, observers, contacts
         self._is_empty = False
-        record = self.record.step
+        record = self._step
         run, record.status, record.duration = engine.step_addresses()
         record.time, record.observers = addressof(time), id(observers)
         sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations
         is_small = engine.arrays.used["link"] <= _FEW_LINKS and not engine.contact_arrays.soft.bodies
         record.contact_count = contacts.count_contacts.data if is_small and sweeps <= _FEW_SWEEPS else None
         # Last: without it the other addresses are not used.
-        record.run = run
+        record.run = self._run = run
 
     def know_twists(self, launch: TreeLaunch) -> None:
         """Set the addresses that update the link velocities of a body."""
@@ -154,7 +166,7 @@ class QuickScene:
         """
         poses_before = np.empty(poses.nbytes // 8)
         self.keep(detector, find_poses, poses, poses_before, status)
-        record = self.record.detection
+        record = self._detection
         called = record.find_poses
         called.function, called.bounds, called.arguments = find_poses.addresses()
         record.poses, record.poses_before = addressof(c_char.from_buffer(poses)), poses_before.ctypes.data

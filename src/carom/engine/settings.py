@@ -28,7 +28,21 @@ class EngineSettings:
         self._written: dict[str, Any] = {}
         # The parameters and numbers that have been written.
         self._given: tuple[Any, ...] = ()
+        # Those of them that are numbers of constraints.
+        self._constraint_counts = (0, 0)
         self._gravity = (0.0, 0.0, 0.0)
+
+    def update_counts(
+        self,
+        parameters: EngineParameters,
+        arrays: WorldArrays,
+        contact_arrays: ContactArrays,
+        tell: Callable[[], None],
+    ) -> None:
+        """As `update`, if nothing but the number of constraints can have changed since."""
+        counts = arrays.used["constraint"], contact_arrays.user_count
+        if not self._given or counts != self._constraint_counts:
+            self.update(parameters, arrays, contact_arrays, tell)
 
     def update(
         self,
@@ -46,9 +60,9 @@ class EngineSettings:
             arrays.model.written("gravity_vector")
             self._gravity = parameters.gravity
         shapes, used = contact_arrays.shapes, arrays.used
-        counts = (used["tree"], used["link"], used["constraint"], contact_arrays.user_count)
+        of_constraints = used["constraint"], contact_arrays.user_count
         of_shapes = (shapes.shape_count, shapes.filter_count, shapes.looks_ahead)
-        given = (*_PARAMETERS(parameters), *counts, *of_shapes)
+        given = (*_PARAMETERS(parameters), used["tree"], used["link"], *of_constraints, *of_shapes)
         if given == self._given:
             return
         self._given = ()
@@ -58,7 +72,7 @@ class EngineSettings:
                 setattr(self.struct, name, value)
                 self._written[name] = value
         tell()
-        self._given = given
+        self._given, self._constraint_counts = given, of_constraints
 
 
 def _values(

@@ -116,16 +116,17 @@ def remove_body(world: World, body: Body) -> None:
 def tie(world: World, constraint: UserConstraint) -> UserConstraint:
     """Add a new user constraint, and return it."""
     world.undo.settle()
-    forget_user, forget = world.user_constraints.way_back(), world.constraints.way_back()
+    users = world.user_constraints
+    numbers = users.next_numbers
 
     def go_back() -> None:
-        forget()
-        forget_user()
+        world.constraints.drop_last_user(constraint)
+        users.take_back(constraint, numbers)
         world.constraints_changed()
 
     with world.undo as undo:
         undo.note(go_back)
-        world.user_constraints.put(constraint)
+        users.put(constraint)
         world.constraints.add_user(constraint)
         world.constraints_changed()
         undo.done()

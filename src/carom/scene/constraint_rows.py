@@ -72,25 +72,19 @@ class ConstraintRows:
         if rows is None:
             return False
         changed: set[int] = set()
-        more: dict[int, int] = {}
         for constraint, added in changes:
-            changed |= self._append(rows, constraint) if added else self._drop(rows, constraint)
-            for tree in _trees_of(constraint):
-                more[tree] = more.get(tree, 0) + (1 if added else -1)
-        for tree, count in more.items():
-            if count:
-                arrays.model.numpy["tree_constraint_count"][tree] += count
+            if added:
+                self._append(rows, constraint, changed)
+            else:
+                self._drop(rows, constraint, changed)
+        _count(arrays, changes)
         if changes and not self._is_sorted and all(constraint.user is None for constraint in rows):
             return False
         _use(arrays, len(rows))
         self._written += [_UNKNOWN] * (len(rows) - len(self._written))
         for row in changed:
             if row < len(rows):
-                terms = self._terms(rows, row, user_rows)
-                for field, value, old in zip(_FIELDS, terms, self._written[row], strict=True):
-                    if value != old:
-                        arrays.model.numpy[field][..., row] = value
-                self._written[row] = terms
+                self._write(arrays, row, self._terms(rows, row, user_rows))
         self._rows = rows
         return True
 
@@ -133,15 +127,14 @@ class ConstraintRows:
         self._is_sorted = True
         self._rows = rows
 
-    def _append(self, rows: list[JointConstraint], constraint: JointConstraint) -> set[int]:
-        """Append a user constraint; returns the rows that have to be written."""
-        row = len(rows)
+    def _append(self, rows: list[JointConstraint], constraint: JointConstraint, changed: set[int]) -> None:
+        """Append a user constraint, and add the rows that have to be written to `changed`."""
+        changed.add(len(rows))
+        self._places.append(len(rows))
         rows.append(constraint)
-        self._places.append(row)
-        return {row}
 
-    def _drop(self, rows: list[JointConstraint], constraint: JointConstraint) -> set[int]:
-        """Drop a user constraint; returns the rows that have to be written.
+    def _drop(self, rows: list[JointConstraint], constraint: JointConstraint, changed: set[int]) -> None:
+        """Drop a user constraint, and add the rows that have to be written to `changed`.
 
         The last row, which is that of a user constraint, takes its row. In Bullet's list the last constraint
         takes its place.
@@ -154,8 +147,17 @@ class ConstraintRows:
         rows[row], places[row] = rows[last], places[last]
         rows.pop()
         places.pop()
+        changed.add(after)
         # The later ones among the user constraints have other rows in `UserConstraints` now.
-        return {after, *[row for row, other in enumerate(rows) if other.user is not None]}
+        changed.update([row for row, other in enumerate(rows) if other.user is not None])
+
+    def _write(self, arrays: WorldArrays, row: int, terms: Terms) -> None:
+        """Write what has changed of a row."""
+        if terms != self._written[row]:
+            for field, value, old in zip(_FIELDS, terms, self._written[row], strict=True):
+                if value != old:
+                    arrays.model.numpy[field][..., row] = value
+            self._written[row] = terms
 
     def _terms(self, rows: Sequence[JointConstraint], row: int, user_rows: Mapping[int, int]) -> Terms:
         """The values of a row, of `_FIELDS`."""
@@ -173,6 +175,18 @@ def _use(arrays: WorldArrays, count: int) -> None:
     arrays.model.reserve(used)
     arrays.state.reserve(used)
     arrays.used.update(used)
+
+
+def _count(arrays: WorldArrays, changes: Iterable[tuple[JointConstraint, bool]]) -> None:
+    """Update the number of constraints of each tree."""
+    more: dict[int, int] = {}
+    for constraint, added in changes:
+        change = 1 if added else -1
+        for tree in _trees_of(constraint):
+            more[tree] = more.get(tree, 0) + change
+    for tree, count in more.items():
+        if count:
+            arrays.model.numpy["tree_constraint_count"][tree] += count
 
 
 def _trees_of(constraint: JointConstraint) -> list[int]:

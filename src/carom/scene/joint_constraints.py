@@ -134,6 +134,12 @@ class JointConstraints:
         if self._is_active(constraint):
             self.rows.note(constraint, added=True)
 
+    def drop_last_user(self, user: UserConstraint) -> None:
+        """Undo `add_user`; can be called again, or if it was interrupted."""
+        if self.all and self.all[-1].user is user:
+            self.all.pop()
+        self.rows.forget()
+
     def user_removal(self, user: UserConstraint) -> Callable[[], None]:
         """Prepare to remove a user constraint; the function returned can be called again."""
         constraint = next(constraint for constraint in reversed(self.all) if constraint.user is user)

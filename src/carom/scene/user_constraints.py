@@ -166,8 +166,20 @@ class UserConstraints:
     def put(self, constraint: UserConstraint) -> None:
         """Add a constraint with its own number; later ones get higher numbers."""
         self._by_id[constraint.id] = constraint
-        self.next_id = max(self.next_id, constraint.id + 1)
-        self._next_hidden_id = min(self._next_hidden_id, constraint.id - 1)
+        if constraint.id >= self.next_id:
+            self.next_id = constraint.id + 1
+        if constraint.id <= self._next_hidden_id:
+            self._next_hidden_id = constraint.id - 1
+
+    @property
+    def next_numbers(self) -> tuple[int, int]:
+        """The number of the next constraint, and of the next hidden one."""
+        return self.next_id, self._next_hidden_id
+
+    def take_back(self, constraint: UserConstraint, next_numbers: tuple[int, int]) -> None:
+        """Undo `put`; `next_numbers` are those of before. Can be called again, or if it was interrupted."""
+        self.discard(constraint.id)
+        self.next_id, self._next_hidden_id = next_numbers
 
     def discard(self, constraint_id: int) -> None:
         """Remove the constraint with a number, if it exists."""
@@ -213,12 +225,17 @@ class UserConstraints:
 
     def write(self, contact_arrays: ContactArrays) -> None:
         """Write all constraints that have changed to the arrays of the engine."""
-        contact_arrays.user_count = len(self._by_id)
-        contact_arrays.users.reserve({"user": contact_arrays.user_count})
+        now = [constraint.terms() for constraint in self._by_id.values()]
+        contact_arrays.user_count = len(now)
+        if now != self._written:
+            self._write_rows(contact_arrays, now)
+        contact_arrays.forget_order()
+
+    def _write_rows(self, contact_arrays: ContactArrays, now: list[tuple[Any, ...]]) -> None:
+        contact_arrays.users.reserve({"user": len(now)})
         users = contact_arrays.users.numpy
         # Until all rows have been written, none is known.
         written, self._written = self._written, []
-        now = [constraint.terms() for constraint in self._by_id.values()]
         for row, terms in enumerate(now):
             known = written[row] if row < len(written) else _UNKNOWN
             if terms != known:
@@ -227,7 +244,6 @@ class UserConstraints:
                     if value != old:
                         users[field][row] = value
         self._written = now
-        contact_arrays.forget_order()
 
     def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
         """Impulses of a constraint's rows in the last substep, shape (rows,)."""

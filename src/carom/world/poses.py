@@ -26,6 +26,8 @@ class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 
     step: Callable[[], None] | None = None
+    # The step before constraints changed, if nothing else has changed since.
+    step_before: Callable[[], None] | None = None
     queries: Queries | None = None
     present_poses: PresentPoses | None = None
     pose_launch: TreeLaunch | None = None

@@ -322,6 +322,8 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
             self.scene_changed()
         elif self._derived.step is not None:
             self.engine.update_settings(self.parameters)
+        else:
+            self._derived.step_before = None
 
     def scene_changed(self) -> None:
         """Discard derived data: bodies, constraints or arrays have changed."""
@@ -336,10 +338,10 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
             self._viewed, self._replacements = self.arrays.state, self.arrays.state.replacements
 
     def constraints_changed(self) -> None:
-        """Discard the prepared step: constraints have changed, and nothing else."""
-        self._derived.step = None
-        self.quick.forget_detection()
-        self.quick.forget_step()
+        """Set the prepared step aside: constraints have changed, and nothing else."""
+        derived = self._derived
+        derived.step_before, derived.step = derived.step or derived.step_before, None
+        self.quick.pause_step()
         self.engine.constraints_changed()
 
     # Time
@@ -465,6 +467,11 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
         )
         self.user_constraints.write(self.contact_arrays)
+        step = self._derived.step_before
+        if step is not None and self.engine.resume(self.parameters):
+            self.quick.resume_step()
+            self._derived.step = step
+            return step
         self.contact_arrays.soft.write_anchors()
         self.quick.forget_queries()
         self._derived.queries = None

@@ -14,11 +14,16 @@ from pybullet._calls.arguments import rotation, vector3, vector4
 from pybullet._calls.errors import warn_once
 
 
+_USUAL = frozenset((list, tuple))
+
+
 def optional_vector3(values: Any, problem: str, name: str) -> Vector3 | None:
     """Three finite numbers; None if not given or, with a warning, if the length is not three.
 
     Raises `pybullet.error` if there are three items, and one is not a finite number.
     """
+    if type(values) in _USUAL and len(values) == 3:
+        return vector3(values, problem, name)
     return vector3(values, problem, name) if has_length(values, 3, name) else None
 
 

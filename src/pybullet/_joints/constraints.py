@@ -33,6 +33,8 @@ __all__ = [
 _WORLD = -1
 _KINDS = {int(kind): kind for kind in UserConstraintKind}
 _FAILED = "createConstraint failed."
+_PARENT_FRAME = "parentFramePosition", "parentFrameOrientation"
+_CHILD_FRAME = "childFramePosition", "childFrameOrientation"
 _CHANGE_FAILED = "changeConstraint failed."
 _UNCHANGED_TARGET = 1e32
 
@@ -101,8 +103,8 @@ def createConstraint(
     if kind == JOINT_GEAR:
         _check_gear(parent, parent_link, child, child_link)
 
-    parent_frame = _frame(parentFramePosition, parentFrameOrientation, "parentFrame")
-    child_frame = _frame(childFramePosition, childFrameOrientation, "childFrame")
+    parent_frame = _frame(parentFramePosition, parentFrameOrientation, *_PARENT_FRAME)
+    child_frame = _frame(childFramePosition, childFrameOrientation, *_CHILD_FRAME)
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     with client.lock:
         constraint = client.world.tie(
@@ -378,7 +380,9 @@ def _check_gear(parent: Body, parent_link: int, child: Body | None, child_link: 
             fail(_FAILED, f"The {name} of a gear has to be a revolute or prismatic joint.")
 
 
-def _frame(position: Vector, orientation: Vector | None, name: str) -> Pose:
-    origin = optional_vector3(position, _FAILED, f"{name}Position") or IDENTITY.position
-    turn = optional_rotation(orientation, _FAILED, f"{name}Orientation")
+def _frame(position: Vector, orientation: Vector | None, position_name: str, orientation_name: str) -> Pose:
+    origin = optional_vector3(position, _FAILED, position_name) or IDENTITY.position
+    if orientation is None:
+        return Pose(origin) if any(origin) else IDENTITY
+    turn = optional_rotation(orientation, _FAILED, orientation_name)
     return Pose(origin, IDENTITY.orientation if turn is None else unit(turn))
