@@ -36,6 +36,14 @@ def column_of(entries: Entries) -> Column:
     return Column(entries, list(map(len, entries)), _joined(entries))
 
 
+def _joined(entries: Entries) -> list[float]:
+    return list(chain.from_iterable(entries))
+
+
+NO_ENTRIES = column_of(())
+"""A column that is not given."""
+
+
 class JointColumns:
     """Puts columns, which have an entry for each of some joints, in the order of all coordinates of a body.
 
@@ -94,10 +102,6 @@ def _filled_up(column: Column, defaults: Column) -> list[float]:
         return defaults.numbers
     entries = zip(column.entries, defaults.entries, strict=True)
     return _joined([(*entry[: len(default)], *default[len(entry) :]) for entry, default in entries])
-
-
-def _joined(entries: Entries) -> list[float]:
-    return list(chain.from_iterable(entries))
 
 
 def _picker(places: list[int]) -> Callable[[list[float]], Numbers]:

@@ -66,7 +66,7 @@ def stable_pd_torques(
 
     Raises:
         ValueError: The body has a planar joint.
-        TypeError: An item is not a number, or a column has another length.
+        TypeError: An item is not a number.
         DescriptionError: The file of a collision mesh cannot be used.
     """
     controller = body.derived.get(_Controller)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from math import inf
-from typing import Any, SupportsFloat, cast
+from typing import Any, SupportsFloat
 
-from carom.algorithms.joint_columns import Column, column_of
+from carom.algorithms.joint_columns import NO_ENTRIES, Column, column_of
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
     Indices,
@@ -189,11 +188,15 @@ def setJointMotorControlMultiDofArray(
 
 def _column(entries: Sequence[Vector | None], name: str, most: int) -> Column:
     """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
-    if entries and _USUAL_LISTS.issuperset(map(type, entries)):
-        usual = column_of(cast("Sequence[Sequence[float]]", entries))
-        with suppress(TypeError, ValueError):
+    if not entries:
+        return NO_ENTRIES
+    if _USUAL_LISTS.issuperset(map(type, entries)):
+        usual = column_of(entries)  # type: ignore[arg-type]
+        try:
             if max(usual.counts) <= most and -inf < sum(usual.numbers) < inf:
                 return usual
+        except (TypeError, ValueError):
+            pass
     return column_of([_list(values, name, most) for values in entries])
 
 
