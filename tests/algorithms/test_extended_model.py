@@ -96,7 +96,7 @@ def test_torques_solve_the_equations_of_motion_together_with_the_controller() ->
 
 def test_torques_are_bounded_and_other_joints_are_left_alone() -> None:
     body = load("arm.urdf", fixed_base=True)
-    columns = [column_of([[number]]) for number in (1.0, 0.0, 0.5)]
+    columns = column_of([[1.0]]), column_of([[0.0]]), column_of([[0.5]])
     torques = stable_pd_torques(body, (1,), *columns, [1000.0], [1.0], 0.01)
     assert torques.tolist() == [0.0] * 7 + [0.5, 0.0]
 

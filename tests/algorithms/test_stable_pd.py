@@ -38,7 +38,7 @@ def zoo(request: pytest.FixtureRequest) -> Body:
 def torques_of(body: Body, targets: Sequence[tuple[int, Target]]) -> np.ndarray:
     joints = tuple(joint for joint, _ in targets)
     positions, velocities, forces, kps, kds = zip(*(target for _, target in targets), strict=True)
-    columns = map(column_of, (positions, velocities, forces))
+    columns = column_of(positions), column_of(velocities), column_of(forces)
     return stable_pd_torques(body, joints, *columns, kps, kds, STEP)
 
 
@@ -48,9 +48,9 @@ def reference(body: Body, targets: Mapping[int, Target]) -> np.ndarray:
     for joint, count in enumerate(body.position_count):
         freedoms = body.velocity_count[joint]
         aim = [*NO_TURN] if count == 4 else [0.0] * count
-        rate, most, gains = [0.0] * freedoms, [0.0] * freedoms, (0.0, 0.0)
+        rate, most, kp, kd = [0.0] * freedoms, [0.0] * freedoms, 0.0, 0.0
         if joint in targets:
-            position, velocity, force, *gains = targets[joint]
+            position, velocity, force, kp, kd = targets[joint]
             if len(position) == count:
                 for k in range(count):
                     aim[k] = position[k]
@@ -58,7 +58,7 @@ def reference(body: Body, targets: Mapping[int, Target]) -> np.ndarray:
                 if len(velocity) == freedoms:
                     rate[k] = velocity[k]
                 most[k] = force[k] if k < len(force) else 100000.0
-        complete.append((joint, (aim, rate, most, *gains)))
+        complete.append((joint, (aim, rate, most, kp, kd)))
     return torques_of(body, complete)
 
 
@@ -91,7 +91,7 @@ def test_targets_of_some_joints(zoo: Body, targets: list[tuple[int, Target]]) ->
 
 def test_columns_without_entries_are_those_of_empty_entries(zoo: Body) -> None:
     gains = [40.0, 20.0], [4.0, 1.0]
-    torques = stable_pd_torques(zoo, (0, 3), *[NO_ENTRIES] * 3, *gains, STEP)
+    torques = stable_pd_torques(zoo, (0, 3), NO_ENTRIES, NO_ENTRIES, NO_ENTRIES, *gains, STEP)
     expected = reference(zoo, {0: ([], [], [], 40.0, 4.0), 3: ([], [], [], 20.0, 1.0)})
     assert torques.tobytes() == expected.tobytes()
 
@@ -114,4 +114,4 @@ def test_bodies_without_moving_joints(tmp_path: Path) -> None:
     file = tmp_path / "stone.urdf"
     file.write_text('<robot name="stone"><link name="a"/></robot>')
     body = World().load_urdf(file)
-    assert stable_pd_torques(body, (), *[NO_ENTRIES] * 3, [], [], STEP).tolist() == [0.0] * 6
+    assert stable_pd_torques(body, (), NO_ENTRIES, NO_ENTRIES, NO_ENTRIES, [], [], STEP).tolist() == [0.0] * 6

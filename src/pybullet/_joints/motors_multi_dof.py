@@ -175,7 +175,8 @@ def setJointMotorControlMultiDofArray(
 
         body, time_step = access.body, client.time_step
         torques = stable_pd_torques(body, requested, positions, velocities, bounds, kps, kds, time_step)
-        own = body.world.joint_torque[body.first_velocity :][: len(torques)]
+        first = body.first_velocity
+        own = body.world.joint_torque[first : first + len(torques)]
         own += torques
         return
     columns = [column.entries or [()] * count for column in (positions, velocities, bounds)]
