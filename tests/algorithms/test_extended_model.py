@@ -9,6 +9,7 @@ from carom import World
 from carom.algorithms import inverse_dynamics, mass_matrix
 from carom.algorithms.extended_model import ExtendedModel, extended_bias_forces, extended_mass_matrix
 from carom.algorithms.extended_nodes import extended_nodes
+from carom.algorithms.joint_columns import NO_ENTRIES, column_of
 from carom.algorithms.stable_pd import stable_pd_torques
 from carom.scene.body import Body
 
@@ -81,12 +82,11 @@ def test_torques_solve_the_equations_of_motion_together_with_the_controller() ->
         body.set_joint_state(joint, positions[q : q + count].tolist(), rates[u : u + freedoms].tolist())
         q, u = q + count, u + freedoms
     kp, kd, step = 30.0, 4.0, 0.01
-    targets = {
-        joint: ([0.2] if count == 1 else [0.0, 0.0, 0.6, 0.8], [], [], kp, kd)
-        for joint, count in enumerate(body.position_count)
-        if count
-    }
-    torques = stable_pd_torques(body, targets, step)[6:]
+    joints = tuple(joint for joint, count in enumerate(body.position_count) if count)
+    aims = [[0.2] if body.position_count[joint] == 1 else [0.0, 0.0, 0.6, 0.8] for joint in joints]
+    kps, kds = [kp] * len(joints), [kd] * len(joints)
+    targets = column_of(aims), NO_ENTRIES, NO_ENTRIES
+    torques = stable_pd_torques(body, joints, *targets, kps, kds, step)[6:]
     still = np.zeros_like(rates)
     bias = inverse_dynamics(body, positions, rates, still)
     acceleration = np.linalg.solve(mass_matrix(body, positions), torques - bias)
@@ -96,7 +96,8 @@ def test_torques_solve_the_equations_of_motion_together_with_the_controller() ->
 
 def test_torques_are_bounded_and_other_joints_are_left_alone() -> None:
     body = load("arm.urdf", fixed_base=True)
-    torques = stable_pd_torques(body, {1: ([1.0], [0.0], [0.5], 1000.0, 1.0)}, 0.01)
+    columns = column_of([[1.0]]), column_of([[0.0]]), column_of([[0.5]])
+    torques = stable_pd_torques(body, (1,), *columns, [1000.0], [1.0], 0.01)
     assert torques.tolist() == [0.0] * 7 + [0.5, 0.0]
 
 

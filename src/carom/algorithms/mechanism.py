@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property, partial
+from functools import cached_property
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ from carom.native.kernels import (
     motion_kernel,
 )
 from carom.native.launch import Launch
-from carom.native.tables import NUMPY_REAL, ArrayTable, array_view, numbers_of
+from carom.native.tables import NUMPY_REAL, ArrayTable, array_view, numbers_of, writer_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -30,7 +30,6 @@ Rows = tuple[tuple[float, ...], ...]
 Numbers = Sequence[float] | np.ndarray
 
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
-_SIZE = np.dtype(NUMPY_REAL).itemsize
 _JACOBIAN_ROWS = 6
 
 
@@ -81,10 +80,11 @@ class Mechanism:
         self.structs: tuple[Any, Any] = (sizes, table.struct())
         self._jacobians: dict[int, Callable[[], None]] = {}
         self._links = range(-1, len(ends) - 1)
-        self._put_base = self._writer(0, first_position)
-        self._put_point = self._writer(0, 3)
-        self._put_positions = self._writer(first_position, self.coordinates)
-        self._put_motion = self._writer(first_position, self.coordinates + 2 * self.joint_dofs)
+        question = self.arrays["input"][: first_rate + 2 * self.joint_dofs]
+        self._put_base = writer_of(question[:first_position])
+        self._put_point = writer_of(question[:3])
+        self._put_positions = writer_of(question[first_position:first_rate])
+        self._put_motion = writer_of(question[first_position:])
         self._row = Struct(f"{self.dofs}{_TYPE_CODE}")
         used = {"output": _JACOBIAN_ROWS * self.dofs, "matrix": self.dofs * self.dofs}
         self._output, self._matrix = (
@@ -166,11 +166,6 @@ class Mechanism:
 
     def _rows(self, memory: memoryview) -> Rows:
         return tuple(self._row.iter_unpack(memory)) if self.dofs else ()
-
-    def _writer(self, first: int, count: int) -> Callable[..., None]:
-        """A function that writes `count` numbers to the query, beginning at number `first`."""
-        write = Struct(f"{count}{_TYPE_CODE}").pack_into
-        return partial(write, self.arrays["input"].data.cast("B"), first * _SIZE)
 
     def _write_nodes(self, nodes: Sequence[Node], *, free: bool) -> None:
         arrays = self.arrays

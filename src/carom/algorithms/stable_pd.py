@@ -7,58 +7,74 @@ are solved together with the damping of the controller. So high gains are stable
 
 from __future__ import annotations
 
-from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from struct import Struct
+from struct import error as StructError
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.algorithms.extended_model import base_motion
 from carom.algorithms.extended_nodes import extended_nodes
+from carom.algorithms.joint_columns import Column, JointColumns
 from carom.algorithms.mechanism import Mechanism
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.mechanism import BASE_MOTION, Control
 from carom.native.kernels import stable_pd_kernel
 from carom.native.launch import Launch
-from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
+from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of, writer_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
-_TYPE_CODE = np.dtype(NUMPY_REAL).char
-_UNSTATED_FORCE = 100000.0
-_NO_TURN = (0.0, 0.0, 0.0, 1.0)
+_NUMBER = np.dtype(NUMPY_REAL)
+_read_orientation = Struct(f"4{_NUMBER.char}").unpack_from
+_read_velocity = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}").unpack_from
 
 
-# Position, velocity, forces, kp and kd of a joint; see `stable_pd_torques`.
-_Target = tuple[Sequence[float], Sequence[float], Sequence[float], float, float]
-
-
-def stable_pd_torques(body: Body, targets: Mapping[int, _Target], time_step: float) -> np.ndarray:
+def stable_pd_torques(
+    body: Body,
+    joints: tuple[int, ...],
+    positions: Column,
+    velocities: Column,
+    forces: Column,
+    kps: Sequence[float],
+    kds: Sequence[float],
+    time_step: float,
+) -> np.ndarray:
     """Torques that drive joints to their targets.
 
     With a floating base the equations of motion are those that PyBullet solves, see `extended_nodes`. With a
     fixed base, for which PyBullet mixes up coordinates, they are the body's own.
 
+    The columns `positions` to `kds` have an entry for each of the joints, in their order. The first three may
+    have no entries at all: then each joint's counts as empty.
+
     Args:
         body: The body.
-        targets: By joint index; other joints get no torque. Position: one number [rad or m], or a quaternion
-            (x, y, z, w); 0 or no rotation if it has another length. Velocity: one number [rad/s or m/s], or
-            three; likewise. Maximum torque of each dof [N m or N]; for dofs beyond its length 100000. Torque
-            per position error, and per velocity error.
+        joints: The joints by their indices; others get no torque. Of one that is repeated, the last counts.
+        positions: One number [rad or m], or a quaternion (x, y, z, w); 0 or no rotation if an entry has
+            another length.
+        velocities: One number [rad/s or m/s], or three; likewise.
+        forces: Maximum torque of each dof [N m or N]; for dofs beyond the length of an entry 100000.
+        kps: Torque per position error.
+        kds: Torque per velocity error.
         time_step: Duration of the next step [s].
 
     Returns:
         Torque of each velocity coordinate of the body, beginning with zeros for its base.
 
     Raises:
-        ValueError: A joint is planar.
+        ValueError: The body has a planar joint.
+        TypeError: An item is not a number.
         DescriptionError: The file of a collision mesh cannot be used.
     """
     controller = body.derived.get(_Controller)
     if controller is None:
         controller = body.derived[_Controller] = _Controller(body)
-    return controller.torques(targets, time_step)
+    controller.take_state()
+    controller.take_targets(joints, positions, velocities, forces, kps, kds)
+    return controller.torques(time_step)
 
 
 class _Controller:
@@ -73,64 +89,62 @@ class _Controller:
             {"coordinate": mechanism.coordinates, "dof": mechanism.dofs, "entry": mechanism.dofs**2}
         )
         arrays = control.numpy
-        self._target = numbers_of(arrays["coordinate_target"])
-        self._given = [arrays[f"dof_{name}"] for name in ("target_rate", "kp", "kd", "most")]
-        self._target_rate, self._kp, self._kd, self._most = map(numbers_of, self._given)
-        self._torque = arrays["dof_torque"][: mechanism.dofs]
-        self._unaimed = array(_TYPE_CODE)
-        for count in body.position_count:
-            self._unaimed.extend(_NO_TURN if count == 4 else (0.0,) * count)
-        # The dofs of the mechanism begin with those of the base, like the body's.
-        shift_q, shift_u = body.first_position + BASE_POSITIONS, body.first_velocity
-        self._places = [
-            (
-                body.position_index[joint] - shift_q,
-                body.velocity_index[joint] - shift_u,
-                body.position_count[joint],
-                body.velocity_count[joint],
-            )
-            for joint in range(body.joint_count)
-        ]
+        # The dofs of the mechanism begin with those of the base, like the body's; these have no targets.
+        dofs = slice(BASE_VELOCITIES, mechanism.dofs)
+        self._write_positions = writer_of(arrays["coordinate_target"][: mechanism.coordinates])
+        self._write_velocities = writer_of(arrays["dof_target_rate"][dofs])
+        self._write_forces = writer_of(arrays["dof_most"][dofs])
+        self._write_kps = writer_of(arrays["dof_kp"][dofs])
+        self._write_kds = writer_of(arrays["dof_kd"][dofs])
+        self._columns = JointColumns(body, ())
         rates = int(BASE_MOTION) + mechanism.coordinates
         given = numbers_of(mechanism.arrays["input"])
         self._position = given[int(BASE_MOTION) : rates]
         self._rate = given[rates : rates + mechanism.joint_dofs]
-        arguments = [*mechanism.structs, control.struct(), int(body.fixed_base), 0.0]
+        self._torque = arrays["dof_torque"][: mechanism.dofs]
+        self._time_step = 0.0
+        arguments = [*mechanism.structs, control.struct(), int(body.fixed_base), self._time_step]
         self._launch = Launch(stable_pd_kernel, 1, arguments)
-        self._time_step_at = stable_pd_kernel.indices["time_step"]
+        self._run = self._launch.function
 
-    def torques(self, targets: Mapping[int, _Target], time_step: float) -> np.ndarray:
-        self._take_state()
-        self._take_targets(targets)
-        self._launch.replace(self._time_step_at, time_step)
-        self._launch()
-        return self._torque.copy()
-
-    def _take_state(self) -> None:
+    def take_state(self) -> None:
+        """Take over the present state of the body."""
         body, world = self._body, self._body.world
         q, u = body.first_position, body.first_velocity
-        orientation = world.position_memory[q + 3 : q + BASE_POSITIONS].tolist()
-        rates = world.velocity_memory[u : u + BASE_VELOCITIES].tolist()
+        orientation = _read_orientation(world.position_memory, (q + 3) * _NUMBER.itemsize)
+        rates = _read_velocity(world.velocity_memory, u * _NUMBER.itemsize)
         gravity = world.parameters.gravity
         self._mechanism.set_base_motion(*base_motion(orientation, rates[3:], rates[:3], gravity))
-        self._position[:] = world.position_memory[q + BASE_POSITIONS :][: self._mechanism.coordinates]
-        self._rate[:] = world.velocity_memory[u + BASE_VELOCITIES :][: self._mechanism.joint_dofs]
+        q, u = q + BASE_POSITIONS, u + BASE_VELOCITIES
+        self._position[:] = world.position_memory[q : q + self._mechanism.coordinates]
+        self._rate[:] = world.velocity_memory[u : u + self._mechanism.joint_dofs]
 
-    def _take_targets(self, targets: Mapping[int, _Target]) -> None:
-        for numbers in self._given:
-            numbers.fill(0.0)
-        aims, target_rates, kps, kds, most = self._target, self._target_rate, self._kp, self._kd, self._most
-        aims[: len(self._unaimed)] = self._unaimed
-        for joint, (position, velocity, force, kp, kd) in targets.items():
-            q, u, count, freedoms = self._places[joint]
-            if count and len(position) == count:
-                for k in range(count):
-                    aims[q + k] = position[k]
-            if len(velocity) == freedoms:
-                for k in range(freedoms):
-                    target_rates[u + k] = velocity[k]
-            stated = len(force)
-            for k in range(freedoms):
-                kps[u + k] = kp
-                kds[u + k] = kd
-                most[u + k] = force[k] if k < stated else _UNSTATED_FORCE
+    def take_targets(
+        self,
+        joints: tuple[int, ...],
+        positions: Column,
+        velocities: Column,
+        forces: Column,
+        kps: Sequence[float],
+        kds: Sequence[float],
+    ) -> None:
+        """Take over the targets of some joints; all others have none."""
+        columns = self._columns
+        if columns.joints != joints:
+            columns = self._columns = JointColumns(self._body, joints)
+        try:
+            self._write_positions(*columns.positions(positions))
+            self._write_velocities(*columns.velocities(velocities))
+            self._write_forces(*columns.forces(forces))
+            self._write_kps(*columns.gains(kps))
+            self._write_kds(*columns.gains(kds))
+        except StructError as problem:
+            raise TypeError(f"targets of joints: {problem}") from None
+
+    def torques(self, time_step: float) -> np.ndarray:
+        """The torques for a step of this duration [s]."""
+        if time_step != self._time_step:
+            self._launch.replace(stable_pd_kernel.indices["time_step"], time_step)
+            self._time_step = time_step
+        self._run()
+        return self._torque.copy()

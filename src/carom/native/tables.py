@@ -11,7 +11,8 @@ share it: kernels see a stride of zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
+from functools import cache, partial
+from struct import Struct as Packing
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -31,6 +32,14 @@ _FIRST_CAPACITY = 16
 def numbers_of(numbers: np.ndarray) -> memoryview[float]:
     """The memory of an array of numbers: access to single numbers is faster than with NumPy."""
     return cast("memoryview[float]", numbers.data)
+
+
+def writer_of(numbers: np.ndarray) -> Callable[..., None]:
+    """A function that writes all items of a flat array of numbers, which are its arguments.
+
+    It raises `struct.error` for arguments that are not numbers, and if there are more or fewer.
+    """
+    return partial(Packing(f"{len(numbers)}{numbers.dtype.char}").pack_into, numbers.data, 0)
 
 
 class Field(NamedTuple):

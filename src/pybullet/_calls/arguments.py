@@ -176,8 +176,9 @@ def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float,
 
 
 def check_rotation(values: Sequence[float], problem: str, name: str) -> None:
-    """Raises `pybullet.error` for a quaternion that cannot be normalised."""
-    if not _LEAST_SQUARE < sum(value * value for value in values) < _GREATEST_SQUARE:
+    """Raises `pybullet.error` for a quaternion (x, y, z, w) that cannot be normalised."""
+    x, y, z, w = values
+    if not _LEAST_SQUARE < x * x + y * y + z * z + w * w < _GREATEST_SQUARE:
         _refuse_rotation(values, problem, name)
 
 

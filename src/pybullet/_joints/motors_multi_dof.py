@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import chain
 from math import inf
 from typing import Any, SupportsFloat
 
+from carom.algorithms.joint_columns import NO_ENTRIES, Column, column_of
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
     Indices,
@@ -32,10 +32,10 @@ __all__ = ["setJointMotorControlMultiDof", "setJointMotorControlMultiDofArray"]
 _ILLEGAL_MODE = "Illegal control mode."
 _NO_CLAMP = -1.0
 _NO_DAMPING = 1.0
-_LISTS = ("targetPositions", "targetVelocities", "forces", "positionGains", "velocityGains")
+_ARRAY_MODES = (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL)
 _USUAL_LISTS = frozenset((list, tuple))
-_QUATERNION = 4
 _USUAL_NUMBERS = frozenset((float, int))
+_QUATERNION = 4
 
 
 @exported
@@ -142,58 +142,63 @@ def setJointMotorControlMultiDofArray(
         ...     arm, [2, 3], p.POSITION_CONTROL, targetPositions=[[0.1], [0.5]], forces=[[200], [200]]
         ... )
     """
-    given = locals()
     client = client_of(physicsClientId)
     mode = integer(controlMode, "controlMode")
-    if mode not in (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL):
+    if mode not in _ARRAY_MODES:
         fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of such joints.")
     requested = indices(jointIndices, NO_INDICES, "jointIndices")
-    lists = {name: _entries(given[name], name) for name in _LISTS}
+    lists = (
+        _entries(targetPositions, "targetPositions"),
+        _entries(targetVelocities, "targetVelocities"),
+        _entries(forces, "forces"),
+        _entries(positionGains, "positionGains"),
+        _entries(velocityGains, "velocityGains"),
+    )
     count = len(requested)
-    if count == 0 or any(entries and len(entries) != count for entries in lists.values()):
+    if count == 0 or not {0, count}.issuperset(map(len, lists)):
         return
     access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
     try:
         joints = [access.joints[index] for index in requested]
     except KeyError as missing:
         fail(OUT_OF_RANGE, no_joint(access.body, missing.args[0]))
-    positions, velocities, bounds = (
-        _lists(lists[name], name, most) or [()] * count
-        for name, most in (("targetPositions", 4), ("targetVelocities", 3), ("forces", 3))
-    )
-    kps = _gains(lists["positionGains"], "positionGains") or [DEFAULT_POSITION_GAIN] * count
-    kds = _gains(lists["velocityGains"], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
-    for position in positions:
+    positions = _column(lists[0], "targetPositions", 4)
+    velocities = _column(lists[1], "targetVelocities", 3)
+    bounds = _column(lists[2], "forces", 3)
+    kps = _gains(lists[3], "positionGains") or [DEFAULT_POSITION_GAIN] * count
+    kds = _gains(lists[4], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
+    for position in positions.entries:
         if len(position) == _QUATERNION:
             _check_rotation(position)
     if mode == STABLE_PD_CONTROL:
         from carom.algorithms.stable_pd import stable_pd_torques
 
-        body, columns = access.body, zip(positions, velocities, bounds, kps, kds, strict=True)
-        torques = stable_pd_torques(body, dict(zip(requested, columns, strict=True)), client.time_step)
-        body.world.joint_torque[body.first_velocity :][: len(torques)] += torques
+        body, time_step = access.body, client.time_step
+        torques = stable_pd_torques(body, requested, positions, velocities, bounds, kps, kds, time_step)
+        first = body.first_velocity
+        own = body.world.joint_torque[first : first + len(torques)]
+        own += torques
         return
-    for joint, position, velocity, force, kp, kd in zip(
-        joints, positions, velocities, bounds, kps, kds, strict=True
-    ):
+    columns = [column.entries or [()] * count for column in (positions, velocities, bounds)]
+    for joint, position, velocity, force, kp, kd in zip(joints, *columns, kps, kds, strict=True):
         if mode == TORQUE_CONTROL:
             joint.add_torques(force)
         else:
             joint.command_multi_dof(mode, (position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING))
 
 
-def _lists(entries: Sequence[Vector | None], name: str, most: int) -> Sequence[Sequence[float]]:
+def _column(entries: Sequence[Vector | None], name: str, most: int) -> Column:
     """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
-    try:
-        if (
-            _USUAL_LISTS.issuperset(map(type, entries))
-            and max(map(len, entries), default=0) <= most  # type: ignore[arg-type]
-            and -inf < sum(chain.from_iterable(entries)) < inf  # type: ignore[arg-type]
-        ):
-            return entries  # type: ignore[return-value]
-    except (TypeError, ValueError):
-        pass
-    return [_list(values, name, most) for values in entries]
+    if not entries:
+        return NO_ENTRIES
+    if _USUAL_LISTS.issuperset(map(type, entries)):
+        usual = column_of(entries)  # type: ignore[arg-type]
+        try:
+            if max(usual.counts) <= most and -inf < sum(usual.numbers) < inf:
+                return usual
+        except (TypeError, ValueError):
+            pass
+    return column_of([_list(values, name, most) for values in entries])
 
 
 def _gains(values: Sequence[float], name: str) -> Sequence[float]:
