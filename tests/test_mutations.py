@@ -15,7 +15,8 @@ def test_a_mutation_changes_what_is_there_once(mutation: Mutation) -> None:
     source = (ROOT / mutation.file).read_text(encoding="utf-8")
     mutated = mutation.mutated(source)
     assert mutated != source
-    ast.parse(mutated)
+    if mutation.file.endswith(".py"):
+        ast.parse(mutated)
     assert mutation.tests
     for test in mutation.tests:
         assert Path(ROOT, test.partition("::")[0]).exists(), test

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from itertools import product
 from math import cos, pi, sin, sqrt
 from random import Random
@@ -44,7 +46,7 @@ def _direction(random: Random, numbers: int) -> Numbers:
     return [along / length for along in vector]
 
 
-def aligned_pairs() -> dict[str, tuple[Box, Box]]:
+def _aligned_pairs() -> dict[str, tuple[Box, Box]]:
     """Boxes whose faces lie on each other: in line, shifted, turned, smaller and larger."""
     pairs: dict[str, tuple[Box, Box]] = {}
     cube = [0.1, 0.1, 0.1]
@@ -63,7 +65,7 @@ def aligned_pairs() -> dict[str, tuple[Box, Box]]:
     return pairs
 
 
-def tilted_pairs() -> dict[str, tuple[Box, Box]]:
+def _tilted_pairs() -> dict[str, tuple[Box, Box]]:
     """Boxes of any size that overlap a little: turned at random, or nearly along each other's axes."""
     random, pairs = Random(4), {}
     for number in range(120):
@@ -82,6 +84,11 @@ def tilted_pairs() -> dict[str, tuple[Box, Box]]:
     return pairs
 
 
+def pairs() -> dict[str, tuple[Box, Box]]:
+    """All pairs of boxes by name."""
+    return {**_aligned_pairs(), **_tilted_pairs()}
+
+
 def points(p: Any, boxes: tuple[Box, Box]) -> list[Numbers]:
     """Contacts of two boxes, in order: point on the first, normal, distance."""
     p.resetSimulation()
@@ -92,7 +99,7 @@ def points(p: Any, boxes: tuple[Box, Box]) -> list[Numbers]:
     return [[*contact[5], *contact[7], contact[8]] for contact in p.getContactPoints()]
 
 
-def build_stack(p: Any, seed: int) -> list[int]:
+def _build_stack(p: Any, seed: int) -> list[int]:
     """Four boxes on a block, each turned at random and pressed slightly into the one below."""
     random = Random(seed)
     p.resetSimulation()
@@ -106,7 +113,7 @@ def build_stack(p: Any, seed: int) -> list[int]:
     return bodies
 
 
-def build_cubes(p: Any, drop: float) -> list[int]:
+def _build_cubes(p: Any, drop: float) -> list[int]:
     """27 cubes with gaps of 5 mm, each `drop` above what is below it, over a large box."""
     p.resetSimulation()
     p.setGravity(0, 0, -9.81)
@@ -117,6 +124,12 @@ def build_cubes(p: Any, drop: float) -> list[int]:
         p.createMultiBody(1, cube, basePosition=[0.205 * x, 0.205 * y, 0.1 + drop + (0.2 + drop) * z])
         for x, y, z in product(range(3), repeat=3)
     ]
+
+
+def scenes() -> dict[str, Callable[[Any], list[int]]]:
+    """Scenes whose motion is recorded, by name: functions that build them and return the bodies."""
+    stacks = {f"stack {seed}": partial(_build_stack, seed=seed) for seed in STACKS}
+    return {**stacks, **{f"cubes {drop}": partial(_build_cubes, drop=drop) for drop in DROPS}}
 
 
 def follow(p: Any, bodies: list[int]) -> list[Numbers]:

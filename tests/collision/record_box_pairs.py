@@ -6,16 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from tests.collision.box_pairs import (
-    DROPS,
-    STACKS,
-    aligned_pairs,
-    build_cubes,
-    build_stack,
-    follow,
-    points,
-    tilted_pairs,
-)
+from tests.collision.box_pairs import follow, pairs, points, scenes
 
 import pybullet as p
 
@@ -25,13 +16,8 @@ RECORDED = Path(__file__).with_name("box_pairs.json")
 def main() -> None:
     """Writes the file."""
     p.connect(p.DIRECT)
-    found: dict[str, Any] = {
-        name: points(p, boxes) for name, boxes in {**aligned_pairs(), **tilted_pairs()}.items()
-    }
-    for seed in STACKS:
-        found[f"stack {seed}"] = follow(p, build_stack(p, seed))
-    for drop in DROPS:
-        found[f"cubes {drop}"] = follow(p, build_cubes(p, drop))
+    found: dict[str, Any] = {name: points(p, boxes) for name, boxes in pairs().items()}
+    found.update({name: follow(p, build(p)) for name, build in scenes().items()})
     lines = [
         f"{json.dumps(name)}: {json.dumps([[round(number, 10) for number in row] for row in rows])}"
         for name, rows in found.items()

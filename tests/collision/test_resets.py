@@ -126,13 +126,16 @@ def test_resets_are_in_saved_states_and_files(tmp_path: Path):
 
 def test_resets_are_counted_from_0_after_many():
     bodies = cubes(2.0)
-    counts = client_of(0).world.contact_arrays.contacts.numpy["count_contacts"][0]
+    world = client_of(0).world
+    counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
     counts[[RESETS, RESETS_SEEN]] = MANY_RESETS
     for i in (2, 0, 3, 1):
         p.resetBasePositionAndOrientation(bodies[i], [0.5 * i, 0.0, 0.105], UNTURNED)
     p.stepSimulation()
     assert on_floor() == [3, 1, 4, 2]
     assert counts[RESETS] == counts[RESETS_SEEN] == 0
+    # Otherwise all these bodies would count as reset whenever one is.
+    assert not world.arrays.state.numpy["tree_reset"].any()
     counts[RESETS] = MOST_RESETS
     for setter in (p.resetBaseVelocity, resetBaseVelocity):
         setter(bodies[0], [0.0, 0.0, 0.0])

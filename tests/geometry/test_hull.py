@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial import ConvexHull as Reference
 
-from carom.geometry.hull import THICKEST_SLAB, convex_hull, extreme_points
+from carom.geometry.hull import LARGEST, SMALLEST, THICKEST_SLAB, convex_hull, extreme_points
 from carom.geometry.polyhedron import Polyhedron
 
 CUBE = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
@@ -128,6 +128,20 @@ def test_what_has_no_volume_becomes_a_thin_slab(points: object, extent: tuple[fl
     thickness = 2 * THICKEST_SLAB
     expected = [side if side else thickness for side in extent]
     np.testing.assert_allclose(high - low, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("size", [5.0 * SMALLEST, 0.1 * LARGEST])
+@pytest.mark.parametrize("thickness", [1.0, 1e-3, 1e-5, 0.0])
+def test_the_smallest_and_the_largest_hulls_have_faces(size: float, thickness: float) -> None:
+    points = np.random.default_rng(4).normal(size=(40, 3)) * size * (1.0, 1.0, thickness)
+    assert_is_closed_convex(convex_hull(points), points, 1e-5 * size)
+
+
+def test_points_nearer_to_each_other_are_one_and_farther_ones_are_refused() -> None:
+    low, high = convex_hull(0.9 * SMALLEST * CUBE).bounds()
+    np.testing.assert_allclose(high - low, 2 * THICKEST_SLAB, rtol=1e-9)
+    with pytest.raises(ValueError, match="too far apart"):
+        convex_hull(LARGEST * CUBE)
 
 
 def test_corners_of_a_flat_shape_are_those_of_its_outline() -> None:

@@ -25,8 +25,8 @@ ROUNDING = 1e-9
 EXACT = 1e-7
 """Relative error that single precision leaves in the points of mesh files."""
 
-SMALLEST, LARGEST = 1e-100, 1e100
-"""Sizes below which points coincide and above which they are refused, so that products stay finite [m]."""
+SMALLEST, LARGEST = 1e-60, 1e70
+"""Sizes below which points coincide and above which they are refused: squares of areas stay in range [m]."""
 
 FLAT = 1e-6
 """Relative thickness below which points count as lying in a plane, on a line or in one point."""

@@ -83,8 +83,10 @@ def _checked(heights: NDArray[np.float64], problem: str, *, rounded: bool = True
 
 def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> Heightfield:
     """A heightfield with the mean of its minimum and maximum height at the origin."""
-    if 0.0 in scale[:2]:
-        fail(problem, f"meshScale is {list(scale)}; its x and y must not be 0.")
+    from carom.geometry.hull import SMALLEST
+
+    if min(map(abs, scale[:2])) < SMALLEST:
+        fail(problem, f"meshScale is {list(scale)}; its x and y must not be 0, nor less than {SMALLEST:g}.")
     return Heightfield(heights, scale, 0.5 * float(heights.min() + heights.max()))
 
 

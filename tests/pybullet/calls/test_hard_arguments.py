@@ -94,7 +94,7 @@ def test_bounds_may_be_as_great_as_one_likes() -> None:
     assert all(map(isfinite, p.getJointState(1, 0)[:2]))
 
 
-@pytest.mark.parametrize("scale", [1e-201, 1e-160, 5e-324])
+@pytest.mark.parametrize("scale", [1e-82, 1e-201, 1e-160, 5e-324])
 def test_tiny_shapes_are_shapes(scale: float) -> None:
     shapes = [
         p.createCollisionShape(p.GEOM_MESH, fileName="cube.obj", meshScale=[scale] * 3),

@@ -48,6 +48,7 @@ def shapes_of(client: int) -> Any:
         {"shapeType": p.GEOM_HEIGHTFIELD, "heightfieldData": [0, 0, nan, 0], **GRID},
         {"shapeType": p.GEOM_HEIGHTFIELD, "heightfieldData": [0, "a", 0, 0], **GRID},
         {"shapeType": p.GEOM_HEIGHTFIELD, "heightfieldData": [0] * 4, "meshScale": [0, 1, 1], **GRID},
+        {"shapeType": p.GEOM_HEIGHTFIELD, "heightfieldData": [0] * 4, "meshScale": [1, -1e-61, 1], **GRID},
         {"shapeType": p.GEOM_HEIGHTFIELD, "fileName": "nowhere.txt"},
         {
             "shapeType": p.GEOM_HEIGHTFIELD,

