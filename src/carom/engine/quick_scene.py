@@ -77,7 +77,7 @@ class QuickScene:
         self._is_empty = True
 
     def pause_step(self) -> None:
-        """Perform no steps until `resume_step` or `know_step`; forget the addresses that detect collisions."""
+        """Forget the addresses that detect collisions, and perform no steps until they are known again."""
         self._step.run = self._detection.run = None
 
     def resume_step(self) -> None:

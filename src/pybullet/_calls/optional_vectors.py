@@ -13,7 +13,6 @@ from carom.description.transform import quaternion_from_matrix, rotation_matrix
 from pybullet._calls.arguments import rotation, vector3, vector4
 from pybullet._calls.errors import warn_once
 
-
 _USUAL = frozenset((list, tuple))
 
 
