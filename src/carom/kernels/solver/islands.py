@@ -57,7 +57,7 @@ def unite_touching(
         pair = contacts.contact_shapes[world, contact]
         moves_a = link_moves(model, pair[2])
         moves_b = link_moves(model, pair[3])
-        touches = contact_traits(settings, shapes, contacts, world, contact)
+        touches = contact_traits(settings, model, shapes, contacts, world, contact)
         if not moves_a or not moves_b:
             touches = touches | ANCHORED
         if moves_a:

@@ -86,11 +86,16 @@ def has_plain_contacts(shapes: Shapes, world: Int32, link: Int32) -> bool:
 
 
 @func
-def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact can be warm started: not new, not single, and plain by its links' properties."""
+def is_plain(model: Model, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
+    """Whether a contact can be warm started: not new, not single, and plain by its links' properties.
+
+    It also has to be in a manifold block of rigid bodies: not so contacts with the fixed base of a robot.
+    """
     if contacts.contact_warm_start[world, contact] < 1.0:
         return False
     pair = contacts.contact_shapes[world, contact]
+    if not is_rigid(model, shapes.shape_tree[pair[0]]) or not is_rigid(model, shapes.shape_tree[pair[1]]):
+        return False
     after = contact + 1
     if after == contacts.count_contacts[world, THERE]:
         after = Int32(-1)
@@ -101,10 +106,10 @@ def is_plain(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -
 
 @func
 def contact_traits(
-    settings: Settings, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
+    settings: Settings, model: Model, shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32
 ) -> Int32:
     """Bits that a contact adds to `PairRows.tree_contacts` of the trees it acts on."""
-    if not is_plain(shapes, contacts, world, contact):
+    if not is_plain(model, shapes, contacts, world, contact):
         return HAS_CONTACTS | HAS_OTHER_CONTACTS
     gap = contacts.contact_distance[world, contact] + settings.contact_slop
     if contacts.contact_warm_start[world, contact] < HOLDS or wp.abs(gap) > SETTLED:
