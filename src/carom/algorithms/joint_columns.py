@@ -69,39 +69,38 @@ class JointColumns:
 
     def positions(self, column: Column) -> Numbers:
         """Position coordinates of all joints: 0 or no rotation where no entry fits."""
-        return self._pick_positions(self._rest + _fitting(column, self._default_positions))
+        return self._pick_positions(self._rest + _mended(column, self._default_positions, _fitting))
 
     def velocities(self, column: Column) -> Numbers:
         """Velocity coordinates of all joints: 0 where no entry fits."""
-        return self._pick_dofs(self._zeros + _fitting(column, self._default_velocities))
+        return self._pick_dofs(self._zeros + _mended(column, self._default_velocities, _fitting))
 
     def forces(self, column: Column) -> Numbers:
         """Maximum forces of all dofs: 100000 beyond the length of an entry, 0 for joints not named."""
-        return self._pick_dofs(self._zeros + _filled_up(column, self._default_forces))
+        return self._pick_dofs(self._zeros + _mended(column, self._default_forces, _filled_up))
 
     def gains(self, values: Sequence[float]) -> Numbers:
         """The gain of each dof, from one of each joint: 0 for joints not named."""
         return self._pick_gains([0.0, *values])
 
 
-def _fitting(column: Column, defaults: Column) -> list[float]:
-    """The numbers of a column, with the default for each entry that has another length."""
+def _mended(
+    column: Column, defaults: Column, mend: Callable[[Sequence[float], Sequence[float]], Sequence[float]]
+) -> list[float]:
+    """The numbers of a column, in which `mend` makes entries as long as their defaults."""
     if column.counts == defaults.counts:
         return column.numbers
-    if not column.entries:
-        return defaults.numbers
-    entries = zip(column.entries, defaults.entries, strict=True)
-    return _joined([entry if len(entry) == len(default) else default for entry, default in entries])
+    return _joined(list(map(mend, column.entries, defaults.entries))) if column.entries else defaults.numbers
 
 
-def _filled_up(column: Column, defaults: Column) -> list[float]:
-    """The numbers of a column, with entries cut off, or continued by the default, to the default's length."""
-    if column.counts == defaults.counts:
-        return column.numbers
-    if not column.entries:
-        return defaults.numbers
-    entries = zip(column.entries, defaults.entries, strict=True)
-    return _joined([(*entry[: len(default)], *default[len(entry) :]) for entry, default in entries])
+def _fitting(entry: Sequence[float], default: Sequence[float]) -> Sequence[float]:
+    """The default if the entry has another length."""
+    return entry if len(entry) == len(default) else default
+
+
+def _filled_up(entry: Sequence[float], default: Sequence[float]) -> Sequence[float]:
+    """The entry, cut off or continued by the default to the default's length."""
+    return (*entry[: len(default)], *default[len(entry) :])
 
 
 def _picker(places: list[int]) -> Callable[[list[float]], Numbers]:

@@ -153,7 +153,8 @@ class Engine:
         elif not self._is_long_enough() or self._find_plan() != self._loaded_for[0]:
             return False
         self._prepared_for = counts
-        self._settings.update_counts(parameters, self.arrays, self.contact_arrays, self._tell_settings)
+        if not self._settings.has_counts(self.arrays, self.contact_arrays):
+            self.update_settings(parameters)
         return True
 
     def _tell_settings(self) -> None:

@@ -32,17 +32,10 @@ class EngineSettings:
         self._constraint_counts = (0, 0)
         self._gravity = (0.0, 0.0, 0.0)
 
-    def update_counts(
-        self,
-        parameters: EngineParameters,
-        arrays: WorldArrays,
-        contact_arrays: ContactArrays,
-        tell: Callable[[], None],
-    ) -> None:
-        """As `update`, if nothing but the number of constraints can have changed since."""
+    def has_counts(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
+        """Whether the struct has the present numbers of constraints."""
         counts = arrays.used["constraint"], contact_arrays.user_count
-        if not self._given or counts != self._constraint_counts:
-            self.update(parameters, arrays, contact_arrays, tell)
+        return bool(self._given) and counts == self._constraint_counts
 
     def update(
         self,
