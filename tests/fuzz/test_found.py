@@ -64,6 +64,24 @@ def test_arrays_where_numbers_belong_are_refused(arm: int) -> None:
             call()
 
 
+def test_a_refused_quaternion_leaves_the_joints_before_it(client: int) -> None:
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    zeros, turns = [[0, 0, 0]] * 2, [[0, 0, 0, 1]] * 2
+    body = p.createMultiBody(
+        1, ball, linkMasses=[1, 1], linkCollisionShapeIndices=[ball] * 2, linkVisualShapeIndices=[-1] * 2,
+        linkPositions=[[0, 0, 1], [0, 0, 1]], linkOrientations=turns, linkInertialFramePositions=zeros,
+        linkInertialFrameOrientations=turns, linkParentIndices=[0, 1],
+        linkJointTypes=[p.JOINT_REVOLUTE, p.JOINT_SPHERICAL], linkJointAxis=[[0, 0, 1]] * 2,
+    )  # fmt: skip
+    with pytest.raises(p.error, match="is no rotation"):
+        p.resetJointStatesMultiDof(body, [0, 1], [[0.2], [0, 6e-301, 0, 8e-301]])
+    with pytest.raises(p.error, match="is no rotation"):
+        p.resetJointStateMultiDof(body, 1, [0, 0, 0, 0])
+    assert p.getJointState(body, 0)[0] == 0.0
+    p.resetJointStatesMultiDof(body, [0, 1], [[0.2], [0, 0.6, 0, 0.8]])
+    assert p.getJointStatesMultiDof(body, [0, 1])[1][0] == pytest.approx((0, 0.6, 0, 0.8))
+
+
 @pytest.mark.parametrize("flags", [0, 1])
 @pytest.mark.parametrize("size", [1e100, 1e160, 1e299, 1.7e308])
 @pytest.mark.parametrize("name", ["kuka_iiwa/model.urdf", "franka_panda/panda.urdf", "cartpole.urdf"])

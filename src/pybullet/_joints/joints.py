@@ -282,6 +282,7 @@ def resetJointStateMultiDof(
     client_of(physicsClientId)
     position, velocity = _targets(targetValue, targetVelocity)
     joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    _check_turn(joint, position)
     with joint.client.lock:
         _reset(joint, position, velocity)
 
@@ -329,12 +330,11 @@ def resetJointStatesMultiDof(
     resets = []
     for place, index in enumerate(requested):
         joint = joint_access(bodyUniqueId, index, physicsClientId)
-        resets.append(
-            (
-                joint,
-                *_targets(positions[place] if positions else (), velocities[place] if velocities else None),
-            )
+        position, velocity = _targets(
+            positions[place] if positions else (), velocities[place] if velocities else None
         )
+        _check_turn(joint, position)
+        resets.append((joint, position, velocity))
     with client.lock:
         for joint, position, velocity in resets:
             _reset(joint, position, velocity)
@@ -349,13 +349,18 @@ def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[flo
     return positions, velocities
 
 
+def _check_turn(joint: JointAccess, position: tuple[float, ...]) -> None:
+    """Raise `pybullet.error` for a position of a spherical joint that cannot be normalised."""
+    count = joint.body.position_count[joint.index]
+    if len(position) == count != joint.body.velocity_count[joint.index]:
+        check_rotation(position, "expected a targetValue sequence.", "targetValue")
+
+
 def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[float, ...]) -> None:
     body, index = joint.body, joint.index
     if not position or len(position) != body.position_count[index]:
         return
     freedoms = body.velocity_count[index]
-    if len(position) != freedoms:
-        check_rotation(position, "expected a targetValue sequence.", "targetValue")
     before = body.coordinates()
     body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)
     body.note_reset(moved=body.coordinates() != before)
