@@ -254,7 +254,7 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
     try:
         x, y, z, w = values
         if 0.5 < x * x + y * y + z * z + w * w < 2.0:
-            return x, y, z, w
+            return float(x), float(y), float(z), float(w)
     except (TypeError, ValueError):
         pass
     name = "targetOrientation"
