@@ -30,7 +30,12 @@ def test_no_import_brings_in_plotting_meshes_or_a_viewer(statement):
 
 
 def test_arrays_and_logging_wait_for_a_world_and_a_warning():
-    assert not modules_after("import pybullet") & {"numpy", "logging", "carom.formats.urdf"}
+    assert not modules_after("import pybullet") & {
+        "numpy",
+        "logging",
+        "carom.formats.urdf",
+        "carom.algorithms",
+    }
 
 
 def test_a_rigid_robot_does_not_load_what_soft_ones_need():

@@ -9,8 +9,8 @@ from carom import World
 from carom.algorithms import inverse_dynamics, mass_matrix
 from carom.algorithms.extended_model import ExtendedModel, extended_bias_forces, extended_mass_matrix
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.joint_columns import NO_ENTRIES, column_of
 from carom.algorithms.stable_pd import stable_pd_torques
+from carom.model.joint_columns import NO_ENTRIES, column_of
 from carom.scene.body import Body
 
 ROBOTS = Path(__file__).parents[1] / "pybullet" / "robots"

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from carom import World
-from carom.algorithms.joint_columns import NO_ENTRIES, column_of
 from carom.algorithms.stable_pd import stable_pd_torques
+from carom.model.joint_columns import NO_ENTRIES, column_of
 from carom.scene.body import Body
 
 ROBOTS = Path(__file__).parents[1] / "pybullet" / "robots"

@@ -16,10 +16,10 @@ import numpy as np
 
 from carom.algorithms.extended_model import base_motion
 from carom.algorithms.extended_nodes import extended_nodes
-from carom.algorithms.joint_columns import Column, JointColumns
 from carom.algorithms.mechanism import Mechanism
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.mechanism import BASE_MOTION, Control
+from carom.model.joint_columns import Column, JointColumns
 from carom.native.kernels import stable_pd_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of, writer_of

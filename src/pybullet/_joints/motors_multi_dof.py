@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from math import inf
 from typing import Any, SupportsFloat
 
-from carom.algorithms.joint_columns import NO_ENTRIES, Column, column_of
+from carom.model.joint_columns import NO_ENTRIES, Column, column_of
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
     Indices,
