@@ -41,9 +41,6 @@ class ContactArrays:
         self.users: ArrayTable = ArrayTable(UserConstraints)
         self.user_count = 0
         self.soft: SoftArrays = SoftArrays()
-        # Whether rows are sorted, by world: a column of these counts.
-        self._counts: np.ndarray = self.contacts.numpy["count_contacts"]
-        self._sorted: np.ndarray = self._counts[:, SORTED]
 
     def repeated(self, arrays: WorldArrays) -> ContactArrays:
         """Copies of the contact arrays for many worlds, all with the content of the first world."""
@@ -106,10 +103,7 @@ class ContactArrays:
 
     def forget_order(self) -> None:
         """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""
-        counts = self.contacts.numpy["count_contacts"]
-        if counts is not self._counts:
-            self._counts, self._sorted = counts, counts[:, SORTED]
-        self._sorted.fill(0)
+        self.contacts.numpy["count_contacts"][:, SORTED] = 0
 
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
         """Do not warm start contacts in the next step, because a body was moved.
