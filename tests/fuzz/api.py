@@ -142,7 +142,6 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
     faulthandler.enable()
-    faulthandler.dump_traceback_later(120, repeat=True) if asked.operations <= 0 else None
     start = process_time()
     fuzzer = fuzz(asked.operations, asked.seed)
     seconds, operation = fuzzer.slowest
