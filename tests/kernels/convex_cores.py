@@ -19,6 +19,8 @@ from carom.kernels.types import Int32, Matrix3, Vector3
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE, TRIANGLES
 
 NO_VERTICES = np.zeros((0, 3))
+POLYTOPES = (SPHERE, CAPSULE, BOX, HULL, TRIANGLES)
+"""Kinds of cores that are hulls of finitely many points."""
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 import warp as wp
 from scipy.spatial.transform import Rotation
 from tests.kernels.convex_cores import (
+    POLYTOPES,
     Solid,
     cores_of,
     differences,
@@ -31,9 +32,6 @@ from tests.kernels.convex_cores import (
 from carom.kernels.shapes.bullet_gjk import FAILED, FOUND, TOO_FAR, nearest_as_in_bullet, nearest_on
 from carom.kernels.shapes.cores import Core
 from carom.kernels.types import Int32, Matrix43, RealRows, Vectors3, kernel, real
-from carom.layouts.codes import BOX, CAPSULE, HULL, SPHERE, TRIANGLES
-
-POLYTOPES = (SPHERE, CAPSULE, BOX, HULL, TRIANGLES)
 
 
 @kernel

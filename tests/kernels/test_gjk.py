@@ -17,6 +17,7 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 import warp as wp
 from scipy.spatial.transform import Rotation
 from tests.kernels.convex_cores import (
+    POLYTOPES,
     Solid,
     box,
     cores_of,
@@ -32,9 +33,8 @@ from tests.kernels.convex_cores import (
 from carom.kernels.shapes.cores import Core
 from carom.kernels.shapes.gjk import nearest_points
 from carom.kernels.types import RealRows, Vector3, Vectors3, kernel, real
-from carom.layouts.codes import BOX, CAPSULE, HULL, SPHERE, TRIANGLES
+from carom.layouts.codes import BOX, CAPSULE, HULL, SPHERE
 
-POLYTOPES = (SPHERE, CAPSULE, BOX, HULL, TRIANGLES)
 QUARTER = Rotation.from_euler("z", 45, degrees=True)
 seeds = st.integers(0, 2**32 - 1)
 
