@@ -11,6 +11,7 @@ import pybullet as p
 import pybullet_data
 from carom import Camera, Recorder, World
 from carom.recording.video import VideoFile
+from pybullet._clients.clients import clients
 
 av = pytest.importorskip("av")
 WIDTH, HEIGHT = 65, 48
@@ -127,6 +128,21 @@ def test_state_logging_films_the_window(falling_cube, tmp_path: Path) -> None:
     assert len(np.unique(film[0].reshape(-1, 3), axis=0)) > 10
     with pytest.raises(p.error, match=r"^startStateLogging failed\."):
         p.startStateLogging(p.STATE_LOGGING_VIDEO_MP4, str(tmp_path / "nowhere" / "x.mp4"))
+
+
+def test_a_new_video_ends_the_one_before(falling_cube, tmp_path: Path) -> None:
+    file = tmp_path / "cube.mp4"
+    other = p.startStateLogging(p.STATE_LOGGING_CONTACT_POINTS, str(tmp_path / "contacts.bin"))
+    first = p.startStateLogging(p.STATE_LOGGING_VIDEO_MP4, str(file))
+    p.stepSimulation()
+    second = p.startStateLogging(p.STATE_LOGGING_VIDEO_MP4, str(file))
+    assert first not in clients[0].logs.by_id
+    for _ in range(4):
+        p.stepSimulation()
+    p.stopStateLogging(first)
+    assert set(clients[0].logs.by_id) == {other, second}
+    p.stopStateLogging(second)
+    assert len(pictures(file)) == 2
 
 
 def test_a_video_can_be_told_when_to_take_its_pictures(falling_cube, tmp_path: Path) -> None:

@@ -31,13 +31,15 @@ def film_of(client: Client, path: Path, fps: float = PICTURES_PER_SECOND) -> Fil
     """A video of the world of a client, seen from the camera of its window.
 
     Its size is the present size of the window. It takes a picture each `1 / fps` seconds of simulated time,
-    so it plays in simulated time.
+    so it plays in simulated time. A client has one video at a time, as in PyBullet: the one before ends.
 
     Raises:
         ImportError: PyAV is not installed.
         OSError: The file cannot be written.
         ValueError: The rate is not positive.
     """
+    with client.lock:
+        client.logs.stop_videos(client)
     width, height = (int(size) for size in client.window.camera_info()[:2] if isinstance(size, int))
     width, height = width or _WIDTH, height or _HEIGHT
     projection = square(window_lens(width / height))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from carom.scene.observers import Observer, SubstepObserver
 from pybullet._calls.errors import error, logger
 
 if TYPE_CHECKING:
+    from carom.recording.recorder import Film
     from pybullet._clients.clients import Client
 
 
@@ -35,14 +37,10 @@ class Logs:
 
     def shoot(self) -> None:
         """Takes a picture for each video; from now on these videos take no pictures automatically."""
-        if not self.by_id:
-            return
-        from carom.recording.recorder import Film
-
-        for log in self.by_id.values():
-            if isinstance(log, Film):
-                log.automatic = False
-                log.shoot()
+        if self.by_id:
+            for video in self._videos().values():
+                video.automatic = False
+                video.shoot()
 
     def start(self, client: Client, log: StateLog | None) -> int:
         """Begins a log and returns its id; None stands for a log that is not written."""
@@ -70,7 +68,20 @@ class Logs:
 
     def stop_all(self, client: Client) -> None:
         """Ends all logs; of incomplete files it only warns."""
-        for number in list(self.by_id):
+        self._stop_each(client, list(self.by_id))
+
+    def stop_videos(self, client: Client) -> None:
+        """Ends all videos; of incomplete files it only warns."""
+        if self.by_id:
+            self._stop_each(client, list(self._videos()))
+
+    def _videos(self) -> dict[int, Film]:
+        from carom.recording.recorder import Film
+
+        return {number: log for number, log in self.by_id.items() if isinstance(log, Film)}
+
+    def _stop_each(self, client: Client, numbers: Sequence[int]) -> None:
+        for number in numbers:
             try:
                 self.stop(client, number)
             except error as problem:
