@@ -12,6 +12,9 @@ from carom.description.geometry import ConvexHull, Geometry, TriangleMesh
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse
 
+LARGEST = 1e15
+"""Sizes and places [m] up to which shapes are scaled; of greater ones the normals of contacts are lost."""
+
 
 def scaled_collisions(
     collisions: Sequence[Collision], inertial_frame: Pose, factors: Vector3
@@ -23,14 +26,18 @@ def scaled_collisions(
     link frame, and factors, along x, y and z, greater than 0.
 
     Raises:
-        ValueError: A cylinder would not stay round, or a kind of shape cannot be scaled.
+        ValueError: A cylinder would not stay round, a kind of shape cannot be scaled, or a shape or its
+            offset would be greater than `LARGEST`.
     """
     scaled = []
     for collision in collisions:
         seen = compose(inverse(inertial_frame), collision.frame)
         x, y, z = (a * b for a, b in zip(seen.position, factors, strict=True))
         frame = compose(inertial_frame, Pose((x, y, z), seen.orientation))
-        scaled.append(replace(collision, geometry=_scaled(collision.geometry, factors), frame=frame))
+        geometry = _scaled(collision.geometry, factors)
+        if not max(*map(abs, frame.position), *_sizes(geometry)) <= LARGEST:
+            raise ValueError(f"its shapes would be greater than {LARGEST:g} m")
+        scaled.append(replace(collision, geometry=geometry, frame=frame))
     return tuple(scaled)
 
 
@@ -59,6 +66,21 @@ def _scaled(geometry: Geometry, factors: Vector3) -> Geometry:
             return replace(geometry, vertices=vertices, scale=_product(geometry.scale, factors))
         case _:
             raise ValueError(f"a {type(geometry).__name__} cannot be scaled")
+
+
+def _sizes(geometry: Geometry) -> Sequence[float]:
+    """Lengths of a shape [m]; of meshes and hulls, which have any, the scale."""
+    match geometry:
+        case Sphere(radius):
+            return (radius,)
+        case Box(size):
+            return size
+        case Capsule(radius, length) | Cylinder(radius, length):
+            return (radius, length)
+        case Mesh() | ConvexHull() | TriangleMesh():
+            return geometry.scale
+        case _:
+            return ()
 
 
 def _product(a: Vector3, b: Vector3) -> Vector3:

@@ -37,7 +37,8 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
 
     Raises:
         pybullet.error: Not connected, the factors are not three finite numbers greater than 0, or a shape
-            cannot be scaled by them: cylinders have to stay round, and heightfields cannot be scaled.
+            cannot be scaled by them: cylinders have to stay round, heightfields cannot be scaled, and no
+            shape may become greater than 1e15 m.
 
     Examples:
         >>> p.unsupportedChangeScaling(cube, [2, 2, 2])

@@ -91,6 +91,26 @@ def test_what_cannot_be_scaled_says_so_and_stays() -> None:
     p.unsupportedChangeScaling(77, [1, 1, 1])
 
 
+@pytest.mark.parametrize(
+    ("kind", "sizes"),
+    [
+        (p.GEOM_SPHERE, {"radius": 0.1}),
+        (p.GEOM_BOX, {"halfExtents": [0.1, 0.2, 0.3]}),
+        (p.GEOM_CAPSULE, {"radius": 0.1, "height": 0.5}),
+        (p.GEOM_CYLINDER, {"radius": 0.1, "height": 0.5}),
+        (p.GEOM_MESH, {"fileName": "cube.obj"}),
+    ],
+)
+def test_shapes_do_not_become_larger_than_contacts_can_tell(kind: int, sizes: dict[str, Any]) -> None:
+    number = body(kind, **sizes)
+    before = bounds(number)
+    for wrong in ([1e30, 1e30, 1e30], [1e17, 1e17, 1e17]):
+        with pytest.raises(p.error, match=r"greater than 1e\+15 m"):
+            p.unsupportedChangeScaling(number, wrong)
+    assert bounds(number) == before
+    p.unsupportedChangeScaling(number, [1e14, 1e14, 1e14])
+
+
 def test_bodies_from_the_same_file_keep_their_size() -> None:
     first, second = (p.loadURDF("cube.urdf") for _ in range(2))
     p.unsupportedChangeScaling(second, [2, 2, 2])
