@@ -13,6 +13,7 @@ pytest.importorskip("warp", reason="launches the kernels")
 import torch
 import warp as wp
 from tests.physics.contact_scenes import add_ball, add_floor, earth
+from tests.physics.failing import everything, full_scene, spoil
 from tests.physics.test_contact_worlds import heap
 
 import pybullet_data
@@ -141,6 +142,19 @@ def test_a_world_that_is_not_finite_halts_alone(device: str, balls: tuple[World,
     assert not worlds.halted.any()
     worlds.step()
     assert np.isfinite(np.asarray(worlds[ball].base_poses)).all()
+
+
+def test_a_world_that_is_halted_has_the_state_of_before(device: str) -> None:
+    world, last = full_scene()
+    worlds = Worlds(world, COUNT, device=device)
+    worlds.step(5)
+    expected = everything(worlds.extract(1))
+    spoil(worlds, last)
+    with pytest.warns(SimulationWarning, match="world 1 is halted"):
+        worlds.step(3)
+    halted = everything(worlds.extract(1))
+    for name, array in expected.items():
+        np.testing.assert_array_equal(halted[name], array, err_msg=name)
 
 
 def test_rays_and_gravity(device: str, balls: tuple[World, Body, Body]) -> None:

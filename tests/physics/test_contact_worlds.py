@@ -82,11 +82,11 @@ def test_contacts_of_a_spoiled_body_spoil_no_other() -> None:
     lower, upper = add_box(world, (0.0, 0.0, HALF)), add_box(world, (0.0, 0.0, 3 * HALF))
     world.step(60)
     coordinates(upper)[1][2] = math.nan
-    before = coordinates(lower)[0].copy()
+    before, pushes = coordinates(lower)[0].copy(), impulses(world).copy()
     with pytest.raises(SimulationError):
         world.step()
     np.testing.assert_array_equal(coordinates(lower)[0], before)
-    assert world.contact_arrays.contact_count == 0
+    np.testing.assert_array_equal(impulses(world), pushes)
     coordinates(upper)[1][:] = 0.0
     world.step(240)
     np.testing.assert_allclose(place(upper), (0.0, 0.0, 3 * HALF), atol=1e-3)

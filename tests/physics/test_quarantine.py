@@ -113,17 +113,3 @@ def test_a_removed_body_is_no_longer_at_fault():
     world.remove(arm.id)
     world.step(10)
     assert np.isfinite(world.position).all()
-
-
-@pytest.mark.parametrize("substeps", [0, 3])
-def test_nothing_of_the_failed_step_is_left(substeps):
-    world, arm, _tree = world_of_two(substeps)
-    for body in world.bodies.values():
-        body.update_link_poses()
-    poses = world.link_pose.copy()
-    push_without_end(arm)
-    with pytest.raises(SimulationError):
-        world.step()
-    np.testing.assert_array_equal(world.link_pose, poses)
-    assert not world.joint_reaction.any()
-    assert not world.motor_impulse.any()

@@ -46,7 +46,7 @@ class Workspace:
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
-        self.scratch.reserve(arrays.used)
+        self.scratch.reserve({**arrays.used, "user": users})
         overlaps = contact_arrays.contacts.capacity["overlap"]
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
         room = self.pairs.capacity["pair"]

@@ -210,8 +210,11 @@ class LinkScratch:
 
 @struct
 class TreeScratch:
-    """Sleep state of a tree at the start of the step."""
+    """Island, results of the solver and sleep state of a tree at the start of the step."""
 
+    start_island: Int32
+    start_iterations: Int32
+    start_residual: real
     start_activity: Int32
     start_wants_sleep: Int32
     start_idle_time: real
@@ -223,6 +226,7 @@ class DofScratch:
 
     start_velocity: real  # at the start of the step
     start_torque: real
+    start_motor_impulse: real
     angular: Vector3  # motion subspace
     linear: Vector3
     force: real
@@ -253,7 +257,10 @@ class Scratch:
     link: Rows[LinkScratch]
     link_pose: TransformRows  # like `State.link_pose`, but for other coordinates or of the last substep
     dof: Rows[DofScratch]
-    position_start: RealRows
+    position_start: RealRows  # at the start of the step, like the next three
+    link_pose_start: TransformRows
+    link_reaction_start: Vector6Rows
+    user_impulse_start: Vector6Rows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four
     # columns. The `entry_` arrays are views of the same memory, entry by entry.

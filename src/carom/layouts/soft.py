@@ -115,6 +115,7 @@ class SoftWork:
 
     node_start_position: Vector3Rows  # at the start of the step
     node_start_velocity: Vector3Rows
+    node_start_push: Vector3Rows
     node_before: Vector3Rows  # position at the start of the smaller time step
     node_touches: IntRows  # number of touches
     node_body: IntRows

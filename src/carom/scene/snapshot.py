@@ -74,7 +74,7 @@ class Snapshot:
         state: Fields of `State` by name, without the world axis: the rows in use; of drives, those of
             joints only.
         contacts: Fields of `Contacts`, likewise.
-        user_impulses: Impulses of the user constraints, (constraints, 6).
+        user_impulses: Impulses of the user constraints, in order of creation, (constraints, 6).
     """
 
     layout: Layout
@@ -134,9 +134,7 @@ def take(world: World, layout: Layout) -> Snapshot:
     counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
     snapshot.contacts = {name: rows.copy() for name, rows in _contact_rows(world, counts)}
     snapshot.contacts["count_contacts"][SORTED] = 0
-    snapshot.user_impulses = world.arrays.state.numpy["user_impulse"][
-        0, : world.contact_arrays.user_count
-    ].copy()
+    snapshot.user_impulses = world.user_constraints.all_impulses(world.arrays.state)
     return snapshot
 
 
@@ -154,6 +152,9 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         snapshot = _reordered(snapshot, layout)
     elif world.contact_arrays.contacts.reserve(counted_rows(snapshot.contacts["count_contacts"])):
         world.scene_changed()
+    same_constraints = len(snapshot.user_impulses) == len(world.user_constraints.rows)
+    if same_constraints and world.arrays.state.reserve({"user": len(snapshot.user_impulses)}):
+        world.scene_changed()
 
     def put_back() -> None:
         _write(world, snapshot)
@@ -162,9 +163,8 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         else:
             world.contact_arrays.forget_contacts()
             world.arrays.state.numpy["tree_reset"][0] = 0
-        impulses = world.arrays.state.numpy["user_impulse"][0]
-        if len(snapshot.user_impulses) == world.contact_arrays.user_count:
-            impulses[: world.contact_arrays.user_count] = snapshot.user_impulses
+        if same_constraints:
+            world.user_constraints.set_impulses(world.arrays.state, snapshot.user_impulses)
         world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
         if snapshot.state["tree_activity"].any():
             world.scene_changed()

@@ -24,6 +24,7 @@ ROWS = {
     UserConstraintKind.PRISMATIC: 5,
     UserConstraintKind.GEAR: 1,
 }
+_MOST_ROWS = 6
 # Fields of `carom.layouts.contacts.UserConstraints`, without the one that each world has for itself.
 _FIELDS = (
     "user_kind",
@@ -122,6 +123,8 @@ class UserConstraints:
         self._next_hidden_id = -1
         # What the rows of the engine's arrays are known to contain.
         self._written: list[tuple[Any, ...]] = []
+        # The constraints whose impulses `State.user_impulse` has, row by row.
+        self._solved: list[int] = []
 
     def __len__(self) -> int:
         return len(self.all)
@@ -223,12 +226,14 @@ class UserConstraints:
         """Write all rows the next time: the arrays may have other contents now."""
         self._written = []
 
-    def write(self, contact_arrays: ContactArrays) -> None:
-        """Write all constraints that have changed to the arrays of the engine."""
+    def write(self, contact_arrays: ContactArrays, state: ArrayTable) -> None:
+        """Write all constraints that have changed to the arrays of the engine; impulses follow their rows."""
         now = [constraint.terms() for constraint in self._by_id.values()]
         contact_arrays.user_count = len(now)
         if now != self._written:
             self._write_rows(contact_arrays, now)
+        if self._solved != list(self._by_id):
+            self.set_impulses(state, self.all_impulses(state))
         contact_arrays.forget_order()
 
     def _write_rows(self, contact_arrays: ContactArrays, now: list[tuple[Any, ...]]) -> None:
@@ -246,6 +251,27 @@ class UserConstraints:
         self._written = now
 
     def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
-        """Impulses of a constraint's rows in the last substep, shape (rows,)."""
-        row = self.rows[constraint.id]
-        return state.numpy["user_impulse"][0, row, : ROWS[constraint.kind]].copy()
+        """Impulses of a constraint's rows in the last substep, shape (rows,); 0 for a new constraint."""
+        return self._impulses(constraint.id, state)[: ROWS[constraint.kind]].copy()
+
+    def all_impulses(self, state: ArrayTable) -> np.ndarray:
+        """Impulses of all constraints in the last substep, in order of creation, shape (constraints, 6)."""
+        rows = [self._impulses(number, state) for number in tuple(self._by_id)]
+        return np.array(rows).reshape(-1, _MOST_ROWS)
+
+    def set_impulses(self, state: ArrayTable, impulses: np.ndarray) -> None:
+        """Replace the impulses of all constraints; they are as `all_impulses` gives them.
+
+        `state` may grow; then its `replacements` change.
+        """
+        numbers = list(self._by_id)
+        state.reserve({"user": len(numbers)})
+        # Until the rows have been moved, none is known.
+        self._solved = []
+        state.numpy["user_impulse"][0, : len(numbers)] = impulses
+        self._solved = numbers
+
+    def _impulses(self, number: int, state: ArrayTable) -> np.ndarray:
+        if number not in self._solved:
+            return np.zeros(_MOST_ROWS)
+        return state.numpy["user_impulse"][0, self._solved.index(number)]

@@ -359,8 +359,8 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         """Advance the world by `count` time steps.
 
         Raises:
-            carom.errors.SimulationError: A velocity became NaN or infinite; all coordinates are as they were
-                before that step. Applied forces, motor impulses, sensor readings and contacts are cleared.
+            carom.errors.SimulationError: A velocity became NaN or infinite; the whole state is as it was before
+                that step, except that applied forces and torques are cleared.
         """
         try:
             for _ in range(count):
@@ -438,15 +438,10 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
             self.scene_changed()
 
     def _raise_fault(self) -> None:
-        """Clear the results of the failed step except the coordinates; raise an error that names the body."""
+        """Raise an error that names the body at fault."""
         tree = self._status[STATUS] - 1
         body = next(body for body in self.bodies.values() if body.rows.tree == tree)
         cause = cause_in(body)
-        self.joint_reaction[:] = 0.0
-        self.motor_impulse[:] = 0.0
-        self.contact_arrays.forget_contacts()
-        for other in self.bodies.values():
-            other.update_link_poses()
         raise SimulationError(
             f'body {body.id} ("{body.name}") has a velocity that is not finite; '
             f"the world is as it was before the step{cause and f': {cause}'}"
@@ -466,7 +461,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
         )
-        self.user_constraints.write(self.contact_arrays)
+        self.user_constraints.write(self.contact_arrays, self.arrays.state)
         step = self._derived.step_before
         if step is not None and self.engine.resume(self.parameters):
             self.quick.resume_step()

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
-from carom.layouts.contacts import RESETS
 from carom.layouts.status import STATUS, WELL
 from carom.scene.body import Body
 from carom.scene.user_constraints import UserConstraint
@@ -148,12 +147,8 @@ class Worlds:
             self._halt(running[status > WELL], steps)
 
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
-        """Clear the results of the failed step except the coordinates, as in a single world, and warn."""
-        state = self._engine.arrays.state.numpy
+        """Mark worlds whose step failed, and warn."""
         self.halted[worlds] = True
-        state["link_reaction"][worlds] = 0.0
-        state["dof_motor_impulse"][worlds] = 0.0
-        self._engine.contact_arrays.contacts.numpy["count_contacts"][worlds, :RESETS] = 0
         self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
         names = {batch.rows.tree: batch.name for batch in self}
         for world in worlds[:_MOST_NAMED].tolist():

@@ -184,7 +184,7 @@ def changeConstraint(
             constraint.relative_position_target = target
         if share >= 0.0:
             constraint.erp = share
-        client.world.user_constraints.write(client.world.contact_arrays)
+        client.world.user_constraints.write(client.world.contact_arrays, client.world.arrays.state)
 
 
 @exported

@@ -76,6 +76,38 @@ def test_forces_of_two_constraints_that_fight() -> None:
 
 
 @pytest.mark.usefixtures("balls")
+def test_forces_stay_with_their_constraint_when_others_come_and_go() -> None:
+    first, second = make(), weld()
+    p.stepSimulation()
+    forces = p.getConstraintState(second)
+    assert any(forces)
+    p.removeConstraint(first)
+    assert p.getConstraintState(second) == forces
+    third = make()
+    assert p.getConstraintState(third) == (0.0, 0.0, 0.0)
+    p.changeConstraint(third, maxForce=2.0)
+    assert p.getConstraintState(third) == (0.0, 0.0, 0.0)
+    assert p.getConstraintState(second) == forces
+
+
+@pytest.mark.usefixtures("balls")
+def test_a_restored_state_has_the_forces_of_its_constraints() -> None:
+    first, second = make(), weld()
+    p.stepSimulation()
+    forces = p.getConstraintState(second)
+    p.removeConstraint(first)
+    state = p.saveState()
+    p.stepSimulation()
+    assert p.getConstraintState(second) != forces
+    p.restoreState(state)
+    assert p.getConstraintState(second) == forces
+    third = make()
+    p.restoreState(p.saveState())
+    assert p.getConstraintState(second) == forces
+    assert p.getConstraintState(third) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.usefixtures("balls")
 def test_a_removed_constraint_holds_no_longer() -> None:
     constraint = make()
     for _ in range(240):

@@ -4,7 +4,12 @@ import warp as wp
 
 from carom.kernels.contact.manifold import restore_contacts
 from carom.kernels.dynamics.motors import joint_damping
-from carom.kernels.dynamics.quarantine import keep_start, return_to_start
+from carom.kernels.dynamics.quarantine import (
+    keep_start,
+    keep_start_impulses,
+    return_to_start,
+    return_to_start_impulses,
+)
 from carom.kernels.maths.runs import clear_run
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector6, func, kernel
@@ -48,6 +53,7 @@ def begin_step(
 ):
     """Save the state at the start of a step; add joint damping, unless `moves` is 0."""
     begin_world(state, pairs, world)
+    keep_start_impulses(settings, state, scratch, world)
     for tree in range(settings.tree_count):
         keep_start(model, state, scratch, world, tree)
         if moves != 0:
@@ -94,5 +100,6 @@ def abandon_step_kernel(
     """Restore the state at the start of a step that failed."""
     world = first_world + wp.tid()
     restore_contacts(contacts, pairs, world)
+    return_to_start_impulses(settings, state, scratch, world)
     for tree in range(settings.tree_count):
         abandon_tree(model, state, scratch, world, tree)

@@ -42,7 +42,7 @@ def batch_step_kernel(
     own_scratch = scratch_of_batch(model, scratch, root)
     for tree in range(root, settings.tree_count):
         if model.tree[tree].batch == root:
-            begin_tree(model, state, scratch, pairs, world, tree, 1)
+            begin_tree(settings, model, state, scratch, pairs, world, tree, 1)
     for _substep in range(substeps):
         for tree in range(root, settings.tree_count):
             if model.tree[tree].batch == root:

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import update_link_poses
 from carom.kernels.dynamics.motors import joint_damping
-from carom.kernels.dynamics.quarantine import keep_start
+from carom.kernels.dynamics.quarantine import keep_start, keep_start_impulses, return_to_start_impulses
 from carom.kernels.dynamics.step import free_motion, move_or_stop
 from carom.kernels.dynamics.step_ends import abandon_tree, clear_forces
 from carom.kernels.parallel.layout import lay_out_islands
@@ -30,19 +30,29 @@ from carom.layouts.status import STATUS, WELL
 
 @func
 def begin_tree(
-    model: Model, state: State, scratch: Scratch, pairs: Pairs, world: Int32, tree: Int32, moves: Int32
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pairs: Pairs,
+    world: Int32,
+    tree: Int32,
+    moves: Int32,
 ):
     """Save the state at the start of the step; see `step_ends.begin_step_kernel`."""
     if tree == 0:
         pairs.count_pairs[world, START_CONTACTS] = NONE_KEPT
         pairs.count_pairs[world, START_OVERLAPS] = NONE_KEPT
+        keep_start_impulses(settings, state, scratch, world)
     keep_start(model, state, scratch, world, tree)
     if moves != 0:
         joint_damping(model, state, world, tree)
 
 
 @kernel
-def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs, moves: Int32):
+def begin_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pairs: Pairs, moves: Int32
+):
     """Begin the step of each tree; the thread of a world's first tree begins the step of the world.
 
     `moves` is 0 if only contacts are to be found. Worlds that `parallel.runs.ask_kernel` left out, and worlds
@@ -50,7 +60,7 @@ def begin_kernel(model: Model, state: State, scratch: Scratch, pairs: Pairs, mov
     """
     tree, world = wp.tid()
     if not is_called_off(state, world):
-        begin_tree(model, state, scratch, pairs, world, tree, moves)
+        begin_tree(settings, model, state, scratch, pairs, world, tree, moves)
 
 
 @kernel
@@ -132,10 +142,12 @@ def faults_kernel(settings: Settings, state: State, work: IslandWork):
 
 
 @kernel
-def end_kernel(model: Model, state: State, scratch: Scratch, moves: Int32):
+def end_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, moves: Int32):
     """End the step of each tree, or return to its start; `moves` is as in `begin_kernel`."""
     tree, world = wp.tid()
     if went_wrong(state, world):
+        if tree == 0:
+            return_to_start_impulses(settings, state, scratch, world)
         abandon_tree(model, state, scratch, world, tree)
     elif moves != 0 and not is_called_off(state, world):
         clear_forces(model, state, world, tree)

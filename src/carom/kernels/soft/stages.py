@@ -120,10 +120,11 @@ def take_small_steps(
 
 @func
 def keep_nodes(soft: SoftModel, state: State, soft_work: SoftWork, world: Int32, body: Int32):
-    """Save the positions and velocities of a body's nodes at the start of a step."""
+    """Save the positions, velocities and contact forces of a body's nodes at the start of a step."""
     for node in range(soft.soft[body].first_node, node_end(soft, body)):
         soft_work.node_start_position[world, node] = state.node_position[world, node]
         soft_work.node_start_velocity[world, node] = state.node_velocity[world, node]
+        soft_work.node_start_push[world, node] = state.node_push[world, node]
 
 
 @func
@@ -142,6 +143,7 @@ def return_nodes(soft: SoftModel, state: State, soft_work: SoftWork, world: Int3
     for node in range(soft.soft[body].first_node, node_end(soft, body)):
         state.node_position[world, node] = soft_work.node_start_position[world, node]
         state.node_velocity[world, node] = soft_work.node_start_velocity[world, node]
+        state.node_push[world, node] = soft_work.node_start_push[world, node]
     if state.status_entry[world, STATUS] > WELL:
         clear_node_forces(soft, state, world, body)
 

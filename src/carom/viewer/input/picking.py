@@ -102,7 +102,7 @@ class Picking:
             if world.user_constraints.get(hand.tie.id) is not hand.tie:
                 return False
             hand.tie.child_frame = Pose(hand.target, _NO_TURN)
-            world.user_constraints.write(world.contact_arrays)
+            world.user_constraints.write(world.contact_arrays, world.arrays.state)
             hand.moved = False
             return True
         body = world.bodies.get(hand.body)
