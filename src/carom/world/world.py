@@ -359,8 +359,8 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         """Advance the world by `count` time steps.
 
         Raises:
-            carom.errors.SimulationError: A velocity became NaN or infinite; the whole state is as it was before
-                that step, except that applied forces and torques are cleared.
+            carom.errors.SimulationError: A velocity became NaN or infinite; the whole state is as it was
+                before that step, except that applied forces and torques are cleared.
         """
         try:
             for _ in range(count):
