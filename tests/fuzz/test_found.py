@@ -7,6 +7,7 @@ import struct
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from hashlib import sha256
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,9 @@ from pybullet._logs.log_files import BinaryLog
 
 CYLINDER = """<robot name="thin"><link name="base"><collision><geometry>
 <cylinder radius="0.015" length="{length}"/></geometry></collision></link></robot>"""
+HULL = """<robot name="hull"><link name="base"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><mesh filename="hull.obj"/></geometry></collision></link></robot>"""
 COLLADA = """<COLLADA version="1.4.1" xmlns="http://www.collada.org/2005/11/COLLADASchema">
 <library_geometries><geometry id="g"><mesh>
 <source id="s"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array>
@@ -212,6 +216,20 @@ def test_saved_worlds_whose_bodies_are_nowhere(
     with pytest.raises(p.error, match=r"very large|quaternion"):
         p.loadBullet(str(file))
     assert p.getNumBodies() == 0
+
+
+@pytest.mark.parametrize("size", [1e15, 1e30, 1e31])
+def test_hulls_so_large_that_their_normal_is_lost(client: int, tmp_path: Path, size: float) -> None:
+    corners = "".join(f"v {x} {y} {z}\n" for x, y, z in product((-size, size), repeat=3))
+    (tmp_path / "hull.obj").write_text(corners + "f 1 2 4\nf 5 7 8\nf 1 5 6\nf 3 4 8\n")
+    (tmp_path / "hull.urdf").write_text(HULL)
+    for position in ([0.3, 0.2, 0.1], [0.7, 0.2, -3.1]):
+        p.loadURDF(str(tmp_path / "hull.urdf"), position)
+    for _ in range(3):
+        p.stepSimulation()
+    points = [p.getContactPoints(), p.getClosestPoints(0, 1, 1.0)]
+    lengths = [np.linalg.norm(point[7]) for found in points for point in found]
+    assert lengths == pytest.approx([1.0] * len(lengths))
 
 
 def _motors(body: int) -> list[float]:

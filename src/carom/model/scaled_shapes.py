@@ -8,12 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from carom.description import Box, Capsule, Collision, Cylinder, Mesh, Plane, Sphere
-from carom.description.geometry import ConvexHull, Geometry, TriangleMesh
+from carom.description.geometry import GREATEST_SIZE, ConvexHull, Geometry, TriangleMesh
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse
-
-LARGEST = 1e15
-"""Sizes and places [m] up to which shapes are scaled; of greater ones the normals of contacts are lost."""
 
 
 def scaled_collisions(
@@ -27,7 +24,7 @@ def scaled_collisions(
 
     Raises:
         ValueError: A cylinder would not stay round, a kind of shape cannot be scaled, or a shape or its
-            offset would be greater than `LARGEST`.
+            offset would be greater than `GREATEST_SIZE`.
     """
     scaled = []
     for collision in collisions:
@@ -35,8 +32,8 @@ def scaled_collisions(
         x, y, z = (a * b for a, b in zip(seen.position, factors, strict=True))
         frame = compose(inertial_frame, Pose((x, y, z), seen.orientation))
         geometry = _scaled(collision.geometry, factors)
-        if not max(*map(abs, frame.position), *_sizes(geometry)) <= LARGEST:
-            raise ValueError(f"its shapes would be greater than {LARGEST:g} m")
+        if not max(*map(abs, frame.position), *_sizes(geometry)) <= GREATEST_SIZE:
+            raise ValueError(f"its shapes would be greater than {GREATEST_SIZE:g} m")
         scaled.append(replace(collision, geometry=geometry, frame=frame))
     return tuple(scaled)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
+from carom.description.geometry import GREATEST_SIZE
 from carom.description.pose import Vector3
 from carom.formats.shipped import advice
 from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real, sequence
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 
 PRIMITIVES = (GEOM_SPHERE, GEOM_BOX, GEOM_CYLINDER, GEOM_PLANE, GEOM_CAPSULE)
-
-_GREATEST_SIZE = 1e15
 
 
 def primitive(
@@ -60,8 +59,8 @@ def primitive(
 
 
 def _check_size(is_allowed: bool, greatest: float, problem: str, particulars: str) -> None:
-    if not is_allowed or greatest > _GREATEST_SIZE:
-        fail(problem, f"{particulars} It has to be from 0 to {_GREATEST_SIZE:g} m.")
+    if not is_allowed or greatest > GREATEST_SIZE:
+        fail(problem, f"{particulars} It has to be from 0 to {GREATEST_SIZE:g} m.")
 
 
 def scale_of(values: Any, problem: str) -> Vector3:

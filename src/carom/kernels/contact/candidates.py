@@ -17,14 +17,25 @@ SAME_POINT = real(1.0e-6)
 AS_DEEP = real(1.0e-7)
 # Relative amount by which a later candidate must be better to be preferred.
 CLEARLY = real(1.0e-6)
+# The squared length of a unit normal differs from 1 by less.
+NEARLY_UNIT = real(1.0e-3)
+
+
+@func
+def is_unit(normal: Vector3) -> bool:
+    """Whether a vector has length 1, apart from rounding; false if it is not finite."""
+    return wp.abs(wp.length_sq(normal) - 1.0) < NEARLY_UNIT
 
 
 @func
 def add_candidate(
     candidates: CandidateRows, world: Int32, count: Int32, point: Vector3, normal: Vector3, distance: real
 ) -> Int32:
-    """Append a candidate to the first `count`, if there is room; returns the new number."""
-    if count >= candidates.shape[1]:
+    """Append a candidate to the first `count`, if there is room; returns the new number.
+
+    Without a unit normal it is left out: rounding can lose the normal where shapes of 1e30 m overlap.
+    """
+    if count >= candidates.shape[1] or not is_unit(normal):
         return count
     candidate = Candidate()
     candidate.point = point

@@ -233,7 +233,8 @@ def overlap(
     `common` a point that is in both cores.
 
     Returns:
-        The depth [m], the unit normal from b towards a, and the deepest points of a and of b.
+        The depth [m], the unit normal from b towards a, and the deepest points of a and of b. The normal is
+        0 if the cores overlap by 1e30 m or more.
     """
     direction = Vector3(0.0, 0.0, 1.0) if wp.length_sq(start) == 0.0 else start
     count, flat = first_tetrahedron(core_a, core_b, vertex_position, points, points_a, world, direction)
@@ -260,7 +261,7 @@ def overlap(
     # A translation in any direction separates the cores if it is long enough. The shortest one found is kept,
     # so that the result is valid even if rounding or a lack of space spoils the polytope.
     depth = real(NEVER)
-    outward = Vector3(0.0, 0.0, 1.0)
+    outward = Vector3(0.0, 0.0, 0.0)
     corners = faces[world, nearest]
     growing = Int32(1)
     while growing == 1 and count < MOST_CORNERS:
