@@ -12,8 +12,8 @@ pytest.importorskip("warp", reason="launches the kernels")
 
 import torch
 import warp as wp
+from tests.engine.failing import everything, full_scene, spoil
 from tests.physics.contact_scenes import add_ball, add_floor, earth
-from tests.physics.failing import everything, full_scene, spoil
 from tests.physics.test_contact_worlds import heap
 
 import pybullet_data

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.physics.failing import everything
+from tests.engine.failing import everything
 from tests.soft.scenes import rigid, world
 
 from carom import World, Worlds

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.physics.failing import everything, full_scene, spoil
+from tests.engine.failing import everything, full_scene, spoil
 
 from carom import Worlds
 from carom.errors import SimulationError, SimulationWarning
