@@ -232,6 +232,15 @@ def test_hulls_so_large_that_their_normal_is_lost(client: int, tmp_path: Path, s
     assert lengths == pytest.approx([1.0] * len(lengths))
 
 
+@pytest.mark.parametrize("radius", [1e-9, 1e-120, 5e-324])
+def test_mass_matrices_of_capsules_as_small_as_nothing(client: int, radius: float) -> None:
+    capsule = p.createCollisionShape(p.GEOM_CAPSULE, radius=radius, height=radius)
+    body = p.createMultiBody(1.0, capsule, basePosition=[0, 0, 1])
+    matrix = p.calculateMassMatrix(body, [0, 0, 1, 0, 0, 0, 1], flags=1)
+    assert np.isfinite(matrix).all()
+    assert np.diag(matrix)[3:6] == pytest.approx([1.0] * 3)
+
+
 def _motors(body: int) -> list[float]:
     from pybullet._clients.clients import clients
 

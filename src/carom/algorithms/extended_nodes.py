@@ -144,9 +144,12 @@ def _moments(mass: float, collisions: tuple[Collision, ...], implicit_cylinder: 
 
 def _capsule_moments(mass: float, radius: float, length: float) -> Vector3:
     """Moments of inertia of a capsule along y."""
-    cylinder, half_ball = radius * radius * length, 2.0 / 3.0 * radius**3
-    density = mass / (cylinder + 2.0 * half_ball)
-    cylinder, half_ball = cylinder * density, half_ball * density
+    # Volumes over π r², which are not rounded to 0 before the sizes are.
+    cylinder, half_ball = length, 2.0 / 3.0 * radius
+    volume = cylinder + 2.0 * half_ball
+    if volume == 0.0:
+        return (0.0, 0.0, 0.0)
+    cylinder, half_ball = mass * (cylinder / volume), mass * (half_ball / volume)
     across = cylinder * (radius * radius / 4.0 + length * length / 12.0) + 2.0 * half_ball * (
         0.4 * radius * radius + 0.375 * radius * length + 0.5 * length * length
     )
