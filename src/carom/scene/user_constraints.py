@@ -272,6 +272,8 @@ class UserConstraints:
         self._solved = numbers
 
     def _impulses(self, number: int, state: ArrayTable) -> np.ndarray:
-        if number not in self._solved:
+        # Another thread may replace the list in the meantime.
+        solved = self._solved
+        if number not in solved:
             return np.zeros(_MOST_ROWS)
-        return state.numpy["user_impulse"][0, self._solved.index(number)]
+        return state.numpy["user_impulse"][0, solved.index(number)]
