@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,7 @@ ROWS = {
     UserConstraintKind.GEAR: 1,
 }
 _MOST_ROWS = 6
+_ROW_BYTES = 8 * _MOST_ROWS
 # Fields of `carom.layouts.contacts.UserConstraints`, without the one that each world has for itself.
 _FIELDS = (
     "user_kind",
@@ -233,7 +234,7 @@ class UserConstraints:
         if now != self._written:
             self._write_rows(contact_arrays, now)
         if self._solved != list(self._by_id):
-            self.set_impulses(state, self.all_impulses(state))
+            self._write_impulses(state, self._rows_of(tuple(self._by_id), state))
         contact_arrays.forget_order()
 
     def _write_rows(self, contact_arrays: ContactArrays, now: list[tuple[Any, ...]]) -> None:
@@ -252,28 +253,34 @@ class UserConstraints:
 
     def impulses(self, constraint: UserConstraint, state: ArrayTable) -> np.ndarray:
         """Impulses of a constraint's rows in the last substep, shape (rows,); 0 for a new constraint."""
-        return self._impulses(constraint.id, state)[: ROWS[constraint.kind]].copy()
+        return np.frombuffer(self._rows_of([constraint.id], state))[: ROWS[constraint.kind]]
 
     def all_impulses(self, state: ArrayTable) -> np.ndarray:
         """Impulses of all constraints in the last substep, in order of creation, shape (constraints, 6)."""
-        rows = [self._impulses(number, state) for number in tuple(self._by_id)]
-        return np.array(rows).reshape(-1, _MOST_ROWS)
+        return np.frombuffer(self._rows_of(tuple(self._by_id), state)).reshape(-1, _MOST_ROWS)
 
     def set_impulses(self, state: ArrayTable, impulses: np.ndarray) -> None:
         """Replace the impulses of all constraints; they are as `all_impulses` gives them.
 
         `state` may grow; then its `replacements` change.
         """
+        self._write_impulses(state, impulses.astype(np.float64).tobytes())
+
+    def _write_impulses(self, state: ArrayTable, rows: bytes) -> None:
         numbers = list(self._by_id)
         state.reserve({"user": len(numbers)})
         # Until the rows have been moved, none is known.
         self._solved = []
-        state.numpy["user_impulse"][0, : len(numbers)] = impulses
+        state.bytes_of("user_impulse")[: len(rows)] = rows
         self._solved = numbers
 
-    def _impulses(self, number: int, state: ArrayTable) -> np.ndarray:
+    def _rows_of(self, numbers: Sequence[int], state: ArrayTable) -> bytes:
+        """The rows of `State.user_impulse` of some constraints, one after the other."""
         # Another thread may replace the list in the meantime.
-        solved = self._solved
-        if number not in solved:
-            return np.zeros(_MOST_ROWS)
-        return state.numpy["user_impulse"][0, solved.index(number)]
+        solved, memory = self._solved, state.bytes_of("user_impulse")
+        return b"".join(
+            memory[_ROW_BYTES * solved.index(number) :][:_ROW_BYTES]
+            if number in solved
+            else bytes(_ROW_BYTES)
+            for number in numbers
+        )
