@@ -1,17 +1,23 @@
-"""Wheels have the native library of their platform in them.
+"""Wheels have the native library of their platform in them, and so have editable installs.
 
 `pip install .` and `python -m build --wheel` build it for this machine, for all its CPU levels. `make wheels`
-names other platforms. Editable installs build nothing: there the library is built when it is first needed.
+names other platforms. `pip install --editable .` builds it for this processor, beside the Python files.
 """
 
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import time
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+if TYPE_CHECKING:
+    from carom.native.targets import Target
 
 # The platform to build for, as `carom.native.building` calls it; if not set, this one.
 TARGET_VARIABLE = "CAROM_BUILD_TARGET"
@@ -19,7 +25,7 @@ _PLACE = "carom/native/libraries"
 
 
 class NativeLibraryHook(BuildHookInterface):
-    """Builds the native library and puts it into the wheel."""
+    """Builds the native library and puts it into the wheel, or into the clone."""
 
     PLUGIN_NAME = "custom"
 
@@ -30,28 +36,73 @@ class NativeLibraryHook(BuildHookInterface):
             version: `standard` or `editable`.
             build_data: What the wheel is to be; changed in place.
         """
-        if version == "editable":
-            return
         root = Path(self.root) / "src"
         sys.path.insert(0, str(root))
         try:
-            libraries, tags = self._build(root)
+            if version == "editable":
+                _build_for_clone(root)
+            else:
+                _build_for_wheel(root, build_data)
         finally:
             sys.path.remove(str(root))
-        for library in libraries:
-            build_data["force_include"][str(library)] = f"{_PLACE}/{library.name}"
-        build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{tags}"
 
-    def _build(self, root: Path) -> tuple[list[Path], str]:
-        from carom.native.building.library import build_all
-        from carom.native.building.zig import BuildError
-        from carom.native.targets import TARGETS, NoTarget, this_target
 
-        name = os.environ.get(TARGET_VARIABLE)
-        try:
-            target = TARGETS[name] if name else this_target()
-            libraries = build_all(root, target, sys.stderr)
-        except (BuildError, NoTarget, KeyError) as problem:
-            sys.exit(f"Carom cannot be built here: {problem}")
-        return libraries, ".".join(target.wheel_tags)
+def _build_for_wheel(root: Path, build_data: dict[str, Any]) -> None:
+    from carom.native.targets import TARGETS
+
+    name = os.environ.get(TARGET_VARIABLE)
+    if name and name not in TARGETS:
+        sys.exit(f"{TARGET_VARIABLE} is {name!r}; expected one of {', '.join(TARGETS)}")
+    target = TARGETS[name] if name else _this_target()
+    for library in _build(root, target, target.shipped):
+        build_data["force_include"][str(library)] = f"{_PLACE}/{library.name}"
+    build_data["pure_python"] = False
+    build_data["tag"] = f"py3-none-{'.'.join(target.wheel_tags)}"
+
+
+def _build_for_clone(root: Path) -> None:
+    from carom.native.cpu import cpu_levels
+
+    target = _this_target()
+    levels = target.usable_levels(cpu_levels())
+    if not levels:
+        sys.exit(f"CAROM_CPU_LEVEL has to be one of {', '.join(target.levels)}")
+    folder = root / _PLACE
+    folder.mkdir(exist_ok=True)
+    for built in _build(root, target, levels[:1]):
+        # Beside it first: the one of before may be loaded by a process that runs.
+        copy = folder / f"{built.name}.new"
+        shutil.copyfile(built, copy)
+        copy.replace(folder / built.name)
+
+
+def _build(root: Path, target: Target, levels: Sequence[str]) -> list[Path]:
+    """The libraries for some levels, and their manifest."""
+    from carom.native.building.library import build_all
+    from carom.native.building.zig import BuildError
+
+    began = time.monotonic()
+    _say(
+        f"compiling the physics kernels for {target.name} ({', '.join(levels)}); "
+        "takes about a minute on two cores for each level, and less where they have been compiled before"
+    )
+    try:
+        libraries = build_all(root, target, levels, sys.stderr)
+    except BuildError as problem:
+        sys.exit(f"Carom cannot be built here: {problem}")
+    _say(f"compiled the physics kernels in {time.monotonic() - began:.0f} s")
+    return libraries
+
+
+def _say(sentence: str) -> None:
+    """For those who asked pip to be verbose."""
+    print(f"carom: {sentence}", file=sys.stderr, flush=True)
+
+
+def _this_target() -> Target:
+    from carom.native.targets import NoTarget, this_target
+
+    try:
+        return this_target()
+    except NoTarget as problem:
+        sys.exit(f"Carom cannot be built here: {problem}")

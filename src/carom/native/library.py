@@ -42,13 +42,15 @@ class Library:
 
     def __init__(self, path: Path, digest: str) -> None:
         try:
-            # Calls through it release the GIL, so that other threads run meanwhile.
-            self._loaded = ctypes.CDLL(str(path))
-            self._kernels: Mapping[str, Any] = json.loads((path.parent / MANIFEST).read_text("utf-8"))[
-                "kernels"
-            ]
-            found = (ctypes.c_char * len(digest)).in_dll(self._loaded, "carom_digest").value.decode()
-            self.perform: Any = self._loaded.carom_perform
+            manifest = json.loads((path.parent / MANIFEST).read_text("utf-8"))
+            # One of other sources is not loaded: it would stay in memory.
+            found = manifest["digest"]
+            if found == digest:
+                # Calls through it release the GIL, so that other threads run meanwhile.
+                self._loaded = ctypes.CDLL(str(path))
+                found = (ctypes.c_char * len(digest)).in_dll(self._loaded, "carom_digest").value.decode()
+                self._kernels: Mapping[str, Any] = manifest["kernels"]
+                self.perform: Any = self._loaded.carom_perform
         except (OSError, ValueError, KeyError) as problem:
             raise NativeLibraryError(f"{path} cannot be loaded: {problem}. {_cure()}") from None
         if found != digest:
@@ -108,10 +110,7 @@ def _library() -> Library:
     except NoTarget as problem:
         raise NativeLibraryError(f"{problem}") from None
     offered = cpu_levels()
-    # Levels that are not in wheels are used only if `CAROM_CPU_LEVEL` names one.
-    levels = [level for level in offered if level in target.shipped] or [
-        level for level in offered if level in target.levels
-    ]
+    levels = target.usable_levels(offered)
     if not levels:
         raise NativeLibraryError(
             f"CAROM_CPU_LEVEL is {offered[0]!r}; expected one of {', '.join(target.levels)}"
@@ -150,5 +149,8 @@ def _built(target: Target, level: str, digest: str) -> Path:
 
 def _cure() -> str:
     if (_ROOT.parent / "pyproject.toml").exists():
-        return "Run `pip install --editable '.[build]'` in the clone, which installs the compiler."
+        return (
+            "Run `pip install --editable .` in the clone, which builds it; after `pip install --editable "
+            "'.[build]'` it is built whenever kernels have been edited."
+        )
     return "Install Carom again: `pip install --force-reinstall carom`."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 import sys
+from collections.abc import Sequence
 from typing import NamedTuple
 
 
@@ -36,6 +37,15 @@ class Target(NamedTuple):
     def shipped(self) -> list[str]:
         """The CPU levels that are in wheels, the oldest first."""
         return [level for level in self.levels if level not in self.left_out]
+
+    def usable_levels(self, offered: Sequence[str]) -> list[str]:
+        """Those of a processor's CPU levels that there are libraries for, in the same order.
+
+        Levels that are not in wheels are among them only if no other is offered, as where `CAROM_CPU_LEVEL`
+        names one.
+        """
+        shipped = [level for level in offered if level in self.shipped]
+        return shipped or [level for level in offered if level in self.levels]
 
     def library_name(self, level: str) -> str:
         """File name of the library for a CPU level."""

@@ -107,20 +107,22 @@ def _make(parts: _Build, library: Path) -> None:
         made.parent.mkdir()
         command = link_command(parts.zig, parts.target, parts.level, objects, made)
         job = Job(library.name, command, lambda: None)
-        run_all([job], parts.zig.environment(), _shows(parts.progress, "linking"))
+        run_all([job], parts.zig.environment(), _shows(parts.progress, f"linking {parts.level}"))
         keep(made, library)
         (work / MANIFEST).write_bytes((code / MANIFEST).read_bytes())
         keep(work / MANIFEST, library.parent / MANIFEST)
     parts.progress.show(f"{library.name} is built", now=True)
 
 
-def build_all(root: Path, target: Target, progress: TextIO | None = sys.stderr) -> list[Path]:
-    """Build, or take from the cache, the libraries of a wheel; raises errors as `build`.
+def build_all(
+    root: Path, target: Target, levels: Sequence[str], progress: TextIO | None = sys.stderr
+) -> list[Path]:
+    """Build, or take from the cache, the libraries for some CPU levels; raises errors as `build`.
 
     Returns:
-        A library for each CPU level that is shipped, and their manifest.
+        A library for each level, and their manifest.
     """
-    libraries = [build(root, target, level, progress) for level in target.shipped]
+    libraries = [build(root, target, level, progress) for level in levels]
     return [*libraries, libraries[0].parent / MANIFEST]
 
 
@@ -137,8 +139,7 @@ def _generated_code(parts: _Build) -> Path:
         code.mkdir()
         environment = {
             **os.environ,
-            # The kernels of this root, whatever version of Carom is installed.
-            "PYTHONPATH": str(parts.root),
+            "PYTHONPATH": _search_path(parts.root),
             "WARP_CACHE_PATH": str(work / "warp"),
         }
         program = [sys.executable, "-m", "carom.native.building.codegen"]
@@ -146,6 +147,15 @@ def _generated_code(parts: _Build) -> Path:
         run_all([job], environment, _shows(parts.progress, "generating code"))
         keep(code, folder)
     return folder
+
+
+def _search_path(root: Path) -> str:
+    """Where the code generator's process finds modules: where this one does.
+
+    In front are the kernels of this root, whatever version of Carom is installed. Warp may be in a folder that
+    only this process was told of, as in the environments that pip makes for a build.
+    """
+    return os.pathsep.join([str(root), *(folder for folder in sys.path if folder)])
 
 
 def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
@@ -157,16 +167,16 @@ def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
     if parts.target.suffix == ".dll":
         own.append(_HERE / "windows.cpp")
     kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
-    objects = _objects(parts, "compiling kernels", "c++", CPP_FLAGS, kernels, headers, work)
-    objects += _objects(parts, "compiling the rest", "c++", CPP_FLAGS, own, [*headers, folder], work)
+    objects = _objects(parts, "kernels", "c++", CPP_FLAGS, kernels, headers, work)
+    objects += _objects(parts, "the rest", "c++", CPP_FLAGS, own, [*headers, folder], work)
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
-    return objects + _objects(parts, "compiling maths", "cc", C_FLAGS, maths, folders, work)
+    return objects + _objects(parts, "maths", "cc", C_FLAGS, maths, folders, work)
 
 
 def _objects(
     parts: _Build,
-    doing: str,
+    what: str,
     language: str,
     flags: tuple[str, ...],
     sources: list[Path],
@@ -192,7 +202,7 @@ def _objects(
         arguments = [*flags, *(f"-I{folder}" for folder in includes), "-c", source, "-o", made]
         command = parts.zig.command(language, parts.target, parts.level, arguments)
         jobs.append(Job(source.stem, command, functools.partial(keep, made, kept)))
-    run_all(jobs, parts.zig.environment(), _shows(parts.progress, doing))
+    run_all(jobs, parts.zig.environment(), _shows(parts.progress, f"compiling {what} for {parts.level}"))
     return [kept for _, kept in sorted(objects)]
 
 
