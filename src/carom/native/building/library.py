@@ -152,8 +152,8 @@ def _generated_code(parts: _Build) -> Path:
 def _search_path(root: Path) -> str:
     """Where the code generator's process finds modules: where this one does.
 
-    In front are the kernels of this root, whatever version of Carom is installed. Warp may be in a folder that
-    only this process was told of, as in the environments that pip makes for a build.
+    In front are the kernels of this root, whatever version of Carom is installed. Warp may be in a folder
+    that only this process was told of, as in the environments that pip makes for a build.
     """
     return os.pathsep.join([str(root), *(folder for folder in sys.path if folder)])
 
