@@ -7,17 +7,30 @@ metadata" while it is compiled. Our build hook leaves the requirements as they a
 
 import os
 
+__all__ = [
+    "build_editable",
+    "build_sdist",
+    "build_wheel",
+    "get_requires_for_build_editable",
+    "get_requires_for_build_sdist",
+    "get_requires_for_build_wheel",
+    "prepare_metadata_for_build_editable",
+    "prepare_metadata_for_build_wheel",
+]
+
 # Hatchling looks for pip when it is imported.
 _pip = os.environ.pop("PIP_BUILD_TRACKER", None)
 try:
-    from hatchling.build import build_editable as build_editable
-    from hatchling.build import build_sdist as build_sdist
-    from hatchling.build import build_wheel as build_wheel
-    from hatchling.build import get_requires_for_build_editable as get_requires_for_build_editable
-    from hatchling.build import get_requires_for_build_sdist as get_requires_for_build_sdist
-    from hatchling.build import get_requires_for_build_wheel as get_requires_for_build_wheel
-    from hatchling.build import prepare_metadata_for_build_editable as prepare_metadata_for_build_editable
-    from hatchling.build import prepare_metadata_for_build_wheel as prepare_metadata_for_build_wheel
+    from hatchling.build import (
+        build_editable,
+        build_sdist,
+        build_wheel,
+        get_requires_for_build_editable,
+        get_requires_for_build_sdist,
+        get_requires_for_build_wheel,
+        prepare_metadata_for_build_editable,
+        prepare_metadata_for_build_wheel,
+    )
 finally:
     if _pip is not None:
         os.environ["PIP_BUILD_TRACKER"] = _pip

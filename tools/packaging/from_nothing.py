@@ -4,7 +4,7 @@
 
 For each way: what is committed (and, without `--revision`, what has changed since) is unpacked into a folder
 of its own, without `.git`. Home and caches are empty, and no variable of ours or of a virtual environment is
-set. Then a script makes a step, a contact and an image with another empty home, in which nothing may be written.
+set. Then a script makes a step, a contact and an image with another empty home, where nothing may be written.
 
 Needs Python 3.10, git and a package index, and nothing that is installed.
 """
