@@ -2,7 +2,7 @@
 
     python examples/cluster_rollout.py --episodes 64
 
-Needs `pip install carom[ray]`. Nothing in it says how many machines there are: `ray.init()` finds out.
+Needs `pip install 'carom[ray]'`. Nothing in it says how many machines there are: `ray.init()` finds out.
 """
 
 import argparse

@@ -2,7 +2,7 @@
 
     python examples/train_ppo.py --env AntBulletEnv-v0 --envs 64 --steps 2_000_000
 
-Needs `pip install carom[train]`. One file, in the manner of CleanRL: everything PPO does is here.
+Needs `pip install 'carom[train]'`. One file, in the manner of CleanRL: everything PPO does is here.
 """
 
 import argparse

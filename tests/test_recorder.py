@@ -98,7 +98,7 @@ def test_what_cannot_be_filmed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     with pytest.raises(ValueError, match="0 x 5"):
         VideoFile(tmp_path / "x.mp4", 0, 5, 30)
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(ImportError, match=r"pip install carom\[video\]"):
+    with pytest.raises(ImportError, match=r"pip install 'carom\[video\]'"):
         Recorder(tmp_path / "x.mp4", camera(), world)
     assert world.observers == []
     assert list(tmp_path.iterdir()) == []
@@ -161,7 +161,7 @@ def test_videos_without_the_library_say_what_to_install(
     falling_cube, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(p.error, match=r"^startStateLogging failed\. .*pip install carom\[video\]"):
+    with pytest.raises(p.error, match=r"^startStateLogging failed\. .*pip install 'carom\[video\]'"):
         p.startStateLogging(p.STATE_LOGGING_VIDEO_MP4, str(tmp_path / "x.mp4"))
 
 

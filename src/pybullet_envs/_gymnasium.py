@@ -14,7 +14,7 @@ INSTALLED = find_spec("gymnasium") is not None
 
 def _raise(*arguments: Any, **keywords: Any) -> NoReturn:
     raise ImportError(
-        "the environments of pybullet_envs need Gymnasium; install it with: pip install carom[envs]",
+        "the environments of pybullet_envs need Gymnasium; install it with: pip install 'carom[envs]'",
         name="gymnasium",
     )
 

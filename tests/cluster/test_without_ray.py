@@ -9,8 +9,8 @@ import pytest
 @pytest.mark.parametrize(
     ("module", "missing", "cure"),
     [
-        ("carom.cluster", "ray", "pip install carom[ray]"),
-        ("carom.cluster", "gymnasium", "pip install carom[ray]"),
+        ("carom.cluster", "ray", "pip install 'carom[ray]'"),
+        ("carom.cluster", "gymnasium", "pip install 'carom[ray]'"),
         ("carom.cluster.rllib", "ray.rllib", "pip install 'ray[rllib]' torch"),
     ],
 )

@@ -13,7 +13,7 @@ from carom.cli import command_line as cli
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
 # Programs of others, and scripts that readers have written themselves.
-FOREIGN = {"ray", "kill", "ssh"}
+FOREIGN = {"bash", "git", "kill", "ray", "ssh", "twine"}
 OF_READERS = {"your_pybullet_script.py", "first.py"}
 _INLINE = re.compile(r"`((?:python |make |carom |pip install )[^`]*)`")
 

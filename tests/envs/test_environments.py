@@ -126,7 +126,7 @@ def test_without_gymnasium_it_says_what_to_install() -> None:
     code = "import sys; sys.modules['gymnasium'] = None\n"
     code += "from pybullet_envs.gym_locomotion_envs import AntBulletEnv; AntBulletEnv()"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert "pip install carom[envs]" in run.stderr
+    assert "pip install 'carom[envs]'" in run.stderr
 
 
 def test_pictures_need_no_render_mode() -> None:

@@ -7,7 +7,7 @@ try:
     import ray as _ray  # noqa: F401  # pyright: ignore[reportMissingImports]
 except ImportError as missing:
     raise ImportError(
-        f"carom.cluster needs {missing.name}; install it with: pip install carom[ray]", name=missing.name
+        f"carom.cluster needs {missing.name}; install it with: pip install 'carom[ray]'", name=missing.name
     ) from missing
 
 from carom.cluster.collection import Collection, Report, Steps

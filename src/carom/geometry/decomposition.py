@@ -43,7 +43,7 @@ def decompose(
         coacd = import_module("coacd")
     except ImportError:
         raise CaromError(
-            "this needs the library CoACD; install it with: pip install carom[decompose]"
+            "this needs the library CoACD; install it with: pip install 'carom[decompose]'"
         ) from None
     coacd.set_log_level("error")
     pieces = coacd.run_coacd(

@@ -77,7 +77,7 @@ class Film:
 
 
 class Recorder:
-    """Records a world with a camera into an MP4 file. Needs PyAV: `pip install carom[video]`.
+    """Records a world with a camera into an MP4 file. Needs PyAV: `pip install 'carom[video]'`.
 
         with Recorder("fall.mp4", camera, world):
             world.step(480)

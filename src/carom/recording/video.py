@@ -33,7 +33,7 @@ class VideoFile:
         try:
             import av
         except ImportError:
-            raise ImportError("videos need PyAV: pip install carom[video]") from None
+            raise ImportError("videos need PyAV: pip install 'carom[video]'") from None
         self._frame_type = av.VideoFrame
         # The codecs halve the resolution of colours (4:2:0), so width and height have to be even.
         self._margin = ((0, height % 2), (0, width % 2), (0, 0))

@@ -9,7 +9,7 @@ try:
     import gymnasium
 except ImportError as missing:
     raise ImportError(
-        "carom.vector needs Gymnasium; install it with: pip install carom[envs]", name="gymnasium"
+        "carom.vector needs Gymnasium; install it with: pip install 'carom[envs]'", name="gymnasium"
     ) from missing
 
 from carom.vector.single import SingleEnv

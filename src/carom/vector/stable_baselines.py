@@ -12,7 +12,7 @@ try:
     from stable_baselines3.common.vec_env import VecEnv
 except ImportError as missing:
     raise ImportError(
-        "carom.vector.stable_baselines needs Stable-Baselines3; install it with: pip install carom[train]",
+        "carom.vector.stable_baselines needs Stable-Baselines3; install it with: pip install 'carom[train]'",
         name="stable_baselines3",
     ) from missing
 

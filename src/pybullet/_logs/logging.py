@@ -46,8 +46,8 @@ def startStateLogging(
             layouts; `STATE_LOGGING_PROFILE_TIMINGS` for a timing profile of steps and of the zones of
             `submitProfileTiming`, which Chrome can show, in `fileName` with `_0.json` appended;
             `STATE_LOGGING_VIDEO_MP4` for a video of 60 pictures for each second of simulated time, seen from
-            the camera of the window, which needs `pip install carom[video]` and works in `DIRECT` too, one at
-            a time: a new one ends the one before;
+            the camera of the window, which needs `pip install 'carom[video]'` and works in `DIRECT` too, one
+            at a time: a new one ends the one before;
             `STATE_LOGGING_VR_CONTROLLERS` for an empty log.
 
             `STATE_LOGGING_ALL_COMMANDS` for all calls that change the world, one such log at a time;

@@ -57,7 +57,7 @@ def vhacd(
     """Decomposes the mesh of an OBJ file into convex pieces, each a group of another OBJ file.
 
     `createCollisionShape` then creates a convex hull for each piece. `vhacd` needs no connection, but it does
-    need the library CoACD: `pip install carom[decompose]`. CoACD's method differs from V-HACD's and usually
+    need the library CoACD: `pip install 'carom[decompose]'`. CoACD's method differs from V-HACD's and usually
     yields fewer pieces. Arguments that CoACD has no option for are checked, but have no effect.
 
     Args:

@@ -282,5 +282,5 @@ def test_decomposition_says_what_it_needs(tmp_path: Path, monkeypatch: pytest.Mo
     with pytest.raises(p.error, match=r"nowhere\.obj"):
         p.vhacd("nowhere.obj", *names)
     monkeypatch.setitem(sys.modules, "coacd", None)
-    with pytest.raises(p.error, match=r"pip install carom\[decompose\]"):
+    with pytest.raises(p.error, match=r"pip install 'carom\[decompose\]'"):
         p.vhacd(str(MESHES / "two_boxes.obj"), *names)
