@@ -23,6 +23,7 @@
 #   make gpu          the tests of worlds on a GPU, and how fast they are there; needs an NVIDIA GPU
 #   make fuzz         a million random calls, and 100,000 damaged files of each kind
 #   make soak         a million steps, thousands of loads and removals, 80,000 episodes of workers; memory must not grow
+#   make from-nothing install as somebody who has nothing yet, in each way that there is; WAYS=clone names some
 #   make wheels       the wheels of all platforms, each built twice, and the source distribution: in dist/
 #   make wine         step the libraries for Windows under Wine: the same bits as here
 #   make aarch64      the wheel for aarch64 under emulation: conformance; needs Debian, and its qemu-user
@@ -45,7 +46,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) tools/patiently.py installing $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -57,9 +58,10 @@ $(VENV)/created:
 	$(PYTHON) tools/patiently.py "making $(VENV)" $(PYTHON) -m venv $(VENV)
 	@touch $@
 
-# Without isolation: what builds the native library is installed here, and not once more for the installation.
+# Without isolation: what builds the native library is installed here, and not once more for the installation,
+# which builds it.
 $(VENV)/carom: pyproject.toml | $(VENV)/created
-	$(PIP) install 'hatchling>=1.26,<2' editables
+	$(PIP) install $$($(RUN) tools/packaging/build_requirements.py) editables
 	$(PIP) install --no-build-isolation --editable '.[plot,build]'
 	@touch $@
 
@@ -182,10 +184,13 @@ clients: .clients/carom/clients .clients/oracle/clients
 	$(PYTHON) -m tests.clients.run --carom .clients/carom/bin/python --oracle .clients/oracle/bin/python \
 		--work .clients --sources $(CLIENT_SOURCES) $(CLIENTS)
 
-# Hatchling builds in this environment, which has what `build-system` names.
+# Hatchling builds in this environment, which has what `build-system` names; so do the targets below.
 wheels: $(VENV)/dev
-	$(PIP) install 'hatchling>=1.26,<2'
 	PYTHONPATH=. $(RUN) -m tools.wheels.build
+
+# Any Python will do, without an environment.
+from-nothing:
+	$(PYTHON) tools/packaging/from_nothing.py $(WAYS)
 
 OLDEST_TESTS ?= tests/conformance tests/pybullet tests/native tests/render tests/formats tests/geometry tests/model
 
@@ -199,15 +204,12 @@ wine: $(VENV)/dev
 	WINEDEBUG=-all PYTHONPATH=. $(RUN) -m tools.wheels.elsewhere.run --level v3 pytest -q tests/conformance/test_golden.py
 
 aarch64: $(VENV)/dev
-	$(PIP) install 'hatchling>=1.26,<2'
 	PYTHONPATH=. $(RUN) -m tools.wheels.emulated
 
 installed: $(VENV)/dev
-	$(PIP) install 'hatchling>=1.26,<2'
 	PYTHONPATH=. $(RUN) -m tools.wheels.installed --python $(PYTHON)
 
 oldest: $(VENV)/dev
-	$(PIP) install 'hatchling>=1.26,<2'
 	PYTHONPATH=. $(RUN) -m tools.wheels.installed --python $(PYTHON) --oldest $(OLDEST_TESTS)
 
 gpu-report: $(VENV)/dev

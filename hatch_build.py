@@ -1,4 +1,4 @@
-"""Wheels have the native library of their platform in them, and so have editable installs.
+"""What Hatchling needs help with: the native library, the text for package indices, what is compiled in.
 
 `pip install .` and `python -m build --wheel` build it for this machine, for all its CPU levels. `make wheels`
 names other platforms. `pip install --editable .` builds it for this processor, beside the Python files.
@@ -9,12 +9,14 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+import tempfile
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 if TYPE_CHECKING:
     from carom.native.targets import Target
@@ -22,6 +24,24 @@ if TYPE_CHECKING:
 # The platform to build for, as `carom.native.building` calls it; if not set, this one.
 TARGET_VARIABLE = "CAROM_BUILD_TARGET"
 _PLACE = "carom/native/libraries"
+_ROOT = Path(__file__).parent
+# Where `backend.py` is, too, with which pip and others build.
+_TOOLS = str(_ROOT / "tools" / "packaging")
+if _TOOLS not in sys.path:
+    sys.path.append(_TOOLS)
+
+
+class LongDescriptionHook(MetadataHookInterface):
+    """Makes the text that an index shows of the readme."""
+
+    PLUGIN_NAME = "custom"
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        """Add the text to the project's metadata, which is changed in place."""
+        from long_description import long_description
+
+        text = long_description((_ROOT / "README.md").read_text("utf-8"))
+        metadata["readme"] = {"content-type": "text/markdown", "text": text}
 
 
 class NativeLibraryHook(BuildHookInterface):
@@ -45,6 +65,19 @@ class NativeLibraryHook(BuildHookInterface):
                 _build_for_wheel(root, build_data)
         finally:
             sys.path.remove(str(root))
+        build_data["sbom_files"].append(self._write_bill())
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
+        """Remove what is in the wheel by now."""
+        shutil.rmtree(self._work)
+
+    def _write_bill(self) -> str:
+        from sbom import bill_of_materials
+
+        self._work = tempfile.mkdtemp(prefix="carom-build-")
+        bill = Path(self._work) / "carom.cdx.json"
+        bill.write_text(bill_of_materials(self.metadata.version), encoding="utf-8", newline="\n")
+        return str(bill)
 
 
 def _build_for_wheel(root: Path, build_data: dict[str, Any]) -> None:

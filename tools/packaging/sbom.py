@@ -1,4 +1,4 @@
-"""The software bill of materials of a wheel, in the format of CycloneDX: what its native library is made with."""
+"""The software bill of materials of a wheel, in the format of CycloneDX: what its native library is made of."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 from importlib import metadata
 from typing import Any
 
-# Distributions of build requirements whose code is compiled in: the component, its licence, and what of it is in.
+# Build requirements whose code is compiled in: distribution, component, its licence, and what of it is in.
 _PARTS = (
     ("warp-lang", "warp", "Apache-2.0", "declarations and inline functions for kernels"),
     ("ziglang", "zig-compiler-rt", "MIT", "compiler runtime"),
