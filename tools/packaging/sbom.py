@@ -1,4 +1,4 @@
-"""The software bill of materials of a wheel, in the format of CycloneDX: what its native library is made of."""
+"""The software bill of materials of a wheel, in the format of CycloneDX: what its library is made of."""
 
 from __future__ import annotations
 

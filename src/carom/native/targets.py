@@ -87,6 +87,7 @@ TARGETS = {
             "arm64-macos", "aarch64-macos.11.0", {"v8": "apple_m1"}, "lib", ".dylib", ("macosx_11_0_arm64",)
         ),
         Target("x86_64-windows", "x86_64-windows-gnu", _X86_LEVELS, "", ".dll", ("win_amd64",), ("v4",)),
+        Target("aarch64-windows", "aarch64-windows-gnu", {"v8": "generic"}, "", ".dll", ("win_arm64",)),
     )
 }
 _MACHINES = {"amd64": "x86_64", "x64": "x86_64", "arm64": "aarch64"}
