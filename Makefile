@@ -185,8 +185,10 @@ clients: .clients/carom/clients .clients/oracle/clients
 		--work .clients --sources $(CLIENT_SOURCES) $(CLIENTS)
 
 # Hatchling builds in this environment, which has what `build-system` names; so do the targets below.
+# PYTHONS="python3.10 python3.13" names those to install for from a local index.
 wheels: $(VENV)/dev
-	PYTHONPATH=. $(RUN) -m tools.wheels.build
+	$(PIP) install --group release
+	PYTHONPATH=. $(RUN) -m tools.wheels.build $(foreach python,$(PYTHONS),--python $(python))
 
 # Any Python will do, without an environment.
 from-nothing:

@@ -1,6 +1,7 @@
-"""`make wheels`: the wheels of all platforms and the source distribution, twice, and what is in them.
+"""`make wheels`: the wheels of all platforms and the source distribution, and whether they can be published.
 
-Everything is built on this machine, the second time with an empty cache; the bytes have to be the same.
+Everything is built on this machine, wheels a second time with an empty cache; the bytes have to be the same.
+Then `twine check`, and from an index in a folder pip chooses for all platforms and installs for this one.
 """
 
 from __future__ import annotations
@@ -12,24 +13,17 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 
-from tools.wheels.structure import Library, read_library
+from tools.wheels.faults import Unfit, faults
+from tools.wheels.index import check_downloads, check_installation, make_index
+from tools.wheels.structure import read_library
 
 from carom.native.targets import TARGETS, Target
 
 _ROOT = Path(__file__).parents[2]
 _MOST_BYTES = 15_000_000
-# The only library that a native library may be loaded with, and what it may take from there.
-_SYSTEM_LIBRARY = "/usr/lib/libSystem.B.dylib"
-_SYSTEM_NAMES = {"memcpy", "memmove", "memset", "bzero", "__bzero", "dyld_stub_binder", "yld_stub_binder"}
-# Made up by the linker for macOS.
-_LINKER_NAMES = {"__dso_handle", "_mh_dylib_header"}
-_FORMATS = {".so": "ELF", ".dylib": "Mach-O", ".dll": "PE"}
-
-
-class Unfit(Exception):
-    """A wheel is not to be published."""
 
 
 def main() -> None:
@@ -38,16 +32,45 @@ def main() -> None:
     parser.add_argument("--target", choices=TARGETS, action="append", help="only this platform")
     parser.add_argument("--output", type=Path, default=_ROOT / "dist")
     parser.add_argument("--once", action="store_true", help="do not build a second time")
+    parser.add_argument(
+        "--python",
+        action="append",
+        help="a Python to install for, more than once for several; if not given, this",
+    )
     asked = parser.parse_args()
     asked.output.mkdir(parents=True, exist_ok=True)
+    made: list[Path] = []
     for name in asked.target or TARGETS:
         wheel = build_wheel(TARGETS[name], asked.output)
         check_wheel(wheel, TARGETS[name])
         if not asked.once:
             check_again(wheel, TARGETS[name])
+        made.append(wheel)
         print(f"{wheel.name}: {wheel.stat().st_size / 1e6:.1f} MB, {_digest(wheel)}", flush=True)
     if not asked.target:
-        _hatchling("sdist", asked.output, {})
+        made.append(_build("sdist", asked.output, {}))
+        check_publishing(made, asked.python or [sys.executable])
+
+
+def check_publishing(made: Sequence[Path], pythons: Sequence[str]) -> None:
+    """Do what an index and those who install from it will do.
+
+    Args:
+        made: All wheels and the source distribution.
+        pythons: The Pythons to install for.
+
+    Raises:
+        Unfit: It does not work.
+    """
+    if subprocess.run([sys.executable, "-m", "twine", "check", "--strict", *made], check=False).returncode:
+        raise Unfit("an index would refuse them")
+    with tempfile.TemporaryDirectory(prefix="carom-index-") as folder:
+        simple = make_index(made, Path(folder))
+        print(
+            f"pip finds the wheels of {check_downloads(simple)} platforms and versions of Python", flush=True
+        )
+        for python in pythons:
+            print(check_installation(simple, python), flush=True)
 
 
 def build_wheel(target: Target, output: Path, cache: Path | None = None) -> Path:
@@ -64,10 +87,7 @@ def build_wheel(target: Target, output: Path, cache: Path | None = None) -> Path
     environment = {"CAROM_BUILD_TARGET": target.name}
     if cache:
         environment["CAROM_CACHE_PATH"] = str(cache)
-    with tempfile.TemporaryDirectory(dir=output) as folder:
-        _hatchling("wheel", Path(folder), environment)
-        (wheel,) = Path(folder).glob("*.whl")
-        return wheel.rename(output / wheel.name)
+    return _build("wheel", output, environment)
 
 
 def check_again(wheel: Path, target: Target) -> None:
@@ -110,41 +130,13 @@ def check_wheel(wheel: Path, target: Target) -> None:
                 raise Unfit(f"{wheel.name}: {path.name}: {fault}")
 
 
-def faults(library: Library, target: Target, level: str) -> list[str]:
-    """What is wrong with a native library.
-
-    Args:
-        library: The library.
-        target: The platform it is for.
-        level: The CPU level it is for.
-
-    Returns:
-        Sentences; none if all is well.
-    """
-    name = target.library_name(level)
-    macos = target.suffix == ".dylib"
-    strangers = {
-        one for one in library.exported if one != "carom_digest" and not one.startswith("carom_")
-        and not one.endswith("_cpu_forward")
-    } - _LINKER_NAMES  # fmt: skip
-    checks = {
-        f"it is {library.format}": library.format == _FORMATS[target.suffix],
-        f"it is for {library.machine}": library.machine == target.triple.split("-")[0],
-        f"it calls itself {library.name!r}": library.name == (f"@rpath/{name}" if macos else name),
-        f"it needs {library.needed}": library.needed == ([_SYSTEM_LIBRARY] if macos else []),
-        f"it takes {sorted(library.undefined)}": library.undefined <= (_SYSTEM_NAMES if macos else set()),
-        f"it exports {sorted(strangers)}": not strangers,
-        "it has no digest": "carom_digest" in library.exported,
-        "it is not signed": library.signed or target.name != "arm64-macos",
-        f"it needs macOS {library.oldest_system}": library.oldest_system == ((11, 0) if macos else (0, 0)),
-        "it asks for an executable stack": not library.executable_stack,
-    }
-    return [fault for fault, well in checks.items() if not well]
-
-
-def _hatchling(kind: str, output: Path, environment: dict[str, str]) -> None:
-    command = [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", str(output)]
-    subprocess.run(command, cwd=_ROOT, env={**os.environ, **environment}, stdout=sys.stderr, check=True)
+def _build(kind: str, output: Path, environment: dict[str, str]) -> Path:
+    """Build a `wheel` or an `sdist` in a folder; the file."""
+    with tempfile.TemporaryDirectory(dir=output) as folder:
+        command = [sys.executable, "-m", "hatchling", "build", "-t", kind, "-d", folder]
+        subprocess.run(command, cwd=_ROOT, env={**os.environ, **environment}, stdout=sys.stderr, check=True)
+        (made,) = Path(folder).iterdir()
+        return made.rename(output / made.name)
 
 
 def _digest(path: Path) -> str:

@@ -15,11 +15,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tools.wheels.build import build_wheel
+from tools.wheels.environment import Environment
+from tools.wheels.faults import Unfit
 
 from carom.native.targets import this_target
 
@@ -43,37 +44,6 @@ _COPIED = (
     "mkdocs.yml",
 )
 _NOBODY = "nobody"
-
-
-class Unfit(Exception):
-    """The wheel is not as it has to be."""
-
-
-@dataclass(frozen=True)
-class Environment:
-    """A virtual environment with the wheel.
-
-    Attributes:
-        folder: The environment.
-    """
-
-    folder: Path
-
-    @property
-    def python(self) -> Path:
-        """Its Python."""
-        return self.folder / "bin" / "python"
-
-    def install(self, *what: str) -> None:
-        """Install packages."""
-        quiet = ("--quiet", "--disable-pip-version-check")
-        command = [sys.executable, "-m", "pip", "--python", str(self.python), *quiet, "install", *what]
-        subprocess.run(command, check=True)
-
-    def packages(self) -> Path:
-        """Where packages are installed."""
-        command = [self.python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]
-        return Path(subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip())
 
 
 def main() -> int:

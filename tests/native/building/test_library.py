@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tests.native.building.conftest import ROOT, SMALL_MODULE
-from tools.wheels.build import faults
+from tools.wheels.faults import faults
 from tools.wheels.structure import read_library
 
 from carom.native.building.cache import MANIFEST
