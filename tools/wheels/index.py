@@ -1,4 +1,4 @@
-"""A package index in a folder, of what `make wheels` has built, and what pip finds and installs from there."""
+"""An index in a folder, of what `make wheels` has built, and what pip finds and installs from there."""
 
 from __future__ import annotations
 
