@@ -90,10 +90,15 @@ def _extension_module() -> str | None:
 
 
 def _warn(message: str) -> None:
-    from warnings import warn
+    from warnings import warn_explicit
 
-    # The line that has imported Carom: above are `check` and `carom/__init__.py`.
-    warn(f"{message}\n{cure()}", RuntimeWarning, stacklevel=4)
+    # The line that imports Carom, or a package of the drop-in.
+    site = os.path.dirname(os.path.dirname(__file__))
+    ours = ("<frozen importlib", os.path.join(site, "carom"), os.path.join(site, "pybullet"))
+    frame = sys._getframe()
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(ours):
+        frame = frame.f_back
+    warn_explicit(f"{message}\n{cure()}", RuntimeWarning, frame.f_code.co_filename, frame.f_lineno)
 
 
 def _requirement() -> str:

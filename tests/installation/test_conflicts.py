@@ -111,9 +111,12 @@ def test_an_extension_module_that_is_loaded_is_a_warning(site):
     assert "/elsewhere/" in warning(run(f"{load}; {name}; import carom", site))
 
 
-def test_the_warning_names_the_line_that_imports_carom(site, tmp_path):
+@pytest.mark.parametrize(
+    "statement", ["import carom", "import pybullet", "import pybullet_utils.bullet_client"]
+)
+def test_the_warning_names_the_line_that_imports_carom(site, tmp_path, statement):
     (site / EXTENSION_MODULE).touch()
-    (tmp_path / "script.py").write_text("\n\nimport carom\n")
+    (tmp_path / "script.py").write_text(f"\n\n{statement}\n")
     assert "script.py:3: RuntimeWarning" in run("import script", site, tmp_path).stderr
 
 
