@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from tests.installation.site_packages import EXTENSION_MODULE, FOREIGN, SOURCE, carom_in, replace, run
 
+from carom import conflicts
 from carom.conflicts import SHARED
 
 IMPORTS = ["import pybullet", "import carom", "import pybullet_data, pybullet"]
@@ -65,16 +66,21 @@ def test_an_extension_module_beside_complete_packages_is_a_warning(site, stateme
 
 
 @pytest.mark.parametrize("statement", IMPORTS)
+def test_pybullet_data_without_its_code_is_an_error(site, statement):
+    replace(site, "pybullet_data", None)
+    assert "missing in pybullet_data." in complaint(run(statement, site))
+
+
 @pytest.mark.parametrize("package", SHARED)
-def test_a_package_without_its_code_is_an_error(site, package, statement):
+def test_a_package_without_its_code_is_an_error(site, package):
     replace(site, package, None)
-    assert f"missing in {package}." in complaint(run(statement, site))
+    assert f"missing in {package}." in complaint(run("import carom", site))
 
 
 @pytest.mark.parametrize("package", SHARED)
 def test_a_package_of_pybullet_is_an_error(site, package):
     replace(site, package, FOREIGN)
-    assert f"overwritten {package}." in complaint(run("import pybullet", site))
+    assert f"overwritten {package}." in complaint(run("import carom", site))
 
 
 def test_all_that_is_wrong_is_one_error(site):
@@ -132,6 +138,20 @@ def test_archives_have_no_files_to_look_at(tmp_path):
             file.write(path, f"carom/{path.name}")
         file.writestr("pybullet_data/py.typed", "")
     assert silent(run("import carom", archive))
+
+
+@pytest.mark.parametrize("name", ["conflicts.pyc", "compiled_into_the_program.py"])
+def test_programs_without_source_files_have_none_to_look_at(site, name, monkeypatch):
+    replace(site, "pybullet_data", None)
+    (site / "carom").unlink()
+    (site / "carom").mkdir()
+    for there in ("conflicts.py", "conflicts.pyc"):
+        (site / "carom" / there).touch()
+    monkeypatch.setattr(conflicts, "__file__", str(site / "carom" / "conflicts.py"))
+    with pytest.raises(ImportError, match="pybullet_data"):
+        conflicts.check()
+    monkeypatch.setattr(conflicts, "__file__", str(site / "carom" / name))
+    conflicts.check()
 
 
 @pytest.mark.parametrize(
