@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from carom.conflicts import check as _check_conflicts
 from carom.suggestions import install as _suggest_names
 from carom.version import __version__
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
     from carom.worlds.worlds import Worlds
 
+_check_conflicts()
 _suggest_names()
 
 __all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "Worlds", "__version__", "control"]

@@ -1,4 +1,4 @@
-"""PyBullet's reinforcement learning environments for Gymnasium: `gymnasium.make("AntBulletEnv-v0")`.
+"""Carom's version of PyBullet's environments for Gymnasium: `gymnasium.make("AntBulletEnv-v0")`.
 
 Importing this package registers them if Gymnasium is installed. Observations, actions, rewards and ends of
 episodes are PyBullet's; the interface is Gymnasium's, whose `step` returns five values. Robots and other

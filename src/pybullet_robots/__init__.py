@@ -1,1 +1,1 @@
-"""Example robots: classes that simulate an arm with objects to grasp, and scripts that show the robots."""
+"""Example robots of Carom: classes that simulate an arm with objects to grasp; scripts that show robots."""

@@ -1,1 +1,1 @@
-"""Helpers that scripts import from PyBullet's companion package."""
+"""Helpers that scripts import from PyBullet's companion package, in Carom."""

@@ -1,4 +1,4 @@
-"""The command line `python -m carom`: the commands info, view, record, convert, serve and warmup."""
+"""The command line `python -m carom`: info, view, record, convert, serve, stand-in and warmup."""
 
 from __future__ import annotations
 
@@ -109,6 +109,14 @@ def _parser() -> argparse.ArgumentParser:
     serve.add_argument("--gui-port", type=int, help="port to serve the page at")
     serve.set_defaults(command=_serve)
 
+    stand_in = commands.add_parser(
+        "stand-in", help="install an empty distribution named pybullet, for packages that require PyBullet"
+    )
+    stand_in.add_argument(
+        "--wheel", type=Path, metavar="FOLDER", help="only write its wheel there, for other environments"
+    )
+    stand_in.set_defaults(command=_stand_in)
+
     warmup = commands.add_parser("warmup", help="compile the physics kernels now, once for this machine")
     warmup.set_defaults(command=_warmup)
     return parser
@@ -181,6 +189,16 @@ def _serve(options: argparse.Namespace) -> None:
     stated = {"tcp": options.tcp, "udp": options.udp, "port": options.gui_port, "key-file": options.key_file}
     words = [f'--{name}="{value}"' for name, value in stated.items() if value is not None]
     serve(Service(options.key, options.gui, [f"--bind={options.bind}", *words]))
+
+
+def _stand_in(options: argparse.Namespace) -> None:
+    from carom.cli import stand_in
+
+    if options.wheel is not None:
+        print(f"Wrote {stand_in.write(options.wheel)}")
+    else:
+        stand_in.install()
+        print(f"Packages that require PyBullet now find pybullet {stand_in.VERSION}, which stands for Carom.")
 
 
 def _warmup(_options: argparse.Namespace) -> None:
