@@ -16,11 +16,9 @@ import sysconfig
 from collections.abc import Sequence
 from typing import Any
 
-from carom.logger import Logger
 from carom.native.library import library
 from carom.record import record
 
-_logger = Logger(__name__)
 MOST_PARAMETERS = 26
 MOST_GROUPS = 8
 
@@ -313,7 +311,6 @@ def quick_calls(vectorcall: int) -> QuickCalls | None:
         or hasattr(sys, "getobjects")
         or sysconfig.get_config_var("Py_GIL_DISABLED")
     ):
-        _logger.info("small calls take the way through Python in this build of it, and more time")
         return None
     symbols: ctypes.CDLL | None = library().symbols
     if symbols is None:

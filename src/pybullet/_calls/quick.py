@@ -11,6 +11,7 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from pybullet._calls.builtin import exports, vectorcall
+from pybullet._calls.errors import logger
 
 if TYPE_CHECKING:
     from carom.native.quick_calls import QuickCalls
@@ -80,7 +81,9 @@ def install() -> QuickCalls | None:
 
             calls = quick_calls(vectorcall)
             _Installed.tried = True
-            if calls is not None:
+            if calls is None:
+                logger.info("small calls take the way through Python here, and more time: see docs/install.md")
+            else:
                 calls.is_paused.value = _Installed.is_paused
                 _Installed.calls = calls
                 for name, description in _KERNELS.items():
