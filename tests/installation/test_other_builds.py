@@ -1,4 +1,4 @@
-"""Builds of CPython in which the native small calls are off: the way through Python does the same, and says so."""
+"""Builds of CPython without native small calls: the way through Python does the same, and a message says so."""
 
 from __future__ import annotations
 

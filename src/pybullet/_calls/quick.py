@@ -82,7 +82,7 @@ def install() -> QuickCalls | None:
             calls = quick_calls(vectorcall)
             _Installed.tried = True
             if calls is None:
-                logger.info("small calls take the way through Python here, and more time: see docs/install.md")
+                logger.info("small calls take the way through Python here, and more time; see docs/install")
             else:
                 calls.is_paused.value = _Installed.is_paused
                 _Installed.calls = calls
