@@ -1,4 +1,4 @@
-"""Builds of CPython without native small calls: the way through Python does the same, and a message says so."""
+"""Builds of CPython without native small calls: the way through Python does the same, and is announced."""
 
 from __future__ import annotations
 
