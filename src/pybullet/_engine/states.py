@@ -82,6 +82,9 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
             client.world.restore(state)
         except CaromError as problem:
             fail(_CANNOT_RESTORE, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
+        # As in PyBullet, getLinkState returns current poses after this call.
+        for body in client.world.bodies.values():
+            body.update_link_poses()
 
 
 @exported
@@ -168,4 +171,5 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
         client.report_analytics = bool(client.world.parameters.report_solver_analytics)
         for body in bodies:
             client.origins.pop(body.id, None)
+            body.update_link_poses()
         return tuple(body.id for body in bodies)
