@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -98,6 +98,31 @@ class ContactArrays:
             counts[KNOWN], counts[SORTED] = known, 0
 
         return remove
+
+    def parting(self, links: Sequence[int]) -> Callable[[], None]:
+        """Prepare to drop the contacts of links of a single world, which may collide with others now.
+
+        The next step finds them anew, after those of all other bodies, as in Bullet.
+
+        Args:
+            links: Rows of the links.
+
+        Returns:
+            A function that drops the contacts; it can be called again if it was interrupted.
+        """
+        rows = self.shapes.table.numpy
+        first, count = rows["link_first_shape"], rows["link_shape_count"]
+        shapes = [row for link in links for row in range(first[link], first[link] + count[link])]
+        kept = kept_rows(self.contacts, shapes)
+        trees = dict.fromkeys(int(rows["shape_tree"][shape]) for shape in shapes)
+
+        def drop() -> None:
+            write_rows(self.contacts, kept)
+            self.forget_order()
+            for tree in trees:
+                self.note_reset(tree, moved=True)
+
+        return drop
 
     def forget_order(self) -> None:
         """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""

@@ -146,6 +146,12 @@ def untie(world: World, constraint: UserConstraint) -> None:
     world.undo.at_once(remove)
 
 
+def part(world: World, links: Sequence[int]) -> None:
+    """Drop the contacts of links, by row: they may collide with others from now on."""
+    world.undo.settle()
+    world.undo.at_once(world.contact_arrays.parting(links))
+
+
 def free_base(world: World, body: Body, *, free: bool) -> None:
     """Free the base of a body, or fix it in the world."""
     with begin(world) as undo:
