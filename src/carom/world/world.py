@@ -52,6 +52,8 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
     Attributes:
         parameters: Parameters of the engine; call `apply_parameters` after a change.
         bodies: The bodies by their numbers, in the order they were added.
+        listing: The same in the order in which PyBullet counts them: the last one takes the place of one that
+            is removed.
         user_data: Texts attached to bodies.
         undo: Repairs the world after a change that was interrupted.
         quick: Addresses of its data for the fast paths in the native library.
@@ -64,6 +66,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: dict[int, Body] = {}
+        self.listing: dict[int, Body] = {}
         self._clock = c_double(0.0)
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
@@ -80,10 +83,16 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         self.user_constraints: UserConstraints = UserConstraints()
         self._take_arrays(arrays, ContactArrays(arrays))
         self.bodies.clear()
+        self.listing.clear()
         self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
         self.next_id: int = 0
         self.unspent_time = 0.0
+
+    def list_bodies(self, listing: dict[int, Body]) -> None:
+        """Set the order of `listing`, which stays the same object; can be repeated."""
+        self.listing.clear()
+        self.listing.update(listing)
 
     def _take_arrays(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         self.arrays: WorldArrays = arrays
