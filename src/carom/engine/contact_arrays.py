@@ -114,13 +114,16 @@ class ContactArrays:
         first, count = rows["link_first_shape"], rows["link_shape_count"]
         shapes = [row for link in links for row in range(first[link], first[link] + count[link])]
         kept = kept_rows(self.contacts, shapes)
-        trees = dict.fromkeys(int(rows["shape_tree"][shape]) for shape in shapes)
+        trees = [int(rows["shape_tree"][shape]) for shape in shapes]
+        counts = self.contacts.numpy["count_contacts"][0]
+        resets = min(int(counts[RESETS]) + 1, MOST_RESETS)
 
         def drop() -> None:
             write_rows(self.contacts, kept)
             self.forget_order()
-            for tree in trees:
-                self.note_reset(tree, moved=True)
+            # As if they had been moved, see `note_reset`.
+            counts[RESETS] = resets
+            self._arrays.state.numpy["tree_reset"][0, trees] = -resets
 
         return drop
 

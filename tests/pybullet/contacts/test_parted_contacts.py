@@ -95,3 +95,12 @@ def test_the_next_step_finds_them_again(name: str) -> None:
     CALLS[name][0]()
     p.stepSimulation()
     assert touching() == pytest.approx(FORCES, rel=2e-3)
+
+
+@pytest.mark.usefixtures("scene")
+def test_they_come_after_all_others() -> None:
+    """The order in which the contacts are solved; PyBullet lists them so."""
+    p.setCollisionFilterGroupMask(BALLS[2], -1, 1, -1)
+    p.setCollisionFilterGroupMask(BALLS[0], -1, 1, -1)
+    p.stepSimulation()
+    assert list(touching()) == [(4, -1), (2, -1), (4, 0), (3, -1), (1, -1)]
