@@ -286,9 +286,17 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
             restore_world(self, Path(state))
             return
         self.undo.settle()
+        put_back = return_to(self, self._layout, state)
+
+        def restore() -> None:
+            put_back()
+            # Saved poses may be those of the start of a substep; as in PyBullet they are current now.
+            for body in self.bodies.values():
+                body.update_link_poses()
+
         with self.undo:
             self.undo.note(self.scene_changed)
-            self.undo.at_once(return_to(self, self._layout, state))
+            self.undo.at_once(restore)
 
     def log(self, *names: str, every: int = 1) -> Log:
         """Record state arrays after each step, until the log is stopped.

@@ -82,9 +82,6 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
             client.world.restore(state)
         except CaromError as problem:
             fail(_CANNOT_RESTORE, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
-        # As in PyBullet, getLinkState returns current poses after this call.
-        for body in client.world.bodies.values():
-            body.update_link_poses()
 
 
 @exported
