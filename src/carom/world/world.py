@@ -268,11 +268,13 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         """
         return take(self, self._layout)
 
-    def restore(self, state: Snapshot | str | Path) -> None:
+    def restore(self, state: Snapshot | str | Path, *, update_poses: bool = False) -> None:
         """Restore a state. The steps that follow are then the same, bit for bit, as the first time.
 
         Args:
             state: The state, or a file of `save`, of which only the state is read.
+            update_poses: Compute `link_pose` from the coordinates; as saved, it is that of the start of the
+                last substep.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as it was.
@@ -283,15 +285,14 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         if not isinstance(state, Snapshot):
             from carom.world_files.world_file import restore_world
 
-            restore_world(self, Path(state))
+            restore_world(self, Path(state), update_poses=update_poses)
             return
         self.undo.settle()
         put_back = return_to(self, self._layout, state)
 
         def restore() -> None:
             put_back()
-            # Saved poses may be those of the start of a substep; as in PyBullet they are current now.
-            for body in self.bodies.values():
+            for body in self.bodies.values() if update_poses else ():
                 body.update_link_poses()
 
         with self.undo:

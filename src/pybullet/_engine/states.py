@@ -79,7 +79,8 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
         else:
             state = find_file(client, text(fileName, "fileName"), _CANNOT_RESTORE)
         try:
-            client.world.restore(state)
+            # As in PyBullet, getLinkState returns current poses after this call.
+            client.world.restore(state, update_poses=True)
         except CaromError as problem:
             fail(_CANNOT_RESTORE, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
 
