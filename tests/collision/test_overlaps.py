@@ -11,7 +11,7 @@ from tests.physics.contact_scenes import HALF, add_box, add_floor, earth
 
 from carom import World
 from carom.layouts.contacts import NEAR, OVERLAPS
-from carom.model.overlap_order import without_shapes
+from carom.model.overlap_order import without_overlaps
 
 Pair = tuple[int, int]
 UNTURNED = (0.0, 0.0, 0.0, 1.0)
@@ -149,20 +149,20 @@ def test_orders_are_those_of_a_pair_cache_however_boxes_come_and_go(seed: int):
         assert overlaps_of(world)[:, :2].tolist() == sorted(list(pair) for pair in overlapping)
 
 
-def test_overlaps_without_shapes_keep_their_order():
+def test_overlaps_that_remain_keep_their_order():
     overlaps = np.array(
         [[0, 1, 0, 3], [0, 2, 3, 1], [0, 3, 1, 0], [1, 2, 2, 2]],
         dtype=np.int32,
     )
     columns = overlaps[:, :2], overlaps[:, 2], overlaps[:, 3]
 
-    def left(first: int, count: int) -> list[list[int]]:
-        return np.column_stack(without_shapes(*columns, first, count)).tolist()
+    def left(*shapes: int) -> list[list[int]]:
+        return np.column_stack(without_overlaps(*columns, shapes)).tolist()
 
-    # Pair cache: 01 03 12 02; without 1: 02 03. Manifolds: 03 02 12 01; without 1: 03 02.
-    assert left(1, 1) == [[0, 1, 0, 1], [0, 2, 1, 0]]
-    assert left(4, 2) == overlaps.tolist()
-    assert left(0, 0) == overlaps.tolist()
+    # Pair cache: 01 03 12 02; without those of 1: 02 03. Manifolds: 03 02 12 01; without those of 1: 03 02.
+    assert left(1) == [[0, 2, 0, 1], [0, 3, 1, 0]]
+    assert left(4, 5) == overlaps.tolist()
+    assert left() == overlaps.tolist()
 
 
 def test_a_snapshot_keeps_the_order():

@@ -22,6 +22,7 @@ EVERYWHERE = {
     "test_contacts",
     "test_drops",
     "test_queries",
+    "test_removed_bodies",
     "test_saved_states",
     "test_scene_script",
     "test_shapes",

@@ -31,7 +31,6 @@ MEANT: dict[tuple[str, str, str], str] = {
     ("loadMJCF", "*", "body 6 link 2 shapes"): _GARBAGE,
     ("loadURDF", "flag 256", "later body 6 joint *"): "global velocities lose digits in PyBullet",
     ("getLinkState*", "*", "* bounds"): _BOUNDS,
-    ("restoreState", "*", "* bounds"): _BOUNDS,
     (
         "rayTest*",
         "keyword reportHitNumber",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any
 
 import numpy as np
 
+from carom.engine.lost_contacts import kept_rows, renumber, write_rows
 from carom.layouts.contacts import (
     CONTACT_COLUMNS,
     KNOWN,
@@ -21,14 +22,12 @@ from carom.layouts.contacts import (
     UserConstraints,
 )
 from carom.model.builder import TreeRows, WorldArrays
-from carom.model.overlap_order import without_shapes
 from carom.model.shape_arrays import ShapeArrays
 from carom.model.soft_arrays import SoftArrays
 from carom.native.tables import ArrayTable
 
 # Initial number of contacts in each of many worlds.
 _LEAST_CONTACTS = 4
-_OVERLAPS = ("overlap_shapes", "overlap_place", "overlap_manifold")
 
 
 class ContactArrays:
@@ -74,7 +73,7 @@ class ContactArrays:
         self.contacts.numpy["count_contacts"][:, :RESETS] = 0
 
     def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove a body's shapes from a single world, and all contacts; overlaps keep their order.
+        """Prepare to remove a body's shapes and contacts from a single world; all others keep theirs.
 
         Args:
             rows: Rows of its tree, which are still present.
@@ -82,24 +81,51 @@ class ContactArrays:
         Returns:
             A function that removes them; it can be called again if it was interrupted.
         """
-        numpy = self.contacts.numpy
-        counts = numpy["count_contacts"][0]
         first, count = self.shapes.shape_rows(rows)
-        pairs, places, manifolds = (numpy[name][0, : counts[OVERLAPS]] for name in _OVERLAPS)
-        overlaps = without_shapes(pairs, places, manifolds, first, count)
+        links = rows.first["link"], rows.count["link"]
+        counts = self.contacts.numpy["count_contacts"][0]
+        kept = kept_rows(self.contacts, range(first, first + count))
+        renumber(kept, (first, count), links)
+        # As if the body had been moved, see `forget_warm_start`.
+        kept["contact_warm_start"].fill(0.0)
         known = int(counts[KNOWN])
         known -= max(0, min(count, known - first))
         remove_shapes = self.shapes.removal(rows)
 
         def remove() -> None:
             remove_shapes()
-            self.forget_contacts()
-            left = len(overlaps[0])
-            for name, rows in zip(_OVERLAPS, overlaps, strict=True):
-                numpy[name][0, :left] = rows
-            counts[OVERLAPS], counts[KNOWN] = left, known
+            write_rows(self.contacts, kept)
+            counts[KNOWN], counts[SORTED] = known, 0
 
         return remove
+
+    def parting(self, links: Sequence[int]) -> Callable[[], None]:
+        """Prepare to drop the contacts of links of a single world, which may collide with others now.
+
+        The next step finds them anew, after those of all other bodies, as in Bullet.
+
+        Args:
+            links: Rows of the links.
+
+        Returns:
+            A function that drops the contacts; it can be called again if it was interrupted.
+        """
+        rows = self.shapes.table.numpy
+        first, count = rows["link_first_shape"], rows["link_shape_count"]
+        shapes = [row for link in links for row in range(first[link], first[link] + count[link])]
+        kept = kept_rows(self.contacts, shapes)
+        trees = [int(rows["shape_tree"][shape]) for shape in shapes]
+        counts = self.contacts.numpy["count_contacts"][0]
+        resets = min(int(counts[RESETS]) + 1, MOST_RESETS)
+
+        def drop() -> None:
+            write_rows(self.contacts, kept)
+            self.forget_order()
+            # As if they had been moved, see `note_reset`.
+            counts[RESETS] = resets
+            self._arrays.state.numpy["tree_reset"][0, trees] = -resets
+
+        return drop
 
     def forget_order(self) -> None:
         """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""

@@ -33,6 +33,7 @@ class ContactReport:
     report_direction1: Vectors3
     report_direction2: Vectors3
     report_count: Ints  # in the first entry: number of contacts
+    report_first: Ints  # by place among manifolds: row of the first contact, -1 for none
 
 
 @struct

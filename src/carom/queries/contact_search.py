@@ -51,14 +51,14 @@ class ContactSearch:
         self._view()
 
     def __call__(
-        self, count: int, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
+        self, count: int, overlaps: int, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """The contacts, among the first `count`, that match the query.
+        """The contacts, of which there are `count`, that match the query, in a world with so many overlaps.
 
         For the arguments see `report_contacts_kernel`.
         """
-        if count > self._search.room:
-            self._search.reserve(count)
+        if max(count, overlaps) > self._search.room:
+            self._search.reserve(max(count, overlaps))
             self._view()
         self._search(count, body_a, link_a, body_b, link_b, time_step)
         found = self._found[0]

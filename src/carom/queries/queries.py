@@ -17,7 +17,7 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.quick_scene import QuickScene
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
-from carom.layouts.contacts import IN_HIERARCHY, PLACED, READINESS, THERE
+from carom.layouts.contacts import IN_HIERARCHY, OVERLAPS, PLACED, READINESS, THERE
 from carom.model.bounds import Bounds, turned_box
 from carom.native.kernels import link_poses_kernel, place_shapes_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
@@ -190,8 +190,9 @@ class Queries:
         Returns:
             The contacts, to be read before the next query.
         """
-        count = self._contact_counts[THERE]
-        rigid = self._contacts(count, body_a, link_a, body_b, link_b, time_step) if count else NO_CONTACTS
+        count, overlaps = self._contact_counts[THERE], self._contact_counts[OVERLAPS]
+        asked = body_a, link_a, body_b, link_b, time_step
+        rigid = self._contacts(count, overlaps, *asked) if count else NO_CONTACTS
         if self._soft is None:
             return rigid
         soft = self._soft.contacts(body_a, link_a, body_b, link_b, time_step)

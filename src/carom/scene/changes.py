@@ -40,7 +40,7 @@ def note_additions(world: World, undo: Undo) -> None:
 
     def forget() -> None:
         while len(world.bodies) > count:
-            world.bodies.popitem()
+            world.listing.pop(world.bodies.popitem()[0], None)
         world.free_ids, world.next_id = free_ids, next_id
 
     undo.note(forget)
@@ -81,7 +81,7 @@ def append(world: World, spec: BodySpec, pose: Pose) -> Body:
         if spec.soft is not None:
             world.contact_arrays.soft.append(spec.soft, rows)
     world.free_ids, world.next_id = free_ids, max(world.next_id, body_id + 1)
-    world.bodies[body_id] = body
+    world.bodies[body_id] = world.listing[body_id] = body
     world.constraints.add_body(body)
     world.user_data.add_stated(body_id, spec)
     return body
@@ -92,6 +92,10 @@ def remove_body(world: World, body: Body) -> None:
     with begin(world) as undo:
         later = [other for other in world.bodies.values() if other.rows.tree > body.rows.tree]
         free_ids = [*world.free_ids, body.id]
+        *listed, last = world.listing
+        if last != body.id:
+            listed[listed.index(body.id)] = last
+        listing = {number: world.bodies[number] for number in listed}
         steps = (
             world.constraints.removal(body),
             world.user_constraints.removal(body),
@@ -108,6 +112,7 @@ def remove_body(world: World, body: Body) -> None:
             for other in later:
                 other.relocate()
             world.free_ids = free_ids
+            world.list_bodies(listing)
             world.scene_changed()
 
         undo.at_once(remove)
@@ -144,6 +149,12 @@ def untie(world: World, constraint: UserConstraint) -> None:
         world.constraints_changed()
 
     world.undo.at_once(remove)
+
+
+def part(world: World, links: Sequence[int]) -> None:
+    """Drop the contacts of links, by row: they may collide with others from now on."""
+    world.undo.settle()
+    world.undo.at_once(world.contact_arrays.parting(links))
 
 
 def free_base(world: World, body: Body, *, free: bool) -> None:

@@ -182,11 +182,13 @@ def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) ->
     world, dynamics = body.world, body.dynamics(link)
     moments = shape_inertia(body, link, mass) if inertia is None else inertia
     frees_or_fixes = link == BASE and (mass > 0.0) == body.fixed_base
+    part = world.contact_arrays.parting([body.first_link]) if frees_or_fixes else None
 
     def set_mass() -> None:
         dynamics.mass, dynamics.inertia = mass, moments
         _write(body, link)
-        if frees_or_fixes:
+        if part is not None:
+            part()
             change_base_freedom(world, body, free=mass > 0.0)
             world.contact_arrays.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
             world.scene_changed()

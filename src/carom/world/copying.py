@@ -23,6 +23,7 @@ def copy_world(world: World) -> World:
     memo.update((id(body.spec), body.spec) for body in world.bodies.values())
     other.parameters = deepcopy(world.parameters)
     other.bodies = {number: _copy_body(body, other, memo) for number, body in world.bodies.items()}
+    other.list_bodies({number: other.bodies[number] for number in world.listing})
     other._take_arrays(deepcopy(world.arrays, memo), deepcopy(world.contact_arrays, memo))
     other.constraints = deepcopy(world.constraints, memo)
     other.user_constraints = deepcopy(world.user_constraints, memo)

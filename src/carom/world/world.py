@@ -52,6 +52,8 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
     Attributes:
         parameters: Parameters of the engine; call `apply_parameters` after a change.
         bodies: The bodies by their numbers, in the order they were added.
+        listing: The same in the order in which PyBullet counts them: the last one takes the place of one that
+            is removed.
         user_data: Texts attached to bodies.
         undo: Repairs the world after a change that was interrupted.
         quick: Addresses of its data for the fast paths in the native library.
@@ -64,6 +66,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: dict[int, Body] = {}
+        self.listing: dict[int, Body] = {}
         self._clock = c_double(0.0)
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
@@ -80,10 +83,16 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         self.user_constraints: UserConstraints = UserConstraints()
         self._take_arrays(arrays, ContactArrays(arrays))
         self.bodies.clear()
+        self.listing.clear()
         self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
         self.next_id: int = 0
         self.unspent_time = 0.0
+
+    def list_bodies(self, listing: dict[int, Body]) -> None:
+        """Set the order of `listing`, which stays the same object; can be repeated."""
+        self.listing.clear()
+        self.listing.update(listing)
 
     def _take_arrays(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         self.arrays: WorldArrays = arrays
@@ -259,11 +268,13 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         """
         return take(self, self._layout)
 
-    def restore(self, state: Snapshot | str | Path) -> None:
+    def restore(self, state: Snapshot | str | Path, *, update_poses: bool = False) -> None:
         """Restore a state. The steps that follow are then the same, bit for bit, as the first time.
 
         Args:
             state: The state, or a file of `save`, of which only the state is read.
+            update_poses: Compute `link_pose` from the coordinates; as saved, it is that of the start of the
+                last substep.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as it was.
@@ -274,12 +285,19 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         if not isinstance(state, Snapshot):
             from carom.world_files.world_file import restore_world
 
-            restore_world(self, Path(state))
+            restore_world(self, Path(state), update_poses=update_poses)
             return
         self.undo.settle()
+        put_back = return_to(self, self._layout, state)
+
+        def restore() -> None:
+            put_back()
+            for body in self.bodies.values() if update_poses else ():
+                body.update_link_poses()
+
         with self.undo:
             self.undo.note(self.scene_changed)
-            self.undo.at_once(return_to(self, self._layout, state))
+            self.undo.at_once(restore)
 
     def log(self, *names: str, every: int = 1) -> Log:
         """Record state arrays after each step, until the log is stopped.

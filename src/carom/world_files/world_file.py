@@ -212,7 +212,7 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
         return bodies
 
 
-def restore_world(world: World, path: Path) -> None:
+def restore_world(world: World, path: Path, *, update_poses: bool = False) -> None:
     """Restore the state in a file, as `World.restore` does.
 
     Raises:
@@ -224,7 +224,7 @@ def restore_world(world: World, path: Path) -> None:
         snapshot = read_state(reader, document.get("state"))
         check_same(snapshot.layout, layout(world))
         check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
-        world.restore(snapshot)
+        world.restore(snapshot, update_poses=update_poses)
 
 
 @contextmanager

@@ -49,7 +49,7 @@ def getNumBodies(physicsClientId: int = 0) -> int:
 
 @exported
 def getBodyUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
-    """The id of the n-th body.
+    """The id of the n-th body; the last one takes the place of one that is removed.
 
     Args:
         serialIndex: From 0 to `getNumBodies() - 1`.
@@ -65,7 +65,7 @@ def getBodyUniqueId(serialIndex: int, physicsClientId: int = 0) -> int:
         >>> [p.getBodyUniqueId(serial) for serial in range(p.getNumBodies())]
         [0, 1, 2]
     """
-    bodies = client_of(physicsClientId).world.bodies
+    bodies = client_of(physicsClientId).world.listing
     position = integer(serialIndex, "serialIndex")
     return list(bodies)[position] if 0 <= position < len(bodies) else -1
 

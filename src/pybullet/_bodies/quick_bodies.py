@@ -43,7 +43,7 @@ class QuickBodies:
         # The objects that the addresses in each record point to, by body id.
         self._shown: dict[int, Any] = {}
         lock = client.lock
-        self._kept = (client.world.quick, lock.acquire, lock.release, (False,), client.world.bodies)
+        self._kept = (client.world.quick, lock.acquire, lock.release, (False,), client.world.listing)
         self._record = Client(
             scene=client.world.quick.address,
             bodies=addressof(self._places),
@@ -54,7 +54,7 @@ class QuickBodies:
             connection=id(client),
             time_step_name=id(_TIME_STEP),
             reports_analytics=client.report_analytics,
-            world_bodies=id(client.world.bodies),
+            world_bodies=id(client.world.listing),
             joint_count_name=id(_JOINT_COUNT),
             encoded_names_name=id(_NAMES),
         )

@@ -54,6 +54,7 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
 
     from carom.layouts.flags import LoadFlags
     from carom.model.scaled_shapes import scaled_collisions
+    from carom.scene.changes import part
     from carom.scene.link_dynamics import LinkDynamics
 
     shapes = client.world.contact_arrays.shapes
@@ -71,3 +72,6 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
         body.dynamics(BASE).collision_margin = LinkDynamics.of(base).collision_margin
         body.derived.clear()
         client.bodies.forget(body.id)
+        # As in PyBullet the base has no contacts until the next step, and getLinkState returns current poses.
+        part(client.world, [body.first_link])
+        body.update_link_poses()

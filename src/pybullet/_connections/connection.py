@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+from functools import partial
 from operator import index
 from typing import Any, overload
 
@@ -317,7 +318,9 @@ def setTimeOut(timeOutInSeconds: float, physicsClientId: int = 0) -> None:
 
 @exported
 def syncBodyInfo(physicsClientId: int = 0) -> None:
-    """Updates the list of bodies from the server. Has no effect here: every client always sees all bodies.
+    """Updates the list of bodies from the server: `getBodyUniqueId` lists them by their ids then.
+
+    Here every client always sees all bodies.
 
     Args:
         physicsClientId: The connection.
@@ -328,7 +331,11 @@ def syncBodyInfo(physicsClientId: int = 0) -> None:
     Examples:
         >>> p.syncBodyInfo()
     """
-    client_of(physicsClientId)
+    client = client_of(physicsClientId)
+    with client.lock:
+        world = client.world
+        world.undo.settle()
+        world.undo.at_once(partial(world.list_bodies, dict(sorted(world.bodies.items()))))
 
 
 def _target(arguments: tuple[int | str, ...], keywords: dict[str, int | str]) -> Target:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.scene.changes import part
 from pybullet._calls.arguments import integer
 from pybullet._calls.builtin import exported
 from pybullet._clients.clients import Client, client_of
@@ -23,7 +24,8 @@ def setCollisionFilterPair(
 ) -> None:
     """Enables or disables collisions of two links, overriding their groups and masks.
 
-    A body or link that does not exist is no error. Removing one of the bodies removes the rule.
+    Both bodies lose their contacts until the next step. A body or link that does not exist is no error.
+    Removing one of the bodies removes the rule.
 
     Args:
         bodyUniqueIdA: A body.
@@ -47,10 +49,12 @@ def setCollisionFilterPair(
     enabled = integer(enableCollision, "enableCollision") != 0
     row_a = _row(client, bodyUniqueIdA, linkIndexA, "setCollisionFilterPair")
     row_b = _row(client, bodyUniqueIdB, linkIndexB, "setCollisionFilterPair")
-    if row_a is None or row_b is None:
-        return
     with client.lock:
-        client.world.contact_arrays.shapes.filters.set(row_a, row_b, enabled=enabled)
+        if row_a is not None and row_b is not None:
+            client.world.contact_arrays.shapes.filters.set(row_a, row_b, enabled=enabled)
+        for body in dict.fromkeys((client.body(bodyUniqueIdA), client.body(bodyUniqueIdB))):
+            if body is not None:
+                part(client.world, range(body.first_link, body.first_link + 1 + body.joint_count))
         client.world.scene_changed()
 
 
@@ -63,6 +67,8 @@ def setCollisionFilterGroupMask(
     physicsClientId: int = 0,
 ) -> None:
     """Sets the groups a link is in and the groups it collides with, as bits.
+
+    The link loses its contacts until the next step.
 
     Two links collide if each is in a group of the other's mask; see `collisionFilterMode` of
     `setPhysicsEngineParameter`. By default moving links have group 1 and mask -1, a fixed base group 2 and a
@@ -89,6 +95,7 @@ def setCollisionFilterGroupMask(
         return
     with client.lock:
         client.world.contact_arrays.shapes.set_group_and_mask(row, group, mask)
+        part(client.world, [row])
         client.world.scene_changed()
 
 

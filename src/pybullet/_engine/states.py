@@ -79,7 +79,8 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
         else:
             state = find_file(client, text(fileName, "fileName"), _CANNOT_RESTORE)
         try:
-            client.world.restore(state)
+            # As in PyBullet, getLinkState returns current poses after this call.
+            client.world.restore(state, update_poses=True)
         except CaromError as problem:
             fail(_CANNOT_RESTORE, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
 
@@ -168,4 +169,5 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
         client.report_analytics = bool(client.world.parameters.report_solver_analytics)
         for body in bodies:
             client.origins.pop(body.id, None)
+            body.update_link_poses()
         return tuple(body.id for body in bodies)

@@ -87,7 +87,17 @@ class JointAccess:
         return ((), (), self._reaction(), ())
 
     def reset(self, position: float, velocity: float) -> None:
-        """Set the state of a joint with one degree of freedom, without physics; ignore other joints."""
+        """Set the state of a joint with one degree of freedom, without physics.
+
+        Other joints stay as they are; as in PyBullet, getLinkState returns current poses afterwards.
+        """
+        with self.client.lock:
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Bring the body up to date as any reset does, also if it changes nothing."""
+        self.body.note_reset(moved=False)
+        self.body.update_link_poses()
 
     def _reaction(self) -> Wrench:
         return _read_wrench(self.reactions, self.reaction_at) if self.has_sensor else NO_WRENCH

@@ -359,6 +359,7 @@ def _check_turn(joint: JointAccess, position: tuple[float, ...]) -> None:
 def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[float, ...]) -> None:
     body, index = joint.body, joint.index
     if not position or len(position) != body.position_count[index]:
+        joint.refresh()
         return
     freedoms = body.velocity_count[index]
     before = body.coordinates()

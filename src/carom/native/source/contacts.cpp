@@ -24,7 +24,11 @@ Contact contact_at(const ContactReport& report, int32_t i) {
 extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const Call* call) {
     const ContactReport& report = call->client->scene->report;
     double seconds;
-    if (!report.function || *report.there > report.room || *report.there > MOST_CONTACTS)
+    // Columns of `contact_count`: the numbers of contacts and of overlaps.
+    enum { OVERLAPS = 1 };
+    if (!report.function || *report.there > MOST_CONTACTS)
+        return nullptr;
+    if (*report.there > report.room || report.there[OVERLAPS] > report.room)
         return nullptr;
     if (!*report.there)
         return python.PyTuple_New(0);

@@ -1,0 +1,56 @@
+"""Contacts and overlaps that shapes lose between steps, because they are removed or may meet others now.
+
+As in Bullet, all other contacts stay, with their impulses, and overlaps keep their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from carom.layouts.contacts import OVERLAPS, THERE
+from carom.model.overlap_order import without_overlaps
+from carom.native.tables import ArrayTable
+
+_OVERLAPS = ("overlap_shapes", "overlap_place", "overlap_manifold")
+
+Rows = dict[str, np.ndarray]
+"""Fields of contacts and of overlaps of a world, with all rows there are."""
+
+
+def kept_rows(contacts: ArrayTable, lost: Sequence[int]) -> Rows:
+    """The contacts and overlaps of a single world, except those of some shapes, by row."""
+    numpy = contacts.numpy
+    counts = numpy["count_contacts"][0]
+    there = int(counts[THERE])
+    shapes = numpy["contact_shapes"][0, :there, :2]
+    stays = np.ones(there, dtype=bool)
+    for shape in lost:
+        stays &= (shapes != shape).all(axis=1)
+    fields = {name: rows[0] for name, rows in numpy.items() if name.startswith("contact_")}
+    # Most bodies touch nothing: then only row numbers can change.
+    changed = ("contact_shapes", "contact_warm_start") if stays.all() else fields
+    rows = {name: fields[name][:there][stays] for name in changed}
+    pairs, places, manifolds = (numpy[name][0, : counts[OVERLAPS]] for name in _OVERLAPS)
+    rows.update(zip(_OVERLAPS, without_overlaps(pairs, places, manifolds, lost), strict=True))
+    return rows
+
+
+def renumber(rows: Rows, shapes: tuple[int, int], links: tuple[int, int]) -> None:
+    """Renumber rows for the removal of some shapes and links; of each the first row and their number."""
+    for numbers, (first, count) in (
+        (rows["overlap_shapes"], shapes),
+        (rows["contact_shapes"][:, :2], shapes),
+        (rows["contact_shapes"][:, 2:], links),
+    ):
+        numbers -= count * (numbers >= first + count)
+
+
+def write_rows(contacts: ArrayTable, rows: Rows) -> None:
+    """Write these contacts and overlaps; can be repeated if it was interrupted."""
+    numpy = contacts.numpy
+    for name, kept in rows.items():
+        numpy[name][0, : len(kept)] = kept
+    counts = numpy["count_contacts"][0]
+    counts[THERE], counts[OVERLAPS] = len(rows["contact_shapes"]), len(rows["overlap_shapes"])
