@@ -9,7 +9,7 @@ returns the fraction, which is `MISS` if there is no hit, and the outward normal
 
 import warp as wp
 
-from carom.kernels.types import Int32, Vector3, Vectors4, func, real, shared_func
+from carom.kernels.types import Vector3, func, real
 from carom.layouts.contacts import MARGIN
 
 MISS = real(2.0)
@@ -139,54 +139,6 @@ def ray_capsule(start: Vector3, way: Vector3, radius: real, half_length: real):
                 normal = outward
     else:
         fraction, normal = ray_from_margin(nearest, way)
-    return fraction, normal
-
-
-@func
-def nearest_face(face_plane: Vectors4, first_face: Int32, face_count: Int32, place: Vector3) -> Vector3:
-    """Outward normal of the face of a hull that is nearest to a point inside the hull."""
-    highest = real(-1.0e30)
-    nearest = Vector3(0.0, 0.0, 0.0)
-    for face in range(first_face, first_face + face_count):
-        plane = face_plane[face]
-        outward = Vector3(plane[0], plane[1], plane[2])
-        height = wp.dot(outward, place) - plane[3]
-        if height > highest:
-            highest = height
-            nearest = outward
-    return nearest
-
-
-@shared_func
-def ray_hull(
-    start: Vector3, way: Vector3, face_plane: Vectors4, first_face: Int32, face_count: Int32, margin: real
-):
-    """Ray against a convex polyhedron whose faces are moved outwards by `margin`."""
-    enter = real(-1.0)
-    leave = real(1.0)
-    normal = Vector3(0.0, 0.0, 0.0)
-    highest = real(-1.0e30)
-    for face in range(first_face, first_face + face_count):
-        plane = face_plane[face]
-        outward = Vector3(plane[0], plane[1], plane[2])
-        height = wp.dot(outward, start) - plane[3] - margin
-        slope = wp.dot(outward, way)
-        highest = wp.max(highest, height)
-        if slope < 0.0:
-            at = -height / slope
-            if at > enter:
-                enter = at
-                normal = outward
-        elif slope > 0.0:
-            leave = wp.min(leave, -height / slope)
-        elif height > 0.0:
-            leave = real(-2.0)
-    fraction = real(MISS)
-    if highest <= 0.0:
-        if highest >= -margin:
-            fraction, normal = ray_from_margin(nearest_face(face_plane, first_face, face_count, start), way)
-    elif enter >= 0.0 and enter <= leave:
-        fraction = enter
     return fraction, normal
 
 

@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import place_shapes
 from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
+from carom.kernels.queries.ray_hulls import ray_hull
 from carom.kernels.queries.ray_packets import (
     LANES,
     NOWHERE,
@@ -22,7 +23,6 @@ from carom.kernels.queries.ray_solids import (
     ray_box,
     ray_capsule,
     ray_cylinder,
-    ray_hull,
     ray_plane,
 )
 from carom.kernels.queries.ray_surfaces import comes_after, ray_field, ray_mesh
