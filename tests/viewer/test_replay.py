@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from tests.profiles import cases
 from tests.viewer.browser import Page, needs_browser
 from tests.viewer.firefox import firefox, needs_firefox
 from tests.viewer.scripts import ROOT
@@ -148,7 +149,7 @@ def test_bodies_and_drawings_come_and_go_in_a_replay(tmp_path: Path, browser):
     page.page.close()
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=cases(30))
 @given(st.lists(st.tuples(st.integers(0, 2), st.integers(0, 3), st.floats(width=32)), max_size=40))
 def test_recordings_come_back_as_they_were(frames: list[tuple[int, int, float]]):
     recording, told = Recording(), []
