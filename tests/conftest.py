@@ -4,7 +4,7 @@ import os
 
 import pytest
 from hypothesis import settings
-from tests.profiles import DEFAULT_CASES, FACTORS, PROFILE
+from tests.thorough.profiles import DEFAULT_CASES, FACTORS, PROFILE
 
 # A busy machine is no reason to fail; and a run that decides about a change has to be repeatable. The long
 # profile tries other cases each time, unless `--hypothesis-seed` says which.

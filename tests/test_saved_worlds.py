@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 import pybullet_data
 from carom import World

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.collision.scene import Scene, box, plane, sphere
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.layouts.flags import LoadFlags
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK

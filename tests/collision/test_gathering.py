@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, plane
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.layouts.contacts import HOLDING
 from carom.layouts.status import CONTACTS_WANTED

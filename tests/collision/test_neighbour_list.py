@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.collision.scene import Scene, box, plane, sphere
 from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.layouts.contacts import KNOWN, LIST_AGE, LIST_IS_WIDE, LISTED, NEAR, PAIRS
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, box, capsule, cylinder, height_field, hull, plane, sphere, triangles
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 RNG = np.random.default_rng(11)
 POINTS = RNG.normal(size=(20, 3)) * 0.3

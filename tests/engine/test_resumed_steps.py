@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data

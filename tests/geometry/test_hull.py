@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial import ConvexHull as Reference
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.geometry.hull import LARGEST, SMALLEST, THICKEST_SLAB, convex_hull, extreme_points
 from carom.geometry.polyhedron import Polyhedron

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.description import Heightfield
 from carom.geometry.heightfield import heightfield_surface

@@ -17,7 +17,7 @@ from tests.physics.one_joint import (
     joint_state,
     place,
 )
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom import Body
 from carom.description import JointType

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.patience import PATIENCE, until
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.remote import handshake, listener
 from carom.remote.connection import Connection

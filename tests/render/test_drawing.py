@@ -7,7 +7,7 @@ import pytest
 from drawing import FAR, NEAR, add_collision_only, add_shape, draw, first_hit, rays
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 from carom.description import Box, Cylinder, Material, Plane, Sphere, TriangleMesh
 from carom.description.transform import rotation_matrix

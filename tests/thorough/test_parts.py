@@ -76,7 +76,7 @@ def test_what_is_thorough_runs_only_when_asked_for(tmp_path: Path):
 
 
 def test_profiles(tmp_path: Path):
-    code = "from tests.profiles import cases; print(cases(10))"
+    code = "from tests.thorough.profiles import cases; print(cases(10))"
     for profile, count in (("short", "10"), ("thorough", "200"), ("other", "choose from short, thorough")):
         done = subprocess.run(
             [sys.executable, "-c", code],

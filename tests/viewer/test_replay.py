@@ -9,13 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 from tests.viewer.browser import Page, needs_browser
 from tests.viewer.firefox import firefox, needs_firefox
 from tests.viewer.scripts import ROOT
 
 import pybullet_data
 from carom import World
+from carom.native.building.cache import cache_folder
 from carom.viewer.replay.page import replay_page
 from carom.viewer.replay.recording import Recording, unpacked
 
@@ -179,7 +180,13 @@ def test_a_script_is_recorded_by_the_command_line(tmp_path: Path):
     )
     file = tmp_path / "fall.html"
     command = [sys.executable, "-m", "carom", "record", "--seconds", "2", script, file, "--fast"]
-    environment = {"PYTHONPATH": str(ROOT / "src"), "PATH": "", "HOME": str(tmp_path.parent)}
+    # In another home there would be no library yet.
+    environment = {
+        "PYTHONPATH": str(ROOT / "src"),
+        "PATH": "",
+        "HOME": str(tmp_path.parent),
+        "CAROM_CACHE_PATH": str(cache_folder()),
+    }
     done = subprocess.run([*map(str, command)], capture_output=True, text=True, env=environment, check=False)
     assert done.returncode == 0, done.stderr
     assert "['--fast']" in done.stdout

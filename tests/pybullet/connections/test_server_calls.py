@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 import pybullet as p
 from carom.remote.connection import Connection

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.patience import until
-from tests.profiles import cases
+from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data
