@@ -4,6 +4,8 @@
 #   make test         the test suite
 #   make quick        lint and the tests that matter most, in under a minute on two cores
 #   make check        lint, types and tests
+#   make thorough     what takes hours: more random cases, fuzzing, long work, GPU kernels, mutations; each call
+#                     continues where the last one stopped; MINUTES=20 limits it, PARTS=fuzz,soak chooses
 #   make mutate       break the code on purpose, change by change, and see that tests notice; takes an hour or more
 #   make docs         the documentation, in site/
 #   make figures      the plots of the tutorials and the pictures of the viewer, by running them; needs Chromium
@@ -46,7 +48,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) tools/patiently.py installing $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check thorough mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -145,6 +147,11 @@ quick: lint
 lint: $(VENV)/dev
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
+
+# What is done is noted in build/thorough; parts and their pieces are in tools/thorough/parts.py.
+thorough: $(VENV)/dev
+	$(RUN) -m carom warmup
+	$(RUN) -m tools.thorough.run $(if $(MINUTES),--minutes $(MINUTES)) $(if $(PARTS),--parts $(PARTS))
 
 # MUTATE=rays.py for those with that in their files or texts.
 mutate: $(VENV)/dev

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 from carom import Camera, World
 from carom.description import Box, JointType, Plane, Pose, Sphere, Visual
@@ -37,7 +38,7 @@ def arm_in(world: World, name="arm") -> Body:
 COORDINATES = st.floats(-0.8, 0.8)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25), deadline=None)
 @given(st.tuples(COORDINATES, COORDINATES, COORDINATES), st.tuples(COORDINATES, COORDINATES))
 def test_a_point_appears_where_the_intrinsics_say(point, centre):
     world = World()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 import pybullet_data
 from carom import World
@@ -314,7 +315,7 @@ RUBBISH = st.sampled_from(
 )
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=cases(150), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_a_document_with_one_thing_wrong_loads_or_is_refused(data: st.DataObject, tmp_path: Path) -> None:
     """Even where the checksum is right: nothing but `DescriptionError`, and nothing half loaded."""

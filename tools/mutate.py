@@ -23,6 +23,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Queue
+from random import Random
 
 from carom.native.building.cache import alone, cache_folder
 
@@ -215,12 +216,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("only", nargs="*", help="parts of names of files or of changes; all if left out")
     parser.add_argument("--copies", type=int, default=2, help="how many mutants at a time (%(default)s)")
+    parser.add_argument("--sample", type=int, help="only so many of them, chosen at random")
+    parser.add_argument("--seed", type=int, default=0, help="decides about the sample (%(default)s)")
     options = parser.parse_args(arguments)
     chosen = [
         mutation
         for mutation in read_mutations()
         if not options.only or any(part in str(mutation) for part in options.only)
     ]
+    if options.sample is not None:
+        chosen = Random(options.seed).sample(chosen, min(options.sample, len(chosen)))
     if not chosen:
         parser.error("there is no such mutation")
     outcomes = try_all(chosen, max(1, options.copies))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.collision.scene import Scene, box, plane, sphere
+from tests.thorough.profiles import cases
 
 from carom.layouts.flags import LoadFlags
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
@@ -22,7 +23,7 @@ def brute_force_pairs(scene: Scene, count: int, max_distance: float) -> list[tup
     ]
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25), deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(1, 120),
@@ -40,7 +41,7 @@ def test_pairs_are_those_whose_bounds_meet(seed, count, spread, sizes, flat):
     assert scene.pairs == brute_force_pairs(scene, count, 0.1)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25), deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(3, 60))
 def test_pairs_do_not_depend_on_those_of_the_step_before(seed, count):
     rng = np.random.default_rng(seed)

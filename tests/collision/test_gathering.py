@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, Shape, box, capsule, cylinder, hull, plane
+from tests.thorough.profiles import cases
 
 from carom.layouts.contacts import HOLDING
 from carom.layouts.status import CONTACTS_WANTED
@@ -120,7 +121,7 @@ steps = st.tuples(
 
 @pytest.mark.parametrize("ground", GROUNDS)
 @pytest.mark.parametrize("roller", ROLLERS)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=cases(15), deadline=None)
 @given(motion=st.lists(steps, min_size=3, max_size=12))
 def test_points_gather_by_the_rules(roller: str, ground: str, motion) -> None:
     """A roller that rolls, slips, tilts and hops by random little steps."""

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.collision.scene import Scene, box, plane, sphere
 from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth
+from tests.thorough.profiles import cases
 
 from carom.layouts.contacts import KNOWN, LIST_AGE, LIST_IS_WIDE, LISTED, NEAR, PAIRS
 
@@ -36,7 +37,7 @@ def moving_scene(count: int, seed: int) -> tuple[Scene, np.ndarray]:
     return Scene([plane(), *shapes], pair_room=count * count + count, contact_room=4000), places
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40), deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     count=st.integers(2, 60),

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from tests.collision.scene import Scene, box, capsule, cylinder, height_field, hull, plane, sphere, triangles
+from tests.thorough.profiles import cases
 
 RNG = np.random.default_rng(11)
 POINTS = RNG.normal(size=(20, 3)) * 0.3
@@ -73,7 +74,7 @@ def scene_of(first, second, pose_a, pose_b) -> Scene:
 
 
 @pytest.mark.parametrize(("first", "second"), PAIRS)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=cases(8), deadline=None)
 @given(pose_a=poses, pose_b=poses, motion=poses)
 def test_nearest_points(first, second, pose_a, pose_b, motion):
     """They do not depend on the order or on where the world's origin is, and fit their own distance."""
@@ -94,7 +95,7 @@ def test_nearest_points(first, second, pose_a, pose_b, motion):
 
 
 @pytest.mark.parametrize(("first", "second"), PAIRS)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=cases(8), deadline=None)
 @given(pose_a=poses, pose_b=poses, step=vectors)
 def test_distance_changes_no_faster_than_a_shape_moves(first, second, pose_a, pose_b, step):
     scene = scene_of(first, second, pose_a, pose_b)

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data
@@ -87,7 +88,7 @@ def bits(world: World) -> dict[str, bytes]:
 
 
 @given(st.lists(change, min_size=10, max_size=40))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60), deadline=None)
 def test_same_bits_as_steps_prepared_anew(changes: list[tuple[Any, ...]]) -> None:
     check_bits(changes, [scene(client) for client in (0, 1)])
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import example, given, settings
 from load_cases import DATA
 from test_urdf_fuzz import MUTATIONS, PATIENT, mutated
+from tests.thorough.profiles import cases
 
 from carom.errors import DescriptionError
 from carom.formats.visuals.mtl import read_materials
@@ -36,7 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", FILES)
-@settings(max_examples=150, **PATIENT)
+@settings(max_examples=cases(60), **PATIENT)
 @given(MUTATIONS)
 def test_damaged_meshes_can_be_drawn_or_are_refused(
     folder: Path, name: str, mutations: list[tuple[str, float, float, bytes]]
@@ -54,7 +55,7 @@ def test_damaged_meshes_can_be_drawn_or_are_refused(
     assert not mesh.triangles.size or 0 <= mesh.triangles.min() <= mesh.triangles.max() < len(mesh.positions)
 
 
-@settings(max_examples=300, **PATIENT)
+@settings(max_examples=cases(120), **PATIENT)
 @given(MUTATIONS)
 @example([("replace", MATERIALS.index(b"1 0 0") / len(MATERIALS), 1e-3, b"nan")])
 def test_damaged_materials_have_colours(

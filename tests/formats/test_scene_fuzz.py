@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from scene_cases import DATA
 from test_urdf_fuzz import MUTATIONS, PATIENT, mutated, numbers
+from tests.thorough.profiles import cases
 
 from carom.errors import DescriptionError
 from carom.formats.mjcf import read_mjcf
@@ -28,7 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)
-@settings(max_examples=150, **PATIENT)
+@settings(max_examples=cases(60), **PATIENT)
 @given(MUTATIONS)
 def test_damaged_scenes_load_or_are_refused(
     folder: Path, file: Path, mutations: list[tuple[str, float, float, bytes]]

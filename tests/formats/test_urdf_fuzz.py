@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from load_cases import DATA
+from tests.thorough.profiles import cases
 
 from carom.errors import DescriptionError
 from carom.formats.mesh.collada import read_collada
@@ -122,7 +123,7 @@ def numbers(body: BodySpec) -> Iterator[float]:
 
 
 @pytest.mark.parametrize("part", range(4))
-@settings(max_examples=550, **PATIENT)
+@settings(max_examples=cases(200), **PATIENT)
 @given(st.integers(0, len(ROBOTS) - 1), MUTATIONS, FLAGS, st.booleans())
 def test_damaged_robots_load_or_are_refused(
     part: int,
@@ -147,7 +148,7 @@ def test_damaged_robots_load_or_are_refused(
 @pytest.mark.parametrize(
     ("name", "reader"), [("two_boxes.obj", read_obj), ("wedge.stl", read_stl), ("wedge.dae", read_collada)]
 )
-@settings(max_examples=150, **PATIENT)
+@settings(max_examples=cases(60), **PATIENT)
 @given(mutations=MUTATIONS)
 def test_damaged_meshes_are_read_or_refused(name: str, reader, mutations) -> None:  # type: ignore[no-untyped-def]
     file = DATA / "meshes" / name

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.fuzz.files import SEEDS
+from tests.thorough.profiles import cases
 
 ROOT = Path(__file__).parents[2]
 
@@ -20,9 +21,9 @@ def run(*arguments: str) -> None:
 
 @pytest.mark.parametrize("seed", range(3))
 def test_random_calls(seed: int) -> None:
-    run("tests.fuzz.api", "--operations", "1500", "--seed", str(seed))
+    run("tests.fuzz.api", "--operations", str(cases(1000)), "--seed", str(seed))
 
 
 @pytest.mark.parametrize("kind", SEEDS)
 def test_damaged_files(kind: str) -> None:
-    run("tests.fuzz.files", "--cases", "150", "--kinds", kind)
+    run("tests.fuzz.files", "--cases", str(cases(60)), "--kinds", kind)

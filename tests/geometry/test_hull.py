@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial import ConvexHull as Reference
+from tests.thorough.profiles import cases
 
 from carom.geometry.hull import LARGEST, SMALLEST, THICKEST_SLAB, convex_hull, extreme_points
 from carom.geometry.polyhedron import Polyhedron
@@ -58,7 +59,7 @@ lattices = hnp.arrays(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(150), deadline=None)
 @given(st.one_of(clouds, lattices))
 def test_any_points_have_a_closed_hull_around_them(points: np.ndarray) -> None:
     solid = convex_hull(points)
@@ -66,7 +67,7 @@ def test_any_points_have_a_closed_hull_around_them(points: np.ndarray) -> None:
     assert_is_closed_convex(solid, points, 2e-5 * size)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(st.integers(0, 10_000), st.integers(5, 200))
 def test_hulls_have_the_corners_and_the_volume_scipy_finds(seed: int, count: int) -> None:
     points = np.random.default_rng(seed).normal(size=(count, 3))
@@ -81,7 +82,7 @@ def test_hulls_have_the_corners_and_the_volume_scipy_finds(seed: int, count: int
     assert len(theirs - ours) <= 1
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60), deadline=None)
 @given(lattices)
 def test_lattices_have_the_volume_scipy_finds(points: np.ndarray) -> None:
     if np.linalg.matrix_rank(points - points[0]) < 3:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 from carom.description import Heightfield
 from carom.geometry.heightfield import heightfield_surface
@@ -25,7 +26,7 @@ def test_equal_vertices_become_one_and_triangles_without_area_vanish() -> None:
     assert len(set(surface.corners.tolist())) == 4
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60), deadline=None)
 @given(st.integers(0, 10_000), st.integers(1, 70))
 def test_every_box_of_the_hierarchy_holds_what_is_below_it(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)

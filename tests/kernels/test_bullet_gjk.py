@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -72,7 +73,7 @@ def nearest(a: Solid, b: Solid, max_distance: float = 10.0) -> tuple[int, float,
     return int(found[0]), found[1], found[2:5], found[5:]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=cases(300), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 4))
 def test_the_nearest_point_of_a_simplex_is_made_of_the_corners_it_names(seed: int, count: int) -> None:
     random = np.random.default_rng(seed)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -133,7 +134,7 @@ def lifted(corners: np.ndarray, height: float = 0.0) -> np.ndarray:
     return np.column_stack([corners, np.full(len(corners), height)])
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(3, 8), st.integers(3, 8), st.floats(0.0, 2.0), st.booleans())
 def test_what_is_left_is_the_common_part(
     seed: int, reference_count: int, incident_count: int, apart: float, reference_is_a: bool
@@ -159,7 +160,7 @@ def test_what_is_left_is_the_common_part(
     np.testing.assert_allclose(found[:, 6], 0.1, atol=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(3, 8))
 def test_a_box_clips_as_its_face_does(seed: int, incident_count: int) -> None:
     random = np.random.default_rng(seed)

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -108,7 +109,7 @@ seeds = st.integers(0, 2**32 - 1)
 normals = st.floats(0.01, 3.0)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(seeds, normals, st.sampled_from([LATERAL_ROW, ROLLING_ROW, SPINNING_ROW]), st.booleans())
 def test_no_more_than_the_coefficient_times_the_normal_impulse(
     seed: int, normal: float, kind: int, cone: bool
@@ -128,7 +129,7 @@ def test_no_more_than_the_coefficient_times_the_normal_impulse(
     np.testing.assert_allclose(velocity, felt, atol=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(seeds, normals, st.sampled_from([LATERAL_ROW, ROLLING_ROW]))
 def test_in_the_cone_both_directions_are_cut_alike(seed: int, normal: float, kind: int) -> None:
     rows = random_rows(seed, normal)
@@ -142,7 +143,7 @@ def test_in_the_cone_both_directions_are_cut_alike(seed: int, normal: float, kin
     assert change == pytest.approx(changes.sum() ** 2, rel=1e-9, abs=1e-14)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(seeds, normals, st.sampled_from([LATERAL_ROW, ROLLING_ROW, SPINNING_ROW]))
 def test_without_the_cone_each_direction_is_cut_by_itself(seed: int, normal: float, kind: int) -> None:
     rows = random_rows(seed, normal)

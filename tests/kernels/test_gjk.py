@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -105,7 +106,7 @@ def test_closed_forms(
         np.testing.assert_allclose(found[2], on_b, atol=1e-7)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(150), deadline=None)
 @given(seeds, st.sampled_from(list(product(POLYTOPES, POLYTOPES))), st.floats(0.0, 1.5))
 def test_distances_are_those_of_all_simplices(seed: int, kinds: tuple[int, int], apart: float) -> None:
     random = np.random.default_rng(seed)
@@ -120,7 +121,7 @@ def test_distances_are_those_of_all_simplices(seed: int, kinds: tuple[int, int],
     assert distance == 0.0 or b.holds(on_b, 1e-9)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(seeds, st.sampled_from(POLYTOPES))
 def test_a_slab_between_the_points_parts_the_cores(seed: int, kind: int) -> None:
     random = np.random.default_rng(seed)
@@ -140,7 +141,7 @@ def test_a_slab_between_the_points_parts_the_cores(seed: int, kind: int) -> None
     assert -b.farthest(-normal) >= on_b @ normal - 1e-7
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(50), deadline=None)
 @given(seeds, st.sampled_from(POLYTOPES), st.sampled_from(POLYTOPES))
 def test_where_the_search_starts_makes_no_difference(seed: int, kind_a: int, kind_b: int) -> None:
     random = np.random.default_rng(seed)
@@ -150,7 +151,7 @@ def test_where_the_search_starts_makes_no_difference(seed: int, kind_a: int, kin
     np.testing.assert_allclose(distances, distances[0], atol=1e-10)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(50), deadline=None)
 @given(seeds, st.floats(0.01, 2.0))
 def test_the_search_ends_where_the_cores_are_too_far_apart(seed: int, max_distance: float) -> None:
     random = np.random.default_rng(seed)
@@ -164,7 +165,7 @@ def test_the_search_ends_where_the_cores_are_too_far_apart(seed: int, max_distan
         assert bounded == distance
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(seeds, st.sampled_from([(BOX, BOX), (BOX, HULL), (HULL, HULL), (BOX, SPHERE), (CAPSULE, BOX)]))
 def test_cores_that_overlap_are_found_to(seed: int, kinds: tuple[int, int]) -> None:
     random = np.random.default_rng(seed)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -71,7 +72,7 @@ def chosen(points: np.ndarray, distances: np.ndarray) -> list[np.ndarray]:
     return result
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(4, CANDIDATES))
 def test_the_rule(seed: int, count: int) -> None:
     random = np.random.default_rng(seed)

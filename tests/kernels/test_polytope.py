@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -120,7 +121,7 @@ def test_closed_forms(a: Solid, b: Solid, depth: float, normal: list[float]) -> 
     np.testing.assert_allclose(found[2] - found[3], -found[1] * depth, atol=2 * PRECISION)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(
     st.integers(0, 2**32 - 1),
     st.sampled_from([(BOX, BOX), (BOX, HULL), (HULL, BOX), (HULL, HULL), (BOX, SPHERE), (CAPSULE, HULL)]),

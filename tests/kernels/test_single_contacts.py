@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -136,7 +137,7 @@ def random_contact(seed: int, push: float, fixed: bool) -> Contact:
     return Contact(jacobian, response, share, mass, random.uniform(0.5, 1.0), impulse, velocity, fixed)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1.0, 0.1, -5.0]), st.booleans(), st.booleans())
 def test_rows_are_relaxed_one_after_the_other(seed: int, push: float, fixed: bool, cone: bool) -> None:
     contact = random_contact(seed, push, fixed)

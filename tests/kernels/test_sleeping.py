@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -65,7 +66,7 @@ def model_of(*trees: dict[str, Any]) -> Any:
     return model
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(st.data(), st.integers(1, 30))
 def test_islands_are_the_connected_components_of_what_can_move(data: st.DataObject, count: int) -> None:
     place = st.integers(0, count - 1)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 pytest.importorskip("warp", reason="it compiles the kernels")
 
@@ -49,7 +50,7 @@ def integers(values: Any) -> Any:
     return wp.array(np.asarray(values, dtype=np.int32).reshape(1, -1), dtype=Int32, device="cpu")
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(codes, st.randoms(use_true_random=False))
 def test_shapes_are_sorted_by_code(values: list[int], random: Any) -> None:
     # Some shapes are not sorted: those behind.
@@ -70,7 +71,7 @@ def test_shapes_are_sorted_by_code(values: list[int], random: Any) -> None:
     np.testing.assert_array_equal(pairs.shape_order.numpy()[0, : len(order)], expected)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(st.sets(st.tuples(st.integers(0, 12), st.integers(0, 12)), max_size=80), st.randoms())
 def test_pairs_are_sorted_by_first_then_by_second_shape(found: set[tuple[int, int]], random: Any) -> None:
     rows = sorted(found)
@@ -113,7 +114,7 @@ def quicksort(items: list[tuple[int, int]], low: int, high: int) -> None:
     quicksort(items, i, high)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=cases(200), deadline=None)
 @given(st.lists(st.integers(0, 20), max_size=300))
 def test_manifolds_are_sorted_by_island_in_the_order_of_quicksort(islands: list[int]) -> None:
     rows = PairRows()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 from carom.description import (
     Box,
@@ -92,7 +93,7 @@ def assert_same_shapes(one: Scene, other: Scene) -> None:
         np.testing.assert_array_equal(one.column(name), other.column(name), err_msg=name)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60), deadline=None)
 @given(st.lists(st.tuples(st.integers(0, len(SPECS) - 1), st.integers(0, 9)), max_size=12))
 def test_bodies_that_come_and_go_leave_what_the_others_need(changes: list[tuple[int, int]]) -> None:
     scene = Scene()
@@ -225,7 +226,7 @@ def test_breaking_distances_follow_the_engines_parameter() -> None:
     np.testing.assert_allclose(scene.column("shape_breaking")[2:], before * 2.5, rtol=1e-12)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(50), deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8), st.booleans()), max_size=40))
 def test_rules_for_pairs_are_sorted_and_the_last_one_counts(rules: list[tuple[int, int, bool]]) -> None:
     scene = Scene()

@@ -17,6 +17,7 @@ from tests.physics.one_joint import (
     joint_state,
     place,
 )
+from tests.thorough.profiles import cases
 
 from carom import Body
 from carom.description import JointType
@@ -52,7 +53,7 @@ def rod() -> Body:
     return hanging_rod()
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100), deadline=None)
 @given(
     q=angles,
     v=rates,

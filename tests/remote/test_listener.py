@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.patience import PATIENCE, until
+from tests.thorough.profiles import cases
 
 from carom.remote import handshake, listener
 from carom.remote.connection import Connection
@@ -181,7 +182,7 @@ def test_a_server_that_says_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
         call_at(listening.getsockname())
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(50))
 @given(st.binary(max_size=200))
 def test_any_bytes_from_strangers(server: Listener, rubbish: bytes) -> None:
     with stranger(server) as peer:
@@ -192,7 +193,7 @@ def test_any_bytes_from_strangers(server: Listener, rubbish: bytes) -> None:
     assert works(server)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(50))
 @given(
     st.binary(max_size=200)
     | st.builds(

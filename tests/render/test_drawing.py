@@ -7,6 +7,7 @@ import pytest
 from drawing import FAR, NEAR, add_collision_only, add_shape, draw, first_hit, rays
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 from carom.description import Box, Cylinder, Material, Plane, Sphere, TriangleMesh
 from carom.description.transform import rotation_matrix
@@ -30,7 +31,7 @@ def boxes(draw_value):
     return Box(sides), tuple(draw_value(PLACES) for _ in range(3)), tuple(quaternion.tolist())
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30), deadline=None)
 @given(st.lists(boxes(), min_size=1, max_size=4), st.tuples(PLACES, st.floats(-6.0, -4.0), PLACES))
 def test_every_pixel_shows_the_box_its_ray_meets_first(placed, eye):
     size, focal, target = (40, 30), 30.0, (0.0, 0.0, 0.0)
@@ -272,7 +273,7 @@ NUMBERS = st.floats(width=32)
 FINITE = st.floats(width=32, allow_nan=False, allow_infinity=False)
 
 
-@settings(max_examples=15, deadline=None, phases=[Phase.generate], report_multiple_bugs=False)
+@settings(max_examples=cases(15), deadline=None, phases=[Phase.generate], report_multiple_bugs=False)
 @given(
     st.lists(st.tuples(FINITE, FINITE, FINITE), min_size=3, max_size=6),
     st.lists(st.tuples(NUMBERS, NUMBERS), min_size=6, max_size=6),

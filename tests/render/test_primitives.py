@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 from carom.description import Box, Capsule, Cylinder, Plane, Sphere
 from carom.formats.visuals.render_mesh import face_normals
@@ -35,7 +36,7 @@ def corners_of(mesh):
     return mesh.positions.astype(np.float64)[mesh.triangles]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40), deadline=None)
 @given(SOLIDS)
 def test_solids_are_closed_and_face_outwards(shape):
     corners = corners_of(primitive_mesh(shape))
@@ -47,7 +48,7 @@ def test_solids_are_closed_and_face_outwards(shape):
     ).max() < (1e-4 * np.abs(corners).max() ** 2)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40), deadline=None)
 @given(SOLIDS)
 def test_normals_have_unit_length_and_lean_with_their_triangles(shape):
     mesh = primitive_mesh(shape)

@@ -6,7 +6,8 @@ import io
 import shutil
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,17 +31,38 @@ _ARGUMENTS = [
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    # Hubs of notebooks and sites of editors.
+    "--host-resolver-rules=MAP *.test 127.0.0.1",
 ]
 
 
 @contextmanager
-def chromium(*arguments: str) -> Iterator:
-    """The browser, with more arguments of its command line; it is closed at the end."""
+def chromium() -> Iterator:
+    """The browser; it is closed at the end."""
     driver = pytest.importorskip("playwright.sync_api", reason="drives the browser")
     with driver.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=[*_ARGUMENTS, *arguments])
+        browser = playwright.chromium.launch(executable_path=BROWSER or "", args=_ARGUMENTS)
         yield browser
         browser.close()
+
+
+class SharedBrowser:
+    """A browser that is started when it is needed first, and again if it has crashed.
+
+    Args:
+        stack: Closes it.
+    """
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._stack = stack
+        self._browser: Any = None
+
+    def running(self) -> Any:
+        """The browser."""
+        if self._browser is None or not self._browser.is_connected():
+            self._stack.close()
+            self._browser = self._stack.enter_context(chromium())
+        return self._browser
 
 
 class Page:

@@ -1,9 +1,10 @@
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 from _pytest.runner import runtestprotocol
-from tests.viewer.browser import Page, chromium
+from tests.viewer.browser import Page, SharedBrowser
 
 import pybullet as p
 from carom.viewer.viewer import Viewer
@@ -47,10 +48,21 @@ def viewer(monkeypatch: pytest.MonkeyPatch) -> Iterator[Viewer]:
         p.disconnect(number)
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with chromium() as browser:
-        yield browser
+@pytest.fixture(scope="package")
+def shared_browser() -> Iterator[SharedBrowser]:
+    """A browser for all tests here that need no other one."""
+    with ExitStack() as stack:
+        yield SharedBrowser(stack)
+
+
+@pytest.fixture
+def browser(shared_browser: SharedBrowser) -> Iterator:
+    """A browser without any page, and nothing of pages before; the test's own pages are closed after it."""
+    browser = shared_browser.running()
+    yield browser
+    # They would go on drawing.
+    for context in browser.contexts:
+        context.close()
 
 
 @pytest.fixture

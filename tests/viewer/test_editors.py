@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from tests.patience import until
-from tests.viewer.browser import Page, chromium, needs_browser, wait_for
+from tests.viewer.browser import Page, needs_browser, wait_for
 
 import pybullet as p
 import pybullet_data
@@ -111,12 +111,12 @@ def proxy(passed: list[str]) -> Callable:
 
 
 @contextmanager
-def cell(markup: str, script: str, proxy_address: str) -> Iterator[Page]:
+def cell(browser, markup: str, script: str, proxy_address: str) -> Iterator[Page]:
     """A notebook of another site, with the output of a cell in a frame of a third one."""
     script = script.replace("MARKUP", json.dumps(markup).replace("</", "<\\/"))
     script = script.replace("PROXY", json.dumps(proxy_address))
     texts = {"outputs.test": f"<body><script>{script}</script>"}
-    with site(pages(texts)) as port, chromium("--host-resolver-rules=MAP *.test 127.0.0.1") as browser:
+    with site(pages(texts)) as port:
         texts["notebook.test"] = (
             f'<body><iframe sandbox="{SANDBOX}" src="http://outputs.test:{port}/" width=850 height=560>'
         )
@@ -134,33 +134,33 @@ def slider_arrives(page: Page, gain: int) -> None:
 
 
 @needs_browser
-def test_a_cell_of_vs_code_shows_the_window(viewer: Viewer):
+def test_a_cell_of_vs_code_shows_the_window(viewer: Viewer, browser):
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
-    with cell(viewer._repr_html_(), IN_A_WEBVIEW, "") as page:
+    with cell(browser, viewer._repr_html_(), IN_A_WEBVIEW, "") as page:
         slider_arrives(page, gain)
 
 
 @needs_browser
 def test_an_editor_in_the_browser_shows_the_window_through_its_proxy(
-    viewer: Viewer, monkeypatch: pytest.MonkeyPatch
+    viewer: Viewer, browser, monkeypatch: pytest.MonkeyPatch
 ):
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
     passed: list[str] = []
     with site(proxy(passed)) as port:
         monkeypatch.setenv("VSCODE_PROXY_URI", f"http://proxy.test:{port}/kernel/{{{{port}}}}/")
-        with cell(viewer._repr_html_(), IN_CODE_SERVER, "") as page:
+        with cell(browser, viewer._repr_html_(), IN_CODE_SERVER, "") as page:
             slider_arrives(page, gain)
     assert passed
 
 
 @needs_browser
-def test_a_cell_of_colab_shows_the_window_without_sockets(viewer: Viewer):
+def test_a_cell_of_colab_shows_the_window_without_sockets(viewer: Viewer, browser):
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
     cube = p.createMultiBody(1, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3))
     passed: list[str] = []
     with (
         site(proxy(passed)) as port,
-        cell(viewer._repr_html_(), IN_COLAB, f"http://proxy.test:{port}/kernel/PORT") as page,
+        cell(browser, viewer._repr_html_(), IN_COLAB, f"http://proxy.test:{port}/kernel/PORT") as page,
     ):
         slider_arrives(page, gain)
         window = next(frame for frame in page.page.frames if "/kernel/" in frame.url)
@@ -177,10 +177,10 @@ def test_a_cell_of_colab_shows_the_window_without_sockets(viewer: Viewer):
 
 
 @needs_browser
-def test_a_cell_that_reaches_nothing_shows_a_picture(viewer: Viewer):
+def test_a_cell_that_reaches_nothing_shows_a_picture(viewer: Viewer, browser):
     assert "image/png" not in viewer._repr_html_()
     p.loadURDF(f"{pybullet_data.getDataPath()}/r2d2.urdf")
-    with cell(viewer._repr_html_(), IN_CODE_SERVER, "") as page:
+    with cell(browser, viewer._repr_html_(), IN_CODE_SERVER, "") as page:
         shown = page.page.frame_locator("iframe").frame_locator("iframe")
         picture = shown.get_by_alt_text("The simulation")
         picture.wait_for()

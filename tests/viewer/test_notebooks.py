@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from importlib.util import find_spec
 
 import pytest
-from tests.viewer.browser import Page, chromium, needs_browser
+from tests.viewer.browser import Page, needs_browser
 from tests.viewer.scripts import ROOT
 
 pytestmark = [
@@ -82,12 +82,6 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     finally:
         server.terminate()
         server.wait()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator:
-    with chromium("--host-resolver-rules=MAP hub.test 127.0.0.1") as browser:
-        yield browser
 
 
 def run(page: Page, number: int) -> None:

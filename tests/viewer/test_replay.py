@@ -9,12 +9,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from tests.thorough.profiles import cases
 from tests.viewer.browser import Page, needs_browser
 from tests.viewer.firefox import firefox, needs_firefox
 from tests.viewer.scripts import ROOT
 
 import pybullet_data
 from carom import World
+from carom.native.building.cache import cache_folder
 from carom.viewer.replay.page import replay_page
 from carom.viewer.replay.recording import Recording, unpacked
 
@@ -148,7 +150,7 @@ def test_bodies_and_drawings_come_and_go_in_a_replay(tmp_path: Path, browser):
     page.page.close()
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=cases(30))
 @given(st.lists(st.tuples(st.integers(0, 2), st.integers(0, 3), st.floats(width=32)), max_size=40))
 def test_recordings_come_back_as_they_were(frames: list[tuple[int, int, float]]):
     recording, told = Recording(), []
@@ -178,7 +180,13 @@ def test_a_script_is_recorded_by_the_command_line(tmp_path: Path):
     )
     file = tmp_path / "fall.html"
     command = [sys.executable, "-m", "carom", "record", "--seconds", "2", script, file, "--fast"]
-    environment = {"PYTHONPATH": str(ROOT / "src"), "PATH": "", "HOME": str(tmp_path.parent)}
+    # In another home there would be no library yet.
+    environment = {
+        "PYTHONPATH": str(ROOT / "src"),
+        "PATH": "",
+        "HOME": str(tmp_path.parent),
+        "CAROM_CACHE_PATH": str(cache_folder()),
+    }
     done = subprocess.run([*map(str, command)], capture_output=True, text=True, env=environment, check=False)
     assert done.returncode == 0, done.stderr
     assert "['--fast']" in done.stdout

@@ -405,7 +405,7 @@ def test_worlds_of_arms_and_boxes_take_little_memory(arm: tuple[World, Body]) ->
     assert _bytes_per_world(boxes()) < 60_000
 
 
-def _bytes_per_world(scene: World, count: int = 2000) -> float:
+def _bytes_per_world(scene: World, count: int = 500) -> float:
     # The workspace and what the first step needs once are not what counts.
     Worlds(scene, 2).step(60)
     before = _memory_in_use()

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.thorough.profiles import cases
 
 import pybullet as p
 from carom.remote.connection import Connection
@@ -62,7 +63,7 @@ def works(connection: Connection) -> bool:
     ) in ((RESULT, 3), (RESULT, 0))
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=400)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(400))
 @given(
     st.sampled_from(NAMES),
     st.lists(values, max_size=6),
@@ -79,7 +80,7 @@ def test_functions_with_any_arguments(
     assert works(connection)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=100)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(100))
 @given(values | st.lists(values, max_size=4))
 def test_messages_that_are_no_calls(connection: Connection, key: int, request_: Any) -> None:
     note = find(f"shared-memory-{key}")
@@ -136,7 +137,7 @@ def test_mistakes_of_ours_are_told_and_logged(
     assert "ZeroDivisionError" in caplog.text
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=100)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=cases(100))
 @given(st.data())
 def test_damaged_calls(connection: Connection, key: int, data: st.DataObject) -> None:
     message = bytearray(pack(("resetJointState", [0, 1, 0.5], {"targetVelocity": 1.5}))[0])

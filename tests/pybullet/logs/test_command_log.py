@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tests.patience import until
+from tests.thorough.profiles import cases
 
 import pybullet as p
 import pybullet_data
@@ -309,7 +310,9 @@ VALUES = st.recursive(
     max_leaves=6,
 )
 NUMBERS = sorted(COMMANDS - {"executePluginCommand", "loadPlugin"})
-fuzz = settings(deadline=None, max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+fuzz = settings(
+    deadline=None, max_examples=cases(100), suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 
 
 @fuzz

@@ -8,7 +8,7 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
-from tests.viewer.browser import Page, chromium, needs_browser, wait_for
+from tests.viewer.browser import Page, needs_browser, wait_for
 from tests.viewer.watcher import Watcher, origin_of
 
 import pybullet as p
@@ -52,9 +52,9 @@ def test_a_socket_through_a_tunnel_is_the_pages_own(viewer: Viewer) -> None:
 
 
 @needs_browser
-def test_the_page_works_through_a_tunnel(viewer: Viewer) -> None:
+def test_the_page_works_through_a_tunnel(viewer: Viewer, browser) -> None:
     gain = p.addUserDebugParameter("gain", 0, 10, 2)
-    with tunnel(viewer.address) as address, chromium() as browser:
+    with tunnel(viewer.address) as address:
         page = Page(browser, address)
         slider = page.page.get_by_label("gain")
         slider.fill("7.5")
@@ -73,11 +73,11 @@ def site(folder: Path) -> Iterator[str]:
 
 
 @needs_browser
-def test_a_notebook_shows_the_page_below_a_cell(viewer: Viewer, tmp_path: Path) -> None:
+def test_a_notebook_shows_the_page_below_a_cell(viewer: Viewer, browser, tmp_path: Path) -> None:
     html = viewer._repr_html_()
     (tmp_path / "notebook.html").write_text(f"<!doctype html><title>notebook</title>{html}", encoding="utf-8")
     button = p.addUserDebugParameter("again", 1, 0, 0)
-    with site(tmp_path) as address, chromium() as browser:
+    with site(tmp_path) as address:
         page = Page(browser, address + "notebook.html", 900, 600)
         page.page.frame_locator("iframe").get_by_role("button", name="again").click()
         wait_for(lambda: p.readUserDebugParameter(button) == 1, page)

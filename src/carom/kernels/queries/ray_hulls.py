@@ -1,8 +1,8 @@
 """Ray tests with convex hulls, four faces at a time.
 
-A ray meets a hull between the last plane that it enters and the first that it leaves. Rays in scenes of meshes
-spend most of their time with this search. So four planes are compared at once: the same operation on four numbers
-takes one instruction (SIMD).
+A ray meets a hull between the last plane that it enters and the first that it leaves. Rays in scenes of
+meshes spend most of their time with this search. So four planes are compared at once: the same operation on
+four numbers takes one instruction (SIMD).
 """
 
 import warp as wp

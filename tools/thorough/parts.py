@@ -1,0 +1,96 @@
+"""The parts of the long checks, and their pieces.
+
+A new part, for example one with sanitizers, is a function here that gives its pieces, and a line in `PARTS`.
+Pieces should take a few minutes at most: what is limited to twenty minutes never ends a longer one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from tests.fuzz.files import SEEDS
+from tests.workers.episodes import METHODS
+from tools.thorough.pieces import SEED, Piece
+
+from carom.native.kernel_modules import CUDA_MODULES
+
+ROOT = Path(__file__).parents[2]
+API_PIECES, OPERATIONS = 50, 20_000
+"""Of the fuzzer of the API: a million operations."""
+FILE_PIECES, FILE_CASES = 10, 10_000
+"""Of the fuzzer of files: 100,000 cases of each kind."""
+MUTATION_PIECES, MUTATIONS = 12, 4
+"""Samples of the list of mutations, and how many are in one."""
+_PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider")
+_LONG = {"CAROM_TEST_PROFILE": "thorough"}
+
+
+def properties() -> list[Piece]:
+    """Properties with many more cases than in every run: a piece for each file."""
+    files = [
+        file.relative_to(ROOT).as_posix()
+        for file in sorted((ROOT / "tests").rglob("test_*.py"))
+        if "from hypothesis import" in file.read_text(encoding="utf-8")
+    ]
+    return [
+        Piece(
+            "properties",
+            file.removeprefix("tests/"),
+            (*_PYTEST, "-m", "hypothesis", f"--hypothesis-seed={SEED}", file),
+            environment=_LONG,
+        )
+        for file in files
+    ]
+
+
+def gpu() -> list[Piece]:
+    """Compiling the kernels for GPUs: a piece for each module."""
+    test = "tests/gpu/test_compile.py::test_a_module_compiles_for_a_gpu_and_fits_into_its_registers"
+    return [
+        Piece("gpu", module.removeprefix("carom.kernels."), (*_PYTEST, f"{test}[{module}]"))
+        for module in CUDA_MODULES
+    ]
+
+
+def fuzz() -> list[Piece]:
+    """Random calls, and damaged files."""
+    calls = ("-m", "tests.fuzz.api", "--operations", str(OPERATIONS), "--seed", SEED)
+    files = ("-m", "tests.fuzz.files", "--cases", str(FILE_CASES), "--seed", SEED, "--kinds")
+    return [
+        *(Piece("fuzz", f"calls {number}", calls, number) for number in range(API_PIECES)),
+        *(
+            Piece("fuzz", f"{kind} {number}", (*files, kind), number)
+            for number in range(FILE_PIECES)
+            for kind in SEEDS
+        ),
+    ]
+
+
+def soak() -> list[Piece]:
+    """Long work, and long lives of workers, whose memory must not grow."""
+    work = ("-m", "tests.conformance.soak")
+    return [
+        Piece("soak", "loads and removals", (*work, "--steps", "0")),
+        Piece("soak", "steps", (*work, "--cycles", "0")),
+        *(
+            Piece("soak", f"workers by {method}", ("-m", "tests.workers.episodes", "--methods", method))
+            for method in METHODS
+        ),
+    ]
+
+
+def mutations() -> list[Piece]:
+    """Random samples of the changes that the tests have to notice; `make mutate` tries all."""
+    sample = ("-m", "tools.mutate", "--copies", "1", "--sample", str(MUTATIONS), "--seed", SEED)
+    return [Piece("mutations", f"sample {number}", sample, number) for number in range(MUTATION_PIECES)]
+
+
+PARTS: dict[str, Callable[[], Sequence[Piece]]] = {
+    part.__name__: part for part in (properties, gpu, fuzz, soak, mutations)
+}
+
+
+def all_pieces(names: Sequence[str]) -> list[Piece]:
+    """The pieces of some parts."""
+    return [piece for name in names for piece in PARTS[name]()]
