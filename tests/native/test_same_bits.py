@@ -14,7 +14,7 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "0efb76b86a5f5bf6",
+    "stack": "11d0e4789a276aec",
     "tied": "064ac2b19117a7d3",
     "questions": "54d8874ff3d1bde4",
     "images": "59104a2976070434",

@@ -53,6 +53,11 @@ def gpu() -> list[Piece]:
     ]
 
 
+def platforms() -> list[Piece]:
+    """Building for platforms that take long where Zig's cache is empty."""
+    return [Piece("platforms", "build", (*_PYTEST, "-m", "thorough", "tests/native/building"))]
+
+
 def fuzz() -> list[Piece]:
     """Random calls, and damaged files."""
     calls = ("-m", "tests.fuzz.api", "--operations", str(OPERATIONS), "--seed", SEED)
@@ -87,7 +92,7 @@ def mutations() -> list[Piece]:
 
 
 PARTS: dict[str, Callable[[], Sequence[Piece]]] = {
-    part.__name__: part for part in (properties, gpu, fuzz, soak, mutations)
+    part.__name__: part for part in (properties, gpu, platforms, fuzz, soak, mutations)
 }
 
 
