@@ -52,6 +52,9 @@ def test_rays_enter_hulls_where_all_planes_say(client: int, corners: int):
     points /= np.linalg.norm(points, axis=1)[:, None]
     shape = p.createCollisionShape(p.GEOM_MESH, vertices=points.tolist(), physicsClientId=client)
     p.createMultiBody(0, shape, physicsClientId=client)
+    # The planes of a smaller hull come after those of this one.
+    smaller = p.createCollisionShape(p.GEOM_MESH, vertices=(0.5 * points).tolist(), physicsClientId=client)
+    p.createMultiBody(0, smaller, basePosition=[0, 0, 50], physicsClientId=client)
     planes = planes_of_the_only_shape(client)
     starts = random.normal(size=(COUNT, 3))
     starts *= 2.5 / np.linalg.norm(starts, axis=1)[:, None]
@@ -67,3 +70,12 @@ def test_rays_enter_hulls_where_all_planes_say(client: int, corners: int):
             assert fraction == pytest.approx(wanted[0], abs=1e-9)
             assert normal == pytest.approx(wanted[1], abs=1e-9)
     assert COUNT // 20 < count < COUNT
+
+
+def test_rays_beside_a_hull_and_parallel_to_its_faces_pass_by(client: int):
+    corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    shape = p.createCollisionShape(p.GEOM_MESH, vertices=corners, physicsClientId=client)
+    p.createMultiBody(0, shape, physicsClientId=client)
+    aside = [0.0, 0.5, 1.5]
+    hits = p.rayTestBatch([[-3, y, 0] for y in aside], [[3, y, 0] for y in aside], physicsClientId=client)
+    assert [hit[0] for hit in hits] == [0, 0, -1]
