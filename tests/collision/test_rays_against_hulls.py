@@ -73,9 +73,12 @@ def test_rays_enter_hulls_where_all_planes_say(client: int, corners: int):
 
 
 def test_rays_beside_a_hull_and_parallel_to_its_faces_pass_by(client: int):
-    corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    """Along a prism: within its bounds and outside the slanting face the ray is parallel to all but the ends."""
+    corners = [[x, y, z] for x in (-1, 1) for y, z in ((0, 0), (1, 0), (0, 1))]
     shape = p.createCollisionShape(p.GEOM_MESH, vertices=corners, physicsClientId=client)
     p.createMultiBody(0, shape, physicsClientId=client)
-    aside = [0.0, 0.5, 1.5]
-    hits = p.rayTestBatch([[-3, y, 0] for y in aside], [[3, y, 0] for y in aside], physicsClientId=client)
-    assert [hit[0] for hit in hits] == [0, 0, -1]
+    places = [(0.2, 0.2), (0.45, 0.45), (0.75, 0.75), (0.9, 0.5)]
+    hits = p.rayTestBatch(
+        [[-3, y, z] for y, z in places], [[3, y, z] for y, z in places], physicsClientId=client
+    )
+    assert [hit[0] for hit in hits] == [0, 0, -1, -1]
