@@ -73,7 +73,7 @@ def test_rays_enter_hulls_where_all_planes_say(client: int, corners: int):
 
 
 def test_rays_beside_a_hull_and_parallel_to_its_faces_pass_by(client: int):
-    """Along a prism: within its bounds, outside the slanting face, the ray is parallel to all but the ends."""
+    """Along a prism, within its bounds, outside the slanting face, they are parallel to all but its ends."""
     corners = [[x, y, z] for x in (-1, 1) for y, z in ((0, 0), (1, 0), (0, 1))]
     shape = p.createCollisionShape(p.GEOM_MESH, vertices=corners, physicsClientId=client)
     p.createMultiBody(0, shape, physicsClientId=client)

@@ -14,6 +14,7 @@ from tools.wheels.structure import read_library
 
 from carom.native.building.cache import MANIFEST
 from carom.native.building.library import build
+from carom.native.building.link import remove_time
 from carom.native.digest import source_digest
 from carom.native.targets import TARGETS, Target
 
@@ -102,3 +103,14 @@ def test_it_is_built_for_another_platform(name: str, cache: Path):
     level = next(iter(target.levels))
     library = build(ROOT, target, level, None, modules=[SMALL_MODULE], cache=cache)
     assert faults(read_library(library), target, level) == []
+
+
+def test_libraries_for_windows_have_no_time_in_them(tmp_path: Path):
+    library, other = tmp_path / "some.dll", tmp_path / "some.so"
+    header = b"MZ" + bytes(0x3A) + (0x40).to_bytes(4, "little") + b"PE\0\0" + b"\x64\x86\x05\0"
+    library.write_bytes(header + b"time" + b"rest")
+    other.write_bytes(b"\x7fELF" + header)
+    remove_time(library)
+    remove_time(other)
+    assert library.read_bytes() == header + bytes(4) + b"rest"
+    assert other.read_bytes() == b"\x7fELF" + header

@@ -26,7 +26,7 @@ from carom.native.building.cache import (
 from carom.native.building.flags import C_FLAGS, CPP_FLAGS, PLATFORM_FLAGS
 from carom.native.building.jobs import Job, run_all
 from carom.native.building.libm import called_functions, include_folders, maths_sources
-from carom.native.building.link import link_command
+from carom.native.building.link import link_command, remove_time
 from carom.native.building.progress import ProgressLine
 from carom.native.building.prune import prune
 from carom.native.building.zig import BuildError, Zig, find_zig
@@ -108,6 +108,7 @@ def _make(parts: _Build, library: Path) -> None:
         command = link_command(parts.zig, parts.target, parts.level, objects, made)
         job = Job(library.name, command, lambda: None)
         run_all([job], parts.zig.environment(), _shows(parts.progress, f"linking {parts.level}"))
+        remove_time(made)
         keep(made, library)
         (work / MANIFEST).write_bytes((code / MANIFEST).read_bytes())
         keep(work / MANIFEST, library.parent / MANIFEST)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -28,3 +29,18 @@ def link_command(zig: Zig, target: Target, level: str, objects: Sequence[Path], 
     if target.suffix == ".dylib":
         flags.extend(("-install_name", f"@rpath/{output.name}"))
     return zig.command("c++", target, level, [*flags, "-o", output, *objects])
+
+
+def remove_time(library: Path) -> None:
+    """Set the time of linking to 0, which Windows libraries have in their header: builds are to be the same.
+
+    Zig's linker has no option for it. Libraries of other formats have no such time.
+    """
+    with library.open("r+b") as file:
+        if file.read(2) != b"MZ":
+            return
+        file.seek(0x3C)
+        (header,) = struct.unpack("<I", file.read(4))
+        # After the signature, the machine and the number of sections.
+        file.seek(header + 8)
+        file.write(bytes(4))
