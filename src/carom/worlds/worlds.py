@@ -18,7 +18,8 @@ from carom.scene.body import Body
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
-from carom.worlds.checks import Mask, broadcast, world_numbers
+from carom.worlds.checks import Mask
+from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, take_images
@@ -229,34 +230,66 @@ class Worlds:
 
     @property
     def gravity(self) -> Array:
-        """Gravity of each world in world axes [m/s²], shape (count, 3)."""
-        return np.broadcast_to(
-            self._engine.arrays.model.numpy["gravity_vector"][:, 0], (self.count, 3)
-        ).copy()
+        """Gravity of each world in world axes [m/s²], a copy (count, 3)."""
+        return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
     def gravity(self, value: ArrayLike) -> None:
-        gravity = broadcast(np.asarray(self._engine.take(value)), (self.count, 3), "gravity")
-        self._engine.set_parameter("model", "gravity_vector", 0, gravity)
+        self.set_gravity(value)
 
-    def enable_constraint(self, constraint: UserConstraint | int, enabled: ArrayLike) -> None:
-        """Switch a user constraint on or off in each world.
+    def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
+        """Set the gravity of each world, or of some.
+
+        Args:
+            gravity: In world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: The shape does not fit, or something is not finite.
+        """
+        worlds = self._chosen(where)
+        values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
+        self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
+
+    def enable_constraint(
+        self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
+    ) -> None:
+        """Switch a user constraint on or off in each world, or in some.
 
         Args:
             constraint: The constraint in the original world, or its number.
-            enabled: Whether it is active: one value, or one for each world.
+            enabled: Whether it is active: one value, or one for each of the n worlds chosen, (n,).
+            where: Which worlds: a mask (count,) or their indices; None for all.
 
         Raises:
             KeyError: That world had no such constraint.
-            ValueError: The number of values differs from that of worlds.
+            ValueError: The number of values differs from that of the worlds chosen.
         """
+        row = self._constraint_row(constraint)
+        worlds = self._chosen(where)
+        holds = worlds.values(np.asarray(self._engine.take(enabled), dtype=bool), (), "enabled") != 0.0
+        self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
+        self._engine.contact_arrays.forget_order()
+
+    def constraint_enabled(self, constraint: UserConstraint | int) -> Mask:
+        """In which worlds a user constraint is active, a copy (count,).
+
+        Args:
+            constraint: The constraint in the original world, or its number.
+
+        Raises:
+            KeyError: That world had no such constraint.
+        """
+        return self._engine.parameter("users", "user_enabled", self._constraint_row(constraint)) != 0
+
+    def _constraint_row(self, constraint: UserConstraint | int) -> int:
         number = constraint if isinstance(constraint, int) else constraint.id
         if self._scene.user_constraints.get(number) is None:
             raise KeyError(f"there is no constraint {number}")
-        holds = broadcast(np.asarray(self._engine.take(enabled), dtype=bool), (self.count,), "enabled") != 0.0
-        row = self._scene.user_constraints.rows[number]
-        self._engine.set_parameter("users", "user_enabled", row, holds)
-        self._engine.contact_arrays.forget_order()
+        return self._scene.user_constraints.rows[number]
+
+    def _chosen(self, where: ArrayLike | None) -> Chosen:
+        return Chosen(self._engine.take(where), self.count)
 
     # Queries
 
