@@ -215,3 +215,36 @@ def test_fixed_bases_have_no_mass() -> None:
     scene, panda = panda_world()
     with pytest.raises(ValueError, match="the base is fixed"):
         Worlds(scene, 2)[panda].change_dynamics(-1, mass=1.0)
+
+
+def test_inertias_are_scaled_with_the_mass_whatever_was_set_before() -> None:
+    scene, panda = panda_world()
+    panda.change_dynamics(2, inertia=(0.1, 0.2, 0.4))
+    mass = panda.dynamics(2).mass
+    batch = Worlds(scene, COUNT)[panda]
+    batch.change_dynamics(2, mass=7.0, inertia=1.0)
+    batch.change_dynamics(2, mass=VALUES * mass)
+    expected = VALUES[:, None] * np.array([0.1, 0.2, 0.4])
+    np.testing.assert_allclose(batch.dynamics(2)["inertia"], expected, rtol=1e-14)
+    panda.change_dynamics(2, mass=2.0 * mass)
+    np.testing.assert_allclose(panda.dynamics(2).inertia, [0.2, 0.4, 0.8], rtol=1e-14)
+
+
+def test_masses_of_many_worlds_are_set_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, box = box_world()
+    calls: list[float] = []
+    monkeypatch.setattr("carom.worlds.dynamics.shape_inertia", lambda *given: calls.append(given[2]))
+    batch = Worlds(scene, 4096)[box]
+    batch.change_dynamics(-1, mass=np.linspace(0.5, 2.0, 4096))
+    assert not calls
+    assert len(np.unique(batch.dynamics(-1)["inertia"][:, 0])) > 4000
+
+
+def test_a_link_without_mass_gets_the_inertia_of_its_shapes() -> None:
+    scene, panda = panda_world()
+    tip = panda.links["panda_grasptarget"].index
+    assert panda.dynamics(tip).mass == 0.0
+    batch = Worlds(scene, COUNT)[panda]
+    batch.change_dynamics(tip, mass=VALUES)
+    panda.change_dynamics(tip, mass=float(VALUES[1]))
+    np.testing.assert_array_equal(batch.dynamics(tip)["inertia"][1], panda.dynamics(tip).inertia)

@@ -158,6 +158,6 @@ def test_lengths_that_do_not_fit_are_refused_and_change_nothing() -> None:
         batch.change_dynamics(BASE, lateral_friction=1.0, where=[True, False])
     with pytest.raises(IndexError, match="there are worlds 0 to 4"):
         batch.change_dynamics(BASE, lateral_friction=1.0, where=[5])
-    with pytest.raises(ValueError, match="mass must be a number or an array of numbers, not .*much"):
+    with pytest.raises(ValueError, match=r"mass must be a number or an array of numbers, not .*much"):
         batch.change_dynamics(BASE, mass="much")  # type: ignore[arg-type]
     assert batch.dynamics(BASE)["lateral_friction"].tolist() == before

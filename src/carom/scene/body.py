@@ -221,8 +221,8 @@ class Body:
 
         Args:
             link: The link; -1 is the base.
-            **changes: Fields of `LinkDynamics` by name (`inertia` after `mass`, which sets the
-                inertia of the collision shapes), `joint_limit_force` [N m or N], and for the whole
+            **changes: Fields of `LinkDynamics` by name (a `mass` without `inertia` scales the inertia
+                with it, as if the density changed), `joint_limit_force` [N m or N], and for the whole
                 body `linear_damping`, `angular_damping` [1/s], `max_joint_velocity`
                 [rad/s and m/s], `activation_state` (bits of `layouts.flags.ActivationChange`) and
                 `sleep_threshold`, the sum of squared velocities below which it is at rest.

@@ -197,7 +197,8 @@ class BodyBatch(JointBatch):
                 chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
                 `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
                 `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_lower_limit`,
-                `joint_upper_limit`. A `mass` without `inertia` sets the inertia of the collision shapes.
+                `joint_upper_limit`. A `mass` without `inertia` scales the inertia that the link has in the
+                original world in proportion, as if its density changed.
 
         Raises:
             ValueError: A number is out of range, there are not as many values as worlds chosen, or limits are

@@ -13,7 +13,7 @@ from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.scene.body import Body
-from carom.scene.dynamics_changes import OF_BODY, shape_inertia
+from carom.scene.dynamics_changes import OF_BODY, shape_inertia, unit_inertia
 from carom.worlds.chosen import Chosen
 
 # Fields of `Shapes` that can differ between worlds, by their public names.
@@ -94,7 +94,7 @@ def _writes(
                 raise ValueError("mass must be greater than 0: a link is free in all worlds or in none")
             yield "model", "link_mass", row, numbers
             if "inertia" not in values:
-                yield "model", "link_inertia", row, np.array([shape_inertia(body, link, m) for m in numbers])
+                yield "model", "link_inertia", row, _scaled_inertias(body, link, numbers)
         elif name == "inertia":
             yield "model", "link_inertia", row, numbers
         elif name == "joint_damping":
@@ -105,6 +105,18 @@ def _writes(
         else:
             _require_joint(link, name)
             yield "model", _LIMITS[name], _limit_row(engine, body, link), numbers
+
+
+def _scaled_inertias(body: Body, link: int, masses: np.ndarray) -> np.ndarray:
+    """Inertias (n, 3) of a link of the original world with other masses (n,).
+
+    They depend on nothing that was set before, so that an episode does not depend on earlier ones.
+    """
+    unit = unit_inertia(body, link)
+    if unit is None:
+        # The moments of shapes are in proportion to the mass as well.
+        unit = shape_inertia(body, link, 1.0)
+    return masses[:, None] * np.array(unit)
 
 
 def _require_joint(link: int, name: str) -> None:
