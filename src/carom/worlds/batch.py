@@ -44,9 +44,14 @@ class Batch:
         first = self._body.first_link
         if link is None:
             return np.arange(first, self._links.stop)
-        return np.array([first + 1 + self._link_index(link)])
+        return np.array([first + 1 + self.link_index(link)])
 
-    def _link_index(self, link: int | str) -> int:
+    def link_index(self, link: int | str) -> int:
+        """The index of a link by index (-1 is the base) or name.
+
+        Raises:
+            IndexError, KeyError: There is no such link.
+        """
         if link in (-1, self._base_name):
             return -1
         return choose("link", self.link_names, link)

@@ -24,7 +24,7 @@ class BodyBatch(JointBatch):
         rows: Its rows in the arrays of the engine.
         joint_names: Names of all joints, in order; joint j moves link j.
         link_names: Names of the links except the base.
-        limits: Minimum and maximum positions of movable joints, to which targets are clipped.
+        limits: Minimum and maximum positions of movable joints in each world, to which targets are clipped.
     """
 
     def __repr__(self) -> str:
@@ -198,14 +198,15 @@ class BodyBatch(JointBatch):
                 `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
                 `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_lower_limit`,
                 `joint_upper_limit`. A `mass` without `inertia` scales the inertia that the link has in the
-                original world in proportion, as if its density changed.
+                original world in proportion, as if its density changed. Where a lower limit is greater than
+                the upper one, the joint has no limits.
 
         Raises:
             ValueError: A number is out of range, there are not as many values as worlds chosen, or limits are
                 set for a joint without limits.
             TypeError: There is no such parameter, or it cannot differ between worlds.
         """
-        change_dynamics(self._engine, self._body, self._link_index(link), self._chosen(where), changes)
+        change_dynamics(self._engine, self._body, self.link_index(link), self._chosen(where), changes)
 
     def dynamics(self, link: int | str) -> dict[str, Array]:
         """What `change_dynamics` changes of a link, as it is now in each world.
@@ -218,4 +219,4 @@ class BodyBatch(JointBatch):
                 have are missing: mass and inertia of a fixed base, damping and limits without a joint that
                 has some.
         """
-        return dynamics_of(self._engine, self._body, self._link_index(link))
+        return dynamics_of(self._engine, self._body, self.link_index(link))

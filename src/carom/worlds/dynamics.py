@@ -28,8 +28,8 @@ OF_SURFACE = {
         "contact_damping",
     )
 }
-_LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
-_ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, "joint_damping", *_LIMITS)
+LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
+_ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, "joint_damping", *LIMITS)
 _NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping")
 
 
@@ -44,16 +44,34 @@ def change_dynamics(
         )
     values = {
         name: worlds.values(
-            np.asarray(engine.take(value)), _inner_shape(name), name, finite=name not in _LIMITS
+            np.asarray(engine.take(value)), _inner_shape(name), name, finite=name not in LIMITS
         )
         for name, value in changes.items()
     }
     for name in _NOT_NEGATIVE:
         if name in values and (values[name] < 0.0).any():
             raise ValueError(f"{name} must not be negative")
+    _open_crossed_limits(engine, body, link, worlds, values)
     writes = list(_writes(engine, body, link, values))
     for table, field, rows, numbers in writes:
         engine.set_parameter(table, field, rows, numbers, worlds.rows)
+
+
+def _open_crossed_limits(
+    engine: Engine, body: Body, link: int, worlds: Chosen, values: dict[str, np.ndarray]
+) -> None:
+    """Remove the limits where the lower one is greater than the upper one, as in a single world."""
+    if values.keys().isdisjoint(LIMITS):
+        return
+    _require_joint(link, next(name for name in LIMITS if name in values))
+    row = _limit_row(engine, body, link)
+    lower, upper = (
+        values.get(name, engine.parameter("model", field, row)[worlds.rows]) for name, field in LIMITS.items()
+    )
+    crossed = lower > upper
+    if crossed.any():
+        values["joint_lower_limit"] = np.where(crossed, -np.inf, lower)
+        values["joint_upper_limit"] = np.where(crossed, np.inf, upper)
 
 
 def dynamics_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
@@ -68,7 +86,7 @@ def dynamics_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
         found["joint_damping"] = engine.parameter("model", "dof_damping", body.velocity_index[link])
         limit = limit_rows(engine, body).get(link)
         if limit is not None:
-            found |= {name: engine.parameter("model", field, limit) for name, field in _LIMITS.items()}
+            found |= {name: engine.parameter("model", field, limit) for name, field in LIMITS.items()}
     return {name: found[name] for name in _ALL if name in found}
 
 
@@ -104,7 +122,7 @@ def _writes(
             yield "model", "dof_damping", dofs, numbers[:, None]
         else:
             _require_joint(link, name)
-            yield "model", _LIMITS[name], _limit_row(engine, body, link), numbers
+            yield "model", LIMITS[name], _limit_row(engine, body, link), numbers
 
 
 def _scaled_inertias(body: Body, link: int, masses: np.ndarray) -> np.ndarray:

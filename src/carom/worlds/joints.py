@@ -14,6 +14,7 @@ from carom.scene.joint_motor import Drives
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
 from carom.worlds.chosen import Chosen
+from carom.worlds.dynamics import LIMITS, limit_rows
 
 
 class JointBatch(Batch):
@@ -52,8 +53,27 @@ class JointBatch(Batch):
 
     @property
     def limits(self) -> tuple[Array, Array]:
-        """Minimum and maximum positions of movable joints, (dofs,); infinite without a limit."""
-        return self._body.joints.limits
+        """Minimum and maximum positions of movable joints in each world; infinite without a limit.
+
+        Copies (count, movable joints) of what `change_dynamics` sets.
+        """
+        lower, upper = self._limits()
+        shape = (self._count, lower.shape[1])
+        return np.broadcast_to(lower, shape).copy(), np.broadcast_to(upper, shape).copy()
+
+    def _limits(self) -> tuple[Array, Array]:
+        """`limits` with one row for each world, or one for all if they are the same."""
+        rows = limit_rows(self._engine, self._body)
+        places = [place for place, joint in enumerate(self._body.joints.movable) if joint.index in rows]
+        found = [rows[self._body.joints.movable[place].index] for place in places]
+        model = self._engine.arrays.model.numpy
+        lower, upper = (
+            np.repeat(stated[None], len(model[field]), axis=0)
+            for stated, field in zip(self._body.joints.limits, LIMITS.values(), strict=True)
+        )
+        for limits, field in ((lower, "joint_lower_limit"), (upper, "joint_upper_limit")):
+            limits[:, places] = model[LIMITS[field]][:, found]
+        return lower, upper
 
     def columns(self, joints: list[int | str] | None = None) -> slice | np.ndarray:
         """The columns of `joint_velocities` that belong to some joints with one degree of freedom.
@@ -127,8 +147,10 @@ class JointBatch(Batch):
         """
         columns, places = self._chosen_joints(joints)
         worlds, inner = self._chosen(where), (len(places),)
-        lower, upper = self.limits
-        target = np.clip(self._fitting(worlds, targets, inner, "targets"), lower[places], upper[places])
+        lower, upper = (
+            (limits[worlds.rows] if len(limits) > 1 else limits)[:, places] for limits in self._limits()
+        )
+        target = np.clip(self._fitting(worlds, targets, inner, "targets"), lower, upper)
         rate = self._fitting(worlds, velocities, inner, "velocities")
         gain = self._fitting(worlds, gains, inner, "gains")
         damping = self._fitting(worlds, velocity_gains, inner, "velocity_gains")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array
+from carom.checks import Array, positive
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
@@ -26,6 +26,7 @@ from carom.worlds.images import Images, take_images
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
+from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -45,7 +46,6 @@ class Worlds:
     Attributes:
         count: Number of worlds.
         device: The device they are on.
-        time_step: Duration of a step [s].
         times: Simulated time of each world [s], shape (count,).
         halted: Which worlds are halted because a velocity became NaN or infinite, (count,). Their state is
             that before the step; `restore` makes them run again.
@@ -77,7 +77,6 @@ class Worlds:
         self._engine = make_engine(self._scene, count, device, threads)
         self.device: str = device if isinstance(device, str) else device.name
         self._engine.update_settings(self._scene.parameters)
-        self.time_step: float = world.parameters.time_step
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
         self.halted: Mask = np.zeros(count, dtype=bool)
@@ -107,6 +106,20 @@ class Worlds:
         return iter(self._bodies.values())
 
     # Time
+
+    @property
+    def time_step(self) -> float:
+        """Duration of a step [s], the same in all worlds.
+
+        As in a `World`, drives keep the impulses that their maximum forces were converted to.
+        """
+        return self._scene.parameters.time_step
+
+    @time_step.setter
+    def time_step(self, value: float) -> None:
+        (seconds,) = positive([value], "time_step").tolist()
+        self._scene.parameters.time_step = seconds
+        self._engine.update_settings(self._scene.parameters)
 
     def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
@@ -303,6 +316,9 @@ class Worlds:
     ) -> ContactSummary:
         """Contacts of a body with another, or with anything, in each world, as of the last step.
 
+        Contacts of soft bodies with shapes are found for one world after the other; those of two soft bodies
+        are not included.
+
         Args:
             body: The body.
             other: The other body; None for any.
@@ -312,18 +328,22 @@ class Worlds:
         first, second = self[body], None if other is None else self[other]
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")
-        return self._contact_finder.summary(
+        found = self._contact_finder.summary(
             first.link_rows(link),
             None if second is None else second.link_rows(other_link),
             self._scene.parameters.substep_time,
         )
+        if self._is_soft(body, other):
+            found.include(self._soft_touches(body, link, other, other_link))
+        return found
 
     def links_in_contact(
         self, body: Body | int, other: Body | int, other_link: int | str | None = None
     ) -> Mask:
         """Which links of a body have a contact point with another body, as of the last step.
 
-        Points that do not touch yet count as well, as in `ContactSummary.number`.
+        Points that do not touch yet count as well, as in `ContactSummary.number`. For soft bodies, see
+        `contacts`.
 
         Args:
             body: The body.
@@ -333,7 +353,30 @@ class Worlds:
         Returns:
             (count, links + 1) booleans, the base first.
         """
-        return self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+        found = self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+        if self._is_soft(body, other):
+            for world, touches in self._soft_touches(body, None, other, other_link):
+                found[world, np.unique(touches.links) + 1] = True
+        return found
+
+    def _is_soft(self, body: Body | int, other: Body | int | None) -> bool:
+        """Whether contacts of bodies, None for any, can be contacts of soft bodies."""
+        soft = {item.rows.first["link"] for item in self._scene.contact_arrays.soft.bodies}
+        asked = [body] if other is None else [body, other]
+        return bool(soft) and (other is None or any(self[one].rows.first["link"] in soft for one in asked))
+
+    def _soft_touches(
+        self, body: Body | int, link: int | str | None, other: Body | int | None, other_link: int | str | None
+    ) -> Sequence[tuple[int, SoftTouches]]:
+        first, second = self._side(body, link), self._side(other, other_link)
+        return soft_touches(self._scene, self._engine, first, second)
+
+    def _side(self, body: Body | int | None, link: int | str | None) -> Side:
+        if body is None:
+            return Side.of(None, None)
+        return Side.of(
+            body if isinstance(body, int) else body.id, None if link is None else self[body].link_index(link)
+        )
 
     @cached_property
     def _contact_finder(self) -> ContactFinder:
