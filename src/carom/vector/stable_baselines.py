@@ -74,7 +74,9 @@ class StableBaselinesEnv(VecEnv):
         over = terminations | truncations
         infos = [own_infos(told, world) for world in range(self.num_envs)]
         for world in np.flatnonzero(over):
-            infos[world]["terminal_observation"] = infos[world].pop("final_obs")
+            last = infos[world]
+            last.update(last.pop("final_info", {}))
+            last["terminal_observation"] = last.pop("final_obs")
             infos[world]["TimeLimit.truncated"] = bool(truncations[world] and not terminations[world])
         return observations, np.asarray(rewards, dtype=np.float32), over, infos
 
