@@ -9,6 +9,7 @@ from carom.checks import Array
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.scene.body import ROUNDING
 from carom.worlds.dynamics import change_dynamics, dynamics_of
+from carom.worlds.frames import link_frames
 from carom.worlds.joints import JointBatch
 
 
@@ -111,9 +112,18 @@ class BodyBatch(JointBatch):
 
     @property
     def link_poses(self) -> Array:
-        """World poses of the links' inertial frames, for the present coordinates: a copy (count, links, 7).
+        """World poses of the link frames, as `Link.pose`, for the present coordinates: (count, links, 7).
 
-        Position of the centre of mass [m] and quaternion (x, y, z, w); the base is not among them.
+        A copy: position of the frame's origin [m] and quaternion (x, y, z, w); the base is not among them.
+        """
+        return link_frames(self._poses.poses()[:, self._links], self._body.spec.links)
+
+    @property
+    def link_inertial_poses(self) -> Array:
+        """World poses of the links' inertial frames, as `Link.inertial_pose`: a copy (count, links, 7).
+
+        Position of the centre of mass [m] and quaternion (x, y, z, w), for the present coordinates; the base
+        is not among them.
         """
         return self._poses.poses()[:, self._links].copy()
 
@@ -127,10 +137,10 @@ class BodyBatch(JointBatch):
 
     @property
     def stepped_link_poses(self) -> Array:
-        """`link_poses` as `pybullet.getLinkState` has them after a step; a view (count, links, 7).
+        """`link_inertial_poses` as `pybullet.getLinkState` has them after a step; a view (count, links, 7).
 
-        They are the poses at the start of the last substep. Reading `link_poses` or `link_velocities`
-        updates them in all worlds, `update_link_poses` in chosen worlds.
+        They are the poses at the start of the last substep. Reading `link_poses`, `link_inertial_poses`
+        or `link_velocities` updates them in all worlds, `update_link_poses` in chosen worlds.
         """
         return self._state["link_pose"][:, self._links]
 

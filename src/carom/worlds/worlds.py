@@ -5,12 +5,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, positive
+from carom.closed import Closed
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
@@ -36,7 +37,7 @@ _MOST_NAMED = 8
 """Maximum number of worlds named in a warning when several halt."""
 
 
-class Worlds:
+class Worlds(Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
@@ -84,6 +85,19 @@ class Worlds:
             number: BodyBatch(body, self._scene, self._engine) for number, body in self._scene.bodies.items()
         }
 
+        self._close(Worlds)
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(batch.name) for batch in self)
+        halted = np.count_nonzero(self.halted)
+        return f"<Worlds: {self.count} on {self.device!r} with {names or 'no bodies'}, {halted} halted>"
+
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        raise TypeError(
+            "Worlds cannot be pickled or deep-copied: save() keeps its states, extract(number) gives one of "
+            "its worlds, which can be, and Worlds(world, count) makes others"
+        )
+
     def __len__(self) -> int:
         return self.count
 
@@ -129,7 +143,12 @@ class Worlds:
         Args:
             count: Number of steps.
             where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: The number of steps is negative.
         """
+        if count < 0:
+            raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
             steps = min(count, MOST_STEPS)
