@@ -50,7 +50,7 @@ def stir_panda(worlds: Worlds, random: np.random.Generator) -> None:
     """New targets for all arms."""
     (arm,) = worlds
     lower, upper = arm.limits
-    arm.set_position_targets(random.uniform(lower, upper, (worlds.count, len(lower))), max_forces=87.0)
+    arm.set_position_targets(random.uniform(lower, upper), max_forces=87.0)
 
 
 def stir_ant(worlds: Worlds, random: np.random.Generator) -> None:

@@ -35,7 +35,18 @@ def main(count=1000):
     print(f"as friction has it to within {100 * np.abs(distance / expected - 1).max():.1f} %")
     print(f"{np.count_nonzero(touching.touching)} lie on the floor, which bears their weight")
     weight = touching.forces[:, 2]
-    return {"distance": distance, "expected": expected, "weight": weight, "bears": mass * -gravity[:, 2]}
+
+    # Every other cube comes onto ice and is pushed again; `where` leaves the others alone.
+    icy = np.arange(0, count, 2)
+    cubes.change_dynamics(-1, lateral_friction=random.uniform(0.05, 0.1, len(icy)), where=icy)
+    cubes.set_base_velocities((SPEED, 0.0, 0.0, 0.0, 0.0, 0.0), where=icy)
+    worlds.step(240)
+    farther = np.linalg.norm(cubes.base_poses[:, :2], axis=1) - distance
+    kept = np.count_nonzero(cubes.dynamics(-1)["lateral_friction"] == friction)
+    print(f"on ice {len(icy)} slid {farther[icy].min():.2f} m farther at least")
+    print(f"{kept} have the friction they had")
+    bears = mass * -gravity[:, 2]
+    return {"distance": distance, "expected": expected, "weight": weight, "bears": bears, "farther": farther}
 
 
 if __name__ == "__main__":

@@ -164,7 +164,7 @@ def test_a_base_freed_in_flight_keeps_its_momentum():
     assert_allclose(momentum(body)[:3], start[:3], rtol=0, atol=1e-12)
 
 
-def test_a_new_mass_brings_the_inertia_of_the_shapes():
+def test_a_new_mass_scales_the_inertia():
     body = World().load(boxes())
     body.change_dynamics(0, mass=6.0)
     dynamics = body.dynamics(0)
@@ -172,7 +172,17 @@ def test_a_new_mass_brings_the_inertia_of_the_shapes():
     assert_allclose(dynamics.inertia, [6.0 * 0.52 / 12, 6.0 * 0.4 / 12, 6.0 * 0.2 / 12])
     body.change_dynamics(0, mass=6.0, inertia=(1.0, 2.0, 3.0))
     assert body.dynamics(0).inertia == (1.0, 2.0, 3.0)
+    body.change_dynamics(0, mass=3.0)
+    assert_allclose(body.dynamics(0).inertia, (0.5, 1.0, 1.5))
     assert body.spec.links[0].mass == 2.0
+
+
+def test_a_freed_base_has_the_inertia_of_its_file():
+    body = World().load(boxes(fixed_base=True))
+    spec = body.spec.base
+    assert body.dynamics(BASE).mass == 0.0
+    body.change_dynamics(BASE, mass=2.0 * spec.mass)
+    assert_allclose(body.dynamics(BASE).inertia, 2.0 * np.array(spec.inertia))
 
 
 def test_changes_of_mass_are_felt_by_the_next_step():

@@ -18,6 +18,7 @@ MOST_FILES_IN_A_FOLDER = 25
 FLOORS = (
     {
         "carom.checks",
+        "carom.closed",
         "carom.conflicts",
         "carom.errors",
         "carom.logger",

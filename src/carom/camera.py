@@ -86,6 +86,11 @@ class CameraImage:
             for body in bodies.values()
         }
 
+    def __repr__(self) -> str:
+        height, width = self.depth.shape
+        seen = np.count_nonzero(np.unique(self.body_ids) != NOTHING)
+        return f"<CameraImage {width} x {height}, {seen} bodies in view>"
+
     def _repr_png_(self) -> bytes:
         """The colours as a PNG file, for notebooks."""
         from PIL import Image
@@ -253,6 +258,10 @@ class Camera:
         if not 0.0 < degrees < 180.0:
             raise ValueError(f"degrees must be between 0 and 180, not {degrees!r}")
         return cls(width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far)
+
+    def __repr__(self) -> str:
+        place = "in the world" if self.link is None else f"on {self.link!r}"
+        return f"<Camera {self.width} x {self.height} {place}>"
 
     def _repr_html_(self) -> str:
         """Its image size and position, for notebooks."""

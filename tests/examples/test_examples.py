@@ -227,6 +227,8 @@ def test_cubes_slide_as_far_as_their_friction_lets_them(example):
     record = example("domain_randomisation").main(count=50)
     assert np.allclose(record["distance"], record["expected"], rtol=0.1)
     assert np.allclose(record["weight"], record["bears"], rtol=1e-3)
+    assert record["farther"][::2].min() > 1.0
+    assert record["farther"][1::2].max() < 1e-3
 
 
 def test_an_environment_of_ones_own_can_be_solved(example):

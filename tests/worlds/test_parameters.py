@@ -215,3 +215,88 @@ def test_fixed_bases_have_no_mass() -> None:
     scene, panda = panda_world()
     with pytest.raises(ValueError, match="the base is fixed"):
         Worlds(scene, 2)[panda].change_dynamics(-1, mass=1.0)
+
+
+def test_inertias_are_scaled_with_the_mass_whatever_was_set_before() -> None:
+    scene, panda = panda_world()
+    panda.change_dynamics(2, inertia=(0.1, 0.2, 0.4))
+    mass = panda.dynamics(2).mass
+    batch = Worlds(scene, COUNT)[panda]
+    batch.change_dynamics(2, mass=7.0, inertia=1.0)
+    batch.change_dynamics(2, mass=VALUES * mass)
+    expected = VALUES[:, None] * np.array([0.1, 0.2, 0.4])
+    np.testing.assert_allclose(batch.dynamics(2)["inertia"], expected, rtol=1e-14)
+    panda.change_dynamics(2, mass=2.0 * mass)
+    np.testing.assert_allclose(panda.dynamics(2).inertia, [0.2, 0.4, 0.8], rtol=1e-14)
+
+
+def test_masses_of_many_worlds_are_set_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, box = box_world()
+    calls: list[float] = []
+    monkeypatch.setattr("carom.worlds.dynamics.shape_inertia", lambda *given: calls.append(given[2]))
+    batch = Worlds(scene, 4096)[box]
+    batch.change_dynamics(-1, mass=np.linspace(0.5, 2.0, 4096))
+    assert not calls
+    assert len(np.unique(batch.dynamics(-1)["inertia"][:, 0])) > 4000
+
+
+def test_a_link_without_mass_gets_the_inertia_of_its_shapes() -> None:
+    scene, panda = panda_world()
+    tip = panda.links["panda_grasptarget"].index
+    assert panda.dynamics(tip).mass == 0.0
+    batch = Worlds(scene, COUNT)[panda]
+    batch.change_dynamics(tip, mass=VALUES)
+    panda.change_dynamics(tip, mass=float(VALUES[1]))
+    np.testing.assert_array_equal(batch.dynamics(tip)["inertia"][1], panda.dynamics(tip).inertia)
+
+
+def test_targets_are_clipped_to_the_limits_of_their_world() -> None:
+    scene, panda = panda_world()
+    worlds = Worlds(scene, COUNT, threads=2)
+    arms = worlds[panda]
+    upper = 0.3 * VALUES
+    arms.change_dynamics("panda_link1", joint_upper_limit=upper)
+    np.testing.assert_array_equal(arms.limits[1][:, 0], upper)
+    np.testing.assert_array_equal(arms.limits[0], np.tile(panda.joints.limits[0], (COUNT, 1)))
+    arms.set_position_targets(2.0, max_forces=87.0, where=[0, 1])
+    arms.set_position_targets(2.0, max_forces=87.0, joints=[0, 2], where=[3, 2])
+
+    def change(world: World, value: float) -> None:
+        body = world.bodies[panda.id]
+        body.change_dynamics(0, joint_upper_limit=0.3 * value)
+        joints = body.joints.movable if value < 0.6 else [body.joints[0], body.joints[2]]
+        for joint in joints:
+            joint.set_position_target(2.0, max_force=87.0)
+
+    assert_each_is_alone(scene, worlds, change)
+
+
+def test_limits_that_cross_are_none() -> None:
+    scene, panda = panda_world()
+    worlds = Worlds(scene, COUNT)
+    worlds[panda].change_dynamics(0, joint_lower_limit=1.0 - VALUES, joint_upper_limit=0.3)
+    assert worlds[panda].limits[0][:, 0].tolist() == [-np.inf, -np.inf, 0.0, 1.0 - VALUES[3]]
+
+    def change(world: World, value: float) -> None:
+        limits = (1.0 - value, 0.3) if value > 0.7 else (-np.inf, np.inf)
+        world.bodies[panda.id].change_dynamics(0, joint_lower_limit=limits[0], joint_upper_limit=limits[1])
+
+    assert_each_is_alone(scene, worlds, change)
+
+
+def test_the_time_step_is_that_of_the_steps() -> None:
+    scene, _ = box_world()
+    worlds = Worlds(scene, COUNT)
+    worlds.time_step = 0.01
+    assert worlds.time_step == 0.01
+
+    def change(world: World, value: float) -> None:
+        world.parameters.time_step = 0.01
+        world.apply_parameters()
+
+    lone, *_ = assert_each_is_alone(scene, worlds, change)
+    assert worlds.times[0] == lone.time
+    for wrong in (0.0, -0.01, np.nan, "soon"):
+        with pytest.raises(ValueError, match="time_step must be"):
+            worlds.time_step = wrong  # type: ignore[assignment]
+    assert worlds.extract(0).parameters.time_step == 0.01

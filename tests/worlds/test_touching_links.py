@@ -61,7 +61,7 @@ def test_poses_of_the_step_are_those_at_the_start_of_its_last_substep():
     world, _, robot = scene()
     worlds = Worlds(world, 2)
     worlds.step(5)
-    present = worlds[robot].link_poses
+    present = worlds[robot].link_inertial_poses
     worlds.step()
     batch = worlds[robot]
     assert np.allclose(batch.stepped_link_poses, present, atol=1e-12)
@@ -70,7 +70,7 @@ def test_poses_of_the_step_are_those_at_the_start_of_its_last_substep():
     batch.update_link_poses([1])
     poses = batch.stepped_link_poses.copy()
     assert np.allclose(poses[0], present[0], atol=1e-12)
-    assert (poses[1] == batch.link_poses[1]).all()
+    assert (poses[1] == batch.link_inertial_poses[1]).all()
 
 
 def test_columns_of_joints():

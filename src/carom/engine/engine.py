@@ -396,18 +396,37 @@ class Engine:
         if self._parameters(table).spread(field, self.arrays.world_count):
             self.changed()
 
-    def set_parameter(self, table: str, field: str, rows: int | slice, values: np.ndarray) -> None:
-        """Set a parameter in each world.
+    def parameter(self, table: str, field: str, rows: int | slice) -> np.ndarray:
+        """A copy of a parameter as it is in each world: (worlds, ...).
+
+        Args:
+            table: "model", "shapes" or "users".
+            field: The field in it.
+            rows: The rows to read.
+        """
+        values = self._parameters(table).numpy[field][:, rows]
+        return np.broadcast_to(values, (self.arrays.world_count, *values.shape[1:])).copy()
+
+    def set_parameter(
+        self,
+        table: str,
+        field: str,
+        rows: int | slice,
+        values: np.ndarray,
+        worlds: slice | np.ndarray = slice(None),
+    ) -> None:
+        """Set a parameter in each world, or in some.
 
         Args:
             table: "model", "shapes" or "users".
             field: The field in it.
             rows: The rows to set.
-            values: New values; the first axis is that of worlds.
+            values: New values; the first axis is that of the worlds.
+            worlds: Index of the worlds; all by default.
         """
         self.spread(table, field)
         parameters = self._parameters(table)
-        parameters.numpy[field][:, rows] = values
+        parameters.numpy[field][worlds, rows] = values
         parameters.written(field)
 
     def _parameters(self, table: str) -> ArrayTable:

@@ -195,8 +195,16 @@ class Queries:
         rigid = self._contacts(count, overlaps, *asked) if count else NO_CONTACTS
         if self._soft is None:
             return rigid
-        soft = self._soft.contacts(body_a, link_a, body_b, link_b, time_step)
+        soft = self.soft_contacts(body_a, link_a, body_b, link_b, time_step)
         return _one_after_the_other(rigid, soft)
+
+    def soft_contacts(
+        self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
+    ) -> ContactColumns:
+        """Those of `contacts` in which one of the bodies is soft."""
+        if self._soft is None:
+            return NO_CONTACTS
+        return self._soft.contacts(body_a, link_a, body_b, link_b, time_step)
 
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
         """Rows of the links whose bounds overlap a box, given by its corners in world axes [m].

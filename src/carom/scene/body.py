@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 from functools import cached_property
 from math import sqrt
 from struct import Struct
@@ -17,6 +18,7 @@ from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.tables import NUMPY_REAL
 from carom.scene.dynamics_changes import change_dynamics, write_link
+from carom.scene.handles import world_of
 from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
@@ -93,6 +95,19 @@ class Body:
         self.first_velocity: int = self.rows.first["dof"]
         self.position_index = _first_rows(self.first_position + BASE_POSITIONS, self.position_count)
         self.velocity_index = _first_rows(self.first_velocity + BASE_VELOCITIES, self.velocity_count)
+
+    def __repr__(self) -> str:
+        base = "fixed base" if self.fixed_base else "free base"
+        joints = "1 joint" if self.joint_count == 1 else f"{self.joint_count} joints"
+        return f"<{type(self).__name__} {self.id} {self.name!r}: {joints}, {base}>"
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Body:
+        """The same body in a copy of its world."""
+        return deepcopy(world_of(self), memo).bodies[self.id]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled together with its world."""
+        return _body_of, (world_of(self), self.id)
 
     def _repr_html_(self) -> str:
         """Its joints and links, for notebooks."""
@@ -216,18 +231,18 @@ class Body:
         """Whether the body slept in the last step, because it and all bodies near it had been at rest."""
         return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
 
-    def change_dynamics(self, link: int, **changes: Any) -> None:
+    def change_dynamics(self, link: int | str, **changes: Any) -> None:
         """Change inertia, surface or joint limits of a link, or damping of the whole body.
 
         Args:
-            link: The link; -1 is the base.
-            **changes: Fields of `LinkDynamics` by name (`inertia` after `mass`, which sets the
-                inertia of the collision shapes), `joint_limit_force` [N m or N], and for the whole
+            link: The link by index (-1 is the base) or name.
+            **changes: Fields of `LinkDynamics` by name (a `mass` without `inertia` scales the inertia
+                with it, as if the density changed), `joint_limit_force` [N m or N], and for the whole
                 body `linear_damping`, `angular_damping` [1/s], `max_joint_velocity`
                 [rad/s and m/s], `activation_state` (bits of `layouts.flags.ActivationChange`) and
                 `sleep_threshold`, the sum of squared velocities below which it is at rest.
         """
-        change_dynamics(self, link, changes)
+        change_dynamics(self, self.links[link].index if isinstance(link, str) else link, changes)
 
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
@@ -247,6 +262,10 @@ class Body:
         model["tree_sensor_count"][self.rows.tree] = int(model["link_sensor"][links].sum())
         if not enabled:
             self.world.joint_reaction[row] = 0.0
+
+
+def _body_of(world: World, number: int) -> Body:
+    return world.bodies[number]
 
 
 def _first_rows(start: int, counts: Sequence[int]) -> tuple[int, ...]:

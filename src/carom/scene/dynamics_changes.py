@@ -178,9 +178,9 @@ def write_link(body: Body, link: int) -> None:
 
 
 def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) -> Callable[[], None]:
-    """Prepare to set mass and inertia (by default that of the collision shapes); mass 0 fixes a base."""
+    """Prepare to set mass and inertia (by default scaled with the mass); mass 0 fixes a base."""
     world, dynamics = body.world, body.dynamics(link)
-    moments = shape_inertia(body, link, mass) if inertia is None else inertia
+    moments = scaled_inertia(body, link, mass) if inertia is None else inertia
     frees_or_fixes = link == BASE and (mass > 0.0) == body.fixed_base
     part = world.contact_arrays.parting([body.first_link]) if frees_or_fixes else None
 
@@ -207,6 +207,34 @@ def set_base_freedom(world: World, body: Body, *, free: bool) -> None:
     world.arrays.set_base_freedom(body.rows, free=free)
     body.fixed_base = not free
     body.derived.clear()
+
+
+def scaled_inertia(body: Body, link: int, mass: float) -> Vector3:
+    """Principal moments of inertia [kg m²] of a link whose mass changes and whose shape and density do not.
+
+    Args:
+        body: The body.
+        link: The link; -1 is the base.
+        mass: The new mass [kg].
+
+    Returns:
+        The present moments, in proportion to the mass; those of the file if the link has no mass now, as a
+        fixed base; those of the collision shapes if the file states no mass either.
+    """
+    unit = unit_inertia(body, link)
+    if unit is None:
+        return shape_inertia(body, link, mass)
+    x, y, z = unit
+    return (x * mass, y * mass, z * mass)
+
+
+def unit_inertia(body: Body, link: int) -> Vector3 | None:
+    """The moments of `scaled_inertia` at 1 kg [m²]; None if those of the collision shapes are asked for."""
+    for known in (body.dynamics(link), body.link_spec(link)):
+        if known.mass > 0.0:
+            x, y, z = known.inertia
+            return (x / known.mass, y / known.mass, z / known.mass)
+    return None
 
 
 def shape_inertia(body: Body, link: int, mass: float) -> Vector3:

@@ -315,6 +315,9 @@ class Joints(Named[Joint]):
         self._body = body
         self._movable = [joint for joint in self if joint.degrees_of_freedom]
 
+    def __repr__(self) -> str:
+        return f"<Joints of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
+
     def _repr_html_(self) -> str:
         """A table of the joints, for notebooks."""
         from carom.scene.html_tables import joints_table
@@ -328,14 +331,14 @@ class Joints(Named[Joint]):
 
     @property
     def positions(self) -> Array:
-        """Position coordinates of all movable joints."""
+        """Position coordinates of all movable joints: a copy, read-only; `reset` sets them."""
         first, count = self._body.first_position + BASE_POSITIONS, sum(self._body.position_count)
-        return world_of(self._body).position[first : first + count].copy()
+        return _read_only(world_of(self._body).position[first : first + count].copy())
 
     @property
     def velocities(self) -> Array:
-        """Velocity coordinates of all movable joints."""
-        return world_of(self._body).velocity[self._dofs].copy()
+        """Velocity coordinates of all movable joints: a copy, read-only; `reset` sets them."""
+        return _read_only(world_of(self._body).velocity[self._dofs].copy())
 
     @property
     def motor_torques(self) -> Array:
@@ -445,3 +448,9 @@ class Joints(Named[Joint]):
 
     def _forces(self, max_forces: ArrayLike | None) -> ArrayLike:
         return self.effort_limits if max_forces is None else max_forces
+
+
+def _read_only(copied: Array) -> Array:
+    """Refuse writes to a copy, which would be lost."""
+    copied.flags.writeable = False
+    return copied

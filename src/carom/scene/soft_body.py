@@ -135,7 +135,7 @@ class SoftBody(Body):
         self.node_velocities[:] = np.asarray(linear) + np.cross(np.asarray(angular), self.nodes - center)
         self.update()
 
-    def change_dynamics(self, link: int, **changes: Any) -> None:
+    def change_dynamics(self, link: int | str, **changes: Any) -> None:
         """Change contact parameters, as `Body.change_dynamics`; as in PyBullet the mass does not change."""
         super().change_dynamics(
             link, **{name: value for name, value in changes.items() if name not in _FIXED}

@@ -81,7 +81,7 @@ class PandaTask(WorldsEnv):
         self._panda = self.worlds[panda]
         self._cube = None if cube is None else self.worlds[cube]
         self._tip_row = self._panda.link_names.index(_TIP)
-        self._lower, self._upper = (limits[:_ARM] for limits in self._panda.limits)
+        self._lower, self._upper = (limits[:, :_ARM] for limits in self._panda.limits)
         self._wanted = np.zeros((num_envs, _ARM + _FINGERS))
         self.goals = np.zeros((num_envs, 3))
 

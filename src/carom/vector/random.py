@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 import numpy as np
 from gymnasium.utils import seeding
@@ -23,6 +24,8 @@ class RandomSources:
     """
 
     def __init__(self, count: int) -> None:
+        # A generator whose numbers are thrown away.
+        self._spare = np.random.default_rng(0)
         made = [seeding.np_random() for _ in range(count)]
         self.generators: list[np.random.Generator] = [generator for generator, _ in made]
         self.seeds: list[int] = [seed for _, seed in made]
@@ -48,8 +51,27 @@ class RandomSources:
             if own is not None:
                 self.generators[world], self.seeds[world] = seeding.np_random(int(own))
 
+    @contextmanager
+    def only(self, worlds: np.ndarray) -> Iterator[None]:
+        """Let only some environments draw; those of the others get numbers that are not theirs meanwhile.
+
+        So what the others draw later does not depend on what is drawn for these.
+        """
+        kept = self.generators
+        self.generators = [self._spare] * len(kept)
+        for world in worlds.tolist():
+            self.generators[world] = kept[world]
+        try:
+            yield
+        finally:
+            for world in worlds.tolist():
+                kept[world] = self.generators[world]
+            self.generators = kept
+
     def draw(self, worlds: np.ndarray, sample: Callable[[np.random.Generator], ArrayLike]) -> Array:
         """The results of `sample` for the generators of some environments, (n, ...)."""
+        if not len(worlds):
+            return np.zeros((0, *np.shape(sample(self._spare))))
         return np.array([sample(self.generators[world]) for world in worlds.tolist()], dtype=np.float64)
 
     def uniform(

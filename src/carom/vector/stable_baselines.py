@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from gymnasium.vector import AutoresetMode
+from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 
 try:
     from stable_baselines3.common.vec_env import VecEnv
@@ -16,17 +16,27 @@ except ImportError as missing:
         name="stable_baselines3",
     ) from missing
 
+from carom.vector.infos import own_infos
 from carom.vector.worlds_env import WorldsEnv
 
 
 class StableBaselinesEnv(VecEnv):
     """A `WorldsEnv` as a vector environment of Stable-Baselines3.
 
+    Gymnasium's vector wrappers around it stay in place: what they do to actions, observations, rewards and
+    infos is what Stable-Baselines3 trains on. Those that do not know episodes that begin in the same step
+    refuse such an environment themselves (`NormalizeObservation`); Stable-Baselines3's `VecNormalize` does
+    the same on the outside.
+
+    Each environment's infos are its own entries of the vector environment's: those of an episode's last step
+    are of that step.
+
     Attributes:
-        env: The vector environment.
+        env: The vector environment, with its wrappers.
 
     Args:
-        env: An environment whose `autoreset_mode` is `SAME_STEP`, from its class or `gymnasium.make_vec`.
+        env: An environment whose `autoreset_mode` is `SAME_STEP`, from its class or `gymnasium.make_vec`, in
+            any number of wrappers.
 
     Raises:
         ValueError: The environment is not a `WorldsEnv`, or its `autoreset_mode` is another.
@@ -39,15 +49,17 @@ class StableBaselinesEnv(VecEnv):
                 "Stable-Baselines3 trains on a WorldsEnv that begins episodes in the same step: "
                 "make it with autoreset_mode='SameStep'"
             )
-        self.env = inner
-        self.render_mode = inner.render_mode
+        self.env: VectorEnv[Any, Any, Any] = env
+        self.render_mode = env.render_mode
         self._actions = np.zeros(0)
-        super().__init__(inner.num_envs, inner.single_observation_space, inner.single_action_space)
+        super().__init__(env.num_envs, env.single_observation_space, env.single_action_space)
 
     def reset(self) -> np.ndarray:  # type: ignore[override]
         """Start all episodes. Seeds set by `seed` are used once."""
         seeds: list[int | None] = list(self._seeds)
-        observations, _ = self.env.reset(seed=seeds)
+        # Lists of seeds are typed in Gymnasium's own vector environments only.
+        observations, told = self.env.reset(seed=seeds)  # type: ignore[arg-type]
+        self.reset_infos = [own_infos(told, world) for world in range(self.num_envs)]
         self._reset_seeds()
         self._reset_options()
         return observations
@@ -60,11 +72,13 @@ class StableBaselinesEnv(VecEnv):
         """Take a step; return observations, rewards, a mask of ended episodes, and a list of infos."""
         observations, rewards, terminations, truncations, told = self.env.step(self._actions)
         over = terminations | truncations
-        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        infos = [own_infos(told, world) for world in range(self.num_envs)]
         for world in np.flatnonzero(over):
-            infos[world]["terminal_observation"] = told["final_obs"][world]
+            last = infos[world]
+            last.update(last.pop("final_info", {}))
+            last["terminal_observation"] = last.pop("final_obs")
             infos[world]["TimeLimit.truncated"] = bool(truncations[world] and not terminations[world])
-        return observations, rewards.astype(np.float32), over, infos
+        return observations, np.asarray(rewards, dtype=np.float32), over, infos
 
     def close(self) -> None:
         """Close the environment."""
@@ -72,7 +86,7 @@ class StableBaselinesEnv(VecEnv):
 
     def get_images(self) -> Sequence[np.ndarray | None]:
         """The images of `render`, one for each environment."""
-        pictures = self.env.render()
+        pictures: Any = self.env.render()
         return [None] * self.num_envs if pictures is None else list(pictures)
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
@@ -92,8 +106,11 @@ class StableBaselinesEnv(VecEnv):
         return [getattr(self.env, method_name)(*method_args, **method_kwargs)] * self.num_envs
 
     def env_is_wrapped(self, wrapper_class: type, indices: Any = None) -> list[bool]:
-        """False for all: there are no single environments to wrap."""
-        return [False] * len(list(self._get_indices(indices)))
+        """Whether one of the wrappers around the vector environment is of a class, once for each index."""
+        layer: Any = self.env
+        while isinstance(layer, VectorWrapper) and not isinstance(layer, wrapper_class):
+            layer = layer.env
+        return [isinstance(layer, wrapper_class)] * len(list(self._get_indices(indices)))
 
     def _require_all(self, indices: Any, name: str) -> None:
         if len(list(self._get_indices(indices))) != self.num_envs:

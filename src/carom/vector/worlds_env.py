@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from copy import deepcopy
 from typing import Any
 
 import gymnasium
@@ -15,6 +16,8 @@ from numpy.typing import ArrayLike
 from carom.camera import Camera
 from carom.checks import Array
 from carom.vector.actions import ActionChecker
+from carom.vector.infos import batched_infos
+from carom.vector.observations import own_observation, replace_observations
 from carom.vector.random import RandomSources
 from carom.world.world import World
 from carom.worlds.checks import Mask
@@ -24,21 +27,26 @@ RESET_MASK = "reset_mask"
 _MODES = (None, "rgb_array")
 
 
-class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
+class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
     """A vector environment: environments of the same kind, one for each of many worlds.
 
     A subclass defines how an episode begins (`begin`), what an action does (`act`), the observation
     (`observe`), the reward (`reward`) and when an episode is over (`terminated`), each for all environments
     at once: the first axis of arrays is the environment. A step calls the last four in this order, with the
     worlds stepped between `act` and `observe`. If a reward needs data from before the step, `act` has to keep
-    them; `observe` may be called several times for a state, and must not change it.
+    them; `observe` may be called several times for a state, and must not change it. It may draw noise from
+    `random`: if it is called for environments that begin, the others keep their observations and draw none.
 
     Environment k depends only on its own actions and its own seed: `reset(seed=s)` gives it `s + k`.
 
     `autoreset_mode` says when environments are reset after an episode. With `NEXT_STEP`, the default of
     Gymnasium's vector environments, the next step ignores the action of such an environment, and returns the
     first observation with a reward of 0. With `SAME_STEP` the first observation replaces the last one, which
-    is in `infos["final_obs"]`. With `DISABLED` call `reset(options={"reset_mask": mask})`.
+    is in `infos["final_obs"]`, with the infos of that step in `infos["final_info"]`. With `DISABLED` call
+    `reset(options={"reset_mask": mask})`.
+
+    As in Gymnasium's own vector environments, each of the `infos` comes with a mask of the environments that
+    have it, whose name begins with `_`. Environments that have just begun have none.
 
     If velocities become NaN or infinite the world is halted, and its episode is truncated; see
     `infos["halted"]`.
@@ -55,8 +63,8 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     Args:
         world: The world to copy; episodes begin in its state, unless `begin` changes it.
         num_envs: Number of environments.
-        observation_space: Observation space of one environment.
-        action_space: Action space of one environment: a `Box` of one axis, or `Discrete`.
+        observation_space: Observation space of one environment: a `Box`, or a `Dict` or `Tuple` of such.
+        action_space: Action space of one environment: `Box`, `Discrete`, `MultiDiscrete` or `MultiBinary`.
         steps: Number of simulation steps per environment step.
         max_episode_steps: Number of steps after which an episode is truncated; None for never.
         autoreset_mode: When environments are reset after an episode: Gymnasium's `AutoresetMode`, or its
@@ -74,7 +82,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self,
         world: World,
         num_envs: int,
-        observation_space: gymnasium.spaces.Box,
+        observation_space: gymnasium.spaces.Space[Any],
         action_space: gymnasium.spaces.Space[Any],
         *,
         steps: int = 1,
@@ -96,7 +104,11 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.observation_space = batch_space(observation_space, num_envs)
         self.action_space = batch_space(action_space, num_envs)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self.metadata = {"autoreset_mode": self.autoreset_mode, "render_modes": ["rgb_array"]}
+        self.metadata = {
+            "autoreset_mode": self.autoreset_mode,
+            "render_modes": ["rgb_array"],
+            "render_fps": round(1.0 / (steps * self.worlds.time_step)),
+        }
         self.render_mode = render_mode
         self.camera = camera
         self.steps = steps
@@ -108,6 +120,7 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         # No episode has begun: `step` raises an error until `reset` has been called.
         self._over: Mask = np.ones(num_envs, dtype=bool)
         self._begun = False
+        self._observations: Any = None
 
     # To be defined by subclasses
 
@@ -123,7 +136,8 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         """Apply the actions for the next step, and keep data that `reward` needs.
 
         Args:
-            actions: Finite doubles (num_envs, size of an action), or integers (num_envs,) for `Discrete`.
+            actions: Finite doubles (num_envs, size of an action); integers for `Discrete` (num_envs,),
+                `MultiDiscrete` and `MultiBinary` (num_envs, size of an action).
         """
 
     def simulate(self) -> None:
@@ -131,8 +145,8 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.worlds.step(self.steps)
 
     @abstractmethod
-    def observe(self) -> np.ndarray:
-        """The observations: a new array (num_envs, size of an observation)."""
+    def observe(self) -> Any:
+        """The observations: a new array (num_envs, ...), for `Dict` and `Tuple` spaces one of each part."""
 
     @abstractmethod
     def reward(self, actions: np.ndarray) -> Array:
@@ -147,20 +161,26 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         return np.zeros(self.num_envs, dtype=bool)
 
     def infos(self) -> dict[str, Any]:
-        """Further information on a step."""
+        """Further information on a step.
+
+        Returns:
+            By name an array or list with the environments in front, a dictionary of such, or one value for
+            all.
+        """
         return {}
 
     # Gymnasium's interface
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
+    ) -> tuple[Any, dict[str, Any]]:
         """Start episodes.
 
         Args:
             seed: Environment k gets `seed + k`, or the k-th of a list; None continues with the present
                 generators.
-            options: `{"reset_mask": mask}` resets only the environments of the mask (num_envs,).
+            options: `{"reset_mask": mask}` resets only the environments of the mask (num_envs,); the others
+                keep their observations.
 
         Returns:
             The observations, (num_envs, ...), and an empty dictionary.
@@ -168,12 +188,14 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         worlds = self._to_reset(options)
         self.random.seed(seed, worlds)
         self._begin(worlds)
+        if self._observations is None or len(worlds) == self.num_envs:
+            self._observations = self.observe()
+        else:
+            self._observe_again(worlds)
         self._begun = True
-        return self.observe(), {}
+        return deepcopy(self._observations), {}
 
-    def step(
-        self, actions: ArrayLike
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+    def step(self, actions: ArrayLike) -> tuple[Any, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Take a step.
 
         Args:
@@ -193,19 +215,20 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.episode_steps += 1
         if len(beginning):
             self._begin(beginning)
-        observations = self.observe()
+        self._observations = self.observe()
         rewards, terminations = self.reward(values), self.terminated()
-        infos = self.infos()
-        truncations = self._truncations(infos)
+        told = self.infos()
+        truncations = self._truncations(told)
+        stepped = np.ones(self.num_envs, dtype=bool)
         if len(beginning):
             rewards[beginning] = 0.0
             terminations[beginning] = False
+            stepped[beginning] = False
         self._over = terminations | truncations
+        infos = batched_infos(told, self.num_envs, stepped)
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._over.any():
-            _tell_last(infos, observations, self._over)
-            self._begin(np.flatnonzero(self._over))
-            observations = self.observe()
-        return observations, rewards, terminations, truncations, infos
+            infos = self._begin_at_once(told, self._over.copy())
+        return deepcopy(self._observations), rewards, terminations, truncations, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:  # type: ignore[override]
         """An image (height, width, 3) of each environment if `render_mode` is "rgb_array"."""
@@ -251,10 +274,31 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         return over
 
     def _begin(self, worlds: np.ndarray) -> None:
+        if not len(worlds):
+            return
         self.worlds.restore(self._saved_start, worlds)
         self.episode_steps[worlds] = 0
         self._over[worlds] = False
         self.begin(worlds)
+
+    def _begin_at_once(self, told: dict[str, Any], over: Mask) -> dict[str, Any]:
+        """Begin the episodes after those that are over; returns the infos, with the last ones of these."""
+        ended = np.flatnonzero(over)
+        infos = batched_infos(told, self.num_envs, ~over)
+        last = np.full(self.num_envs, None, dtype=object)
+        for world in ended.tolist():
+            last[world] = own_observation(self._observations, world)
+        infos["final_obs"], infos["_final_obs"] = last, over.copy()
+        infos["final_info"] = batched_infos(told, self.num_envs, over)
+        infos["_final_info"] = over.copy()
+        self._begin(ended)
+        self._observe_again(ended)
+        return infos
+
+    def _observe_again(self, worlds: np.ndarray) -> None:
+        """Observe environments that have just begun; the others keep their observations."""
+        with self.random.only(worlds):
+            replace_observations(self._observations, self.observe(), worlds)
 
     def _truncations(self, infos: dict[str, Any]) -> Mask:
         """A mask of the episodes that have reached their maximum length or whose world is halted."""
@@ -267,11 +311,3 @@ class WorldsEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         if halted.any():
             infos["halted"] = halted.copy()
         return truncations
-
-
-def _tell_last(infos: dict[str, Any], observations: np.ndarray, over: Mask) -> None:
-    """Put the last observations of ended episodes into `infos`, as Gymnasium does."""
-    last = np.full(len(over), None, dtype=object)
-    for world in np.flatnonzero(over):
-        last[world] = observations[world]
-    infos["final_obs"], infos["_final_obs"] = last, over.copy()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from copy import copy, deepcopy
+from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
 from carom.render.appearance import copy_appearance
+from carom.scene.bodies import Bodies
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -22,7 +23,7 @@ def copy_world(world: World) -> World:
     memo: dict[int, Any] = {id(world): other}
     memo.update((id(body.spec), body.spec) for body in world.bodies.values())
     other.parameters = deepcopy(world.parameters)
-    other.bodies = {number: _copy_body(body, other, memo) for number, body in world.bodies.items()}
+    other.bodies = Bodies((number, _copy_body(body, other, memo)) for number, body in world.bodies.items())
     other.list_bodies({number: other.bodies[number] for number in world.listing})
     other._take_arrays(deepcopy(world.arrays, memo), deepcopy(world.contact_arrays, memo))
     other.constraints = deepcopy(world.constraints, memo)
@@ -35,9 +36,9 @@ def copy_world(world: World) -> World:
 
 
 def _copy_body(body: Body, world: World, memo: dict[int, Any]) -> Body:
-    other = memo[id(body)] = copy(body)
-    for name in _COMPUTED:
-        other.__dict__.pop(name, None)
+    # `copy` would pickle the handle, with its world.
+    other = memo[id(body)] = object.__new__(type(body))
+    other.__dict__.update({name: it for name, it in body.__dict__.items() if name not in _COMPUTED})
     other.world = world
     other.rows = deepcopy(body.rows, memo)
     other.derived = {}

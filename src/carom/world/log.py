@@ -35,6 +35,9 @@ class Log:
         self._rows = {name: np.empty((_FIRST_ROOM, *it.shape), it.dtype) for name, it in like.items()}
         world.observers.append(self)
 
+    def __repr__(self) -> str:
+        return f"<Log of {', '.join(self._rows)}: {self._count} steps recorded>"
+
     def __len__(self) -> int:
         return self._count
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from carom.checks import vector
+from carom.closed import Closed
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
@@ -23,6 +24,7 @@ from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
+from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
@@ -33,6 +35,7 @@ from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
 from carom.world.loading import DescriptionLoading
+from carom.world.pickling import Picklable
 from carom.world.poses import Derived, PoseUpdates
 from carom.world.recordable import Recordable
 from carom.world.soft_loading import SoftLoading
@@ -42,7 +45,7 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
-class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews):
+class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable, StateViews, Closed):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
@@ -65,7 +68,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
-        self.bodies: dict[int, Body] = {}
+        self.bodies: Bodies = Bodies()
         self.listing: dict[int, Body] = {}
         self._clock = c_double(0.0)
         self.observers: list[Observer] = []
@@ -76,6 +79,11 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         self.undo: Undo = Undo()
         self.quick: QuickScene = QuickScene()
         self._start_empty()
+        self._close(World)
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(body.name) for body in self.bodies.values())
+        return f"<World at {self.time:.4f} s with {names or 'no bodies'}>"
 
     def _start_empty(self) -> None:
         arrays = WorldArrays()
@@ -377,9 +385,12 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, StateViews
         """Advance the world by `count` time steps.
 
         Raises:
+            ValueError: `count` is negative.
             carom.errors.SimulationError: A velocity became NaN or infinite; the whole state is as it was
                 before that step, except that applied forces and torques are cleared.
         """
+        if count < 0:
+            raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
         try:
             for _ in range(count):
                 self._step()

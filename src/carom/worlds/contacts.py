@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from carom.engine.threads import WORLDS_PER_THREAD
 from carom.layouts.queries import Touching
 from carom.native.kernels import touching_kernel
 from carom.native.launch import KernelStructs, Launch
+from carom.worlds.soft_contacts import SoftTouches
 
 
 class ContactSummary(NamedTuple):
@@ -31,6 +33,23 @@ class ContactSummary(NamedTuple):
     forces: Array
     distances: Array
     deepest: Array
+
+    def include(self, touches: Sequence[tuple[int, SoftTouches]]) -> None:
+        """Include contacts of soft bodies, by world."""
+        if not touches:
+            return
+        # Changed on the host, as the arrays may be on a device.
+        touching, number, forces, distances, deepest = (np.array(field) for field in self)
+        for world, found in touches:
+            touching[world] |= bool((found.pushes > 0.0).any())
+            number[world] += len(found.links)
+            forces[world] += found.forces.sum(axis=0)
+            nearest = int(found.distances.argmin())
+            if found.distances[nearest] < distances[world]:
+                distances[world] = found.distances[nearest]
+                deepest[world] = found.points[nearest]
+        for own, changed in zip(self, (touching, number, forces, distances, deepest), strict=True):
+            own[...] = changed
 
 
 class ContactFinder:

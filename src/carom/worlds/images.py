@@ -30,6 +30,10 @@ class Images(NamedTuple):
     body_ids: NDArray[np.int32]
     link_indices: NDArray[np.int32]
 
+    def __repr__(self) -> str:
+        count, height, width = self.depth.shape
+        return f"<Images of {count} worlds, {width} x {height}>"
+
 
 def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray) -> Images:
     """Images of some worlds: the coordinates of each are copied to a scene, which is drawn.

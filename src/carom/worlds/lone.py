@@ -28,8 +28,9 @@ def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_t
 
 def copy_coordinates(engine: Engine, number: int, world: World) -> None:
     """Set the coordinates of a world to those of one world of an engine with the same bodies."""
-    positions = engine.arrays.state.numpy["position"][number]
-    world.arrays.state.numpy["position"][0, : len(positions)] = positions
+    for name in ("position", "node_position"):
+        positions = engine.arrays.state.numpy[name][number]
+        world.arrays.state.numpy[name][0, : len(positions)] = positions
 
 
 def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array
+from carom.checks import Array, positive
+from carom.closed import Closed
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
@@ -18,13 +19,15 @@ from carom.scene.body import Body
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
-from carom.worlds.checks import Mask, broadcast, world_numbers
+from carom.worlds.checks import Mask
+from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, take_images
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
+from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -34,7 +37,7 @@ _MOST_NAMED = 8
 """Maximum number of worlds named in a warning when several halt."""
 
 
-class Worlds:
+class Worlds(Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
@@ -44,7 +47,6 @@ class Worlds:
     Attributes:
         count: Number of worlds.
         device: The device they are on.
-        time_step: Duration of a step [s].
         times: Simulated time of each world [s], shape (count,).
         halted: Which worlds are halted because a velocity became NaN or infinite, (count,). Their state is
             that before the step; `restore` makes them run again.
@@ -76,13 +78,25 @@ class Worlds:
         self._engine = make_engine(self._scene, count, device, threads)
         self.device: str = device if isinstance(device, str) else device.name
         self._engine.update_settings(self._scene.parameters)
-        self.time_step: float = world.parameters.time_step
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
         self.halted: Mask = np.zeros(count, dtype=bool)
         self._bodies = {
             number: BodyBatch(body, self._scene, self._engine) for number, body in self._scene.bodies.items()
         }
+
+        self._close(Worlds)
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(batch.name) for batch in self)
+        halted = np.count_nonzero(self.halted)
+        return f"<Worlds: {self.count} on {self.device!r} with {names or 'no bodies'}, {halted} halted>"
+
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        raise TypeError(
+            "Worlds cannot be pickled or deep-copied: save() keeps its states, extract(number) gives one of "
+            "its worlds, which can be, and Worlds(world, count) makes others"
+        )
 
     def __len__(self) -> int:
         return self.count
@@ -107,6 +121,20 @@ class Worlds:
 
     # Time
 
+    @property
+    def time_step(self) -> float:
+        """Duration of a step [s], the same in all worlds.
+
+        As in a `World`, drives keep the impulses that their maximum forces were converted to.
+        """
+        return self._scene.parameters.time_step
+
+    @time_step.setter
+    def time_step(self, value: float) -> None:
+        (seconds,) = positive([value], "time_step").tolist()
+        self._scene.parameters.time_step = seconds
+        self._engine.update_settings(self._scene.parameters)
+
     def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
 
@@ -115,7 +143,12 @@ class Worlds:
         Args:
             count: Number of steps.
             where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: The number of steps is negative.
         """
+        if count < 0:
+            raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
             steps = min(count, MOST_STEPS)
@@ -229,34 +262,66 @@ class Worlds:
 
     @property
     def gravity(self) -> Array:
-        """Gravity of each world in world axes [m/s²], shape (count, 3)."""
-        return np.broadcast_to(
-            self._engine.arrays.model.numpy["gravity_vector"][:, 0], (self.count, 3)
-        ).copy()
+        """Gravity of each world in world axes [m/s²], a copy (count, 3)."""
+        return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
     def gravity(self, value: ArrayLike) -> None:
-        gravity = broadcast(np.asarray(self._engine.take(value)), (self.count, 3), "gravity")
-        self._engine.set_parameter("model", "gravity_vector", 0, gravity)
+        self.set_gravity(value)
 
-    def enable_constraint(self, constraint: UserConstraint | int, enabled: ArrayLike) -> None:
-        """Switch a user constraint on or off in each world.
+    def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
+        """Set the gravity of each world, or of some.
+
+        Args:
+            gravity: In world axes [m/s²], (n, 3) for the n worlds chosen, or (3,) for all.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: The shape does not fit, or something is not finite.
+        """
+        worlds = self._chosen(where)
+        values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
+        self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
+
+    def enable_constraint(
+        self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
+    ) -> None:
+        """Switch a user constraint on or off in each world, or in some.
 
         Args:
             constraint: The constraint in the original world, or its number.
-            enabled: Whether it is active: one value, or one for each world.
+            enabled: Whether it is active: one value, or one for each of the n worlds chosen, (n,).
+            where: Which worlds: a mask (count,) or their indices; None for all.
 
         Raises:
             KeyError: That world had no such constraint.
-            ValueError: The number of values differs from that of worlds.
+            ValueError: The number of values differs from that of the worlds chosen.
         """
+        row = self._constraint_row(constraint)
+        worlds = self._chosen(where)
+        holds = worlds.values(np.asarray(self._engine.take(enabled), dtype=bool), (), "enabled") != 0.0
+        self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
+        self._engine.contact_arrays.forget_order()
+
+    def constraint_enabled(self, constraint: UserConstraint | int) -> Mask:
+        """In which worlds a user constraint is active, a copy (count,).
+
+        Args:
+            constraint: The constraint in the original world, or its number.
+
+        Raises:
+            KeyError: That world had no such constraint.
+        """
+        return self._engine.parameter("users", "user_enabled", self._constraint_row(constraint)) != 0
+
+    def _constraint_row(self, constraint: UserConstraint | int) -> int:
         number = constraint if isinstance(constraint, int) else constraint.id
         if self._scene.user_constraints.get(number) is None:
             raise KeyError(f"there is no constraint {number}")
-        holds = broadcast(np.asarray(self._engine.take(enabled), dtype=bool), (self.count,), "enabled") != 0.0
-        row = self._scene.user_constraints.rows[number]
-        self._engine.set_parameter("users", "user_enabled", row, holds)
-        self._engine.contact_arrays.forget_order()
+        return self._scene.user_constraints.rows[number]
+
+    def _chosen(self, where: ArrayLike | None) -> Chosen:
+        return Chosen(self._engine.take(where), self.count)
 
     # Queries
 
@@ -270,6 +335,9 @@ class Worlds:
     ) -> ContactSummary:
         """Contacts of a body with another, or with anything, in each world, as of the last step.
 
+        Contacts of soft bodies with shapes are found for one world after the other; those of two soft bodies
+        are not included.
+
         Args:
             body: The body.
             other: The other body; None for any.
@@ -279,18 +347,22 @@ class Worlds:
         first, second = self[body], None if other is None else self[other]
         if second is None and other_link is not None:
             raise ValueError("other_link needs other")
-        return self._contact_finder.summary(
+        found = self._contact_finder.summary(
             first.link_rows(link),
             None if second is None else second.link_rows(other_link),
             self._scene.parameters.substep_time,
         )
+        if self._is_soft(body, other):
+            found.include(self._soft_touches(body, link, other, other_link))
+        return found
 
     def links_in_contact(
         self, body: Body | int, other: Body | int, other_link: int | str | None = None
     ) -> Mask:
         """Which links of a body have a contact point with another body, as of the last step.
 
-        Points that do not touch yet count as well, as in `ContactSummary.number`.
+        Points that do not touch yet count as well, as in `ContactSummary.number`. For soft bodies, see
+        `contacts`.
 
         Args:
             body: The body.
@@ -300,7 +372,30 @@ class Worlds:
         Returns:
             (count, links + 1) booleans, the base first.
         """
-        return self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+        found = self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+        if self._is_soft(body, other):
+            for world, touches in self._soft_touches(body, None, other, other_link):
+                found[world, np.unique(touches.links) + 1] = True
+        return found
+
+    def _is_soft(self, body: Body | int, other: Body | int | None) -> bool:
+        """Whether contacts of bodies, None for any, can be contacts of soft bodies."""
+        soft = {item.rows.first["link"] for item in self._scene.contact_arrays.soft.bodies}
+        asked = [body] if other is None else [body, other]
+        return bool(soft) and (other is None or any(self[one].rows.first["link"] in soft for one in asked))
+
+    def _soft_touches(
+        self, body: Body | int, link: int | str | None, other: Body | int | None, other_link: int | str | None
+    ) -> Sequence[tuple[int, SoftTouches]]:
+        first, second = self._side(body, link), self._side(other, other_link)
+        return soft_touches(self._scene, self._engine, first, second)
+
+    def _side(self, body: Body | int | None, link: int | str | None) -> Side:
+        if body is None:
+            return Side.of(None, None)
+        return Side.of(
+            body if isinstance(body, int) else body.id, None if link is None else self[body].link_index(link)
+        )
 
     @cached_property
     def _contact_finder(self) -> ContactFinder:

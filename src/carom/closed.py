@@ -1,0 +1,32 @@
+"""Objects that refuse attributes which they do not have, so that misspelt ones are not lost."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class Closed:
+    """Base class: after `_close`, only attributes that are there can be set.
+
+    Names with an underscore in front stay free, and so do all names in subclasses that users derive from the
+    class that has closed itself.
+    """
+
+    def _close(self, own: type) -> None:
+        """Refuse new attributes from now on, if the object is of the class `own` and of no subclass."""
+        if type(self) is own:
+            self.__dict__["_closed"] = True
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name[0] != "_" and "_closed" in self.__dict__ and not self._has(name):
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{self._similar(name)}")
+        object.__setattr__(self, name, value)
+
+    def _has(self, name: str) -> bool:
+        return name in self.__dict__ or hasattr(type(self), name)
+
+    def _similar(self, name: str) -> str:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, [known for known in dir(self) if known[0] != "_"], 1)
+        return f"; did you mean {near[0]!r}?" if near else ""
