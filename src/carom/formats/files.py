@@ -11,6 +11,7 @@ from threading import Lock
 from typing import Generic, NamedTuple, TypeVar
 
 from carom.errors import DescriptionError
+from carom.formats.unpacking import unpack
 
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
@@ -69,6 +70,7 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
     Raises:
         DescriptionError: It cannot be read, or is larger than `most_bytes`.
     """
+    unpack(file)
     try:
         stamp = FileStamp.of(file)
         if not file.is_file():
