@@ -25,6 +25,7 @@ FLOORS = (
         "carom.record",
         "carom.suggestions",
         "carom.version",
+        "carom.writing",
         "eglRenderer",
         "pybullet_data",
     },
@@ -76,7 +77,7 @@ KEPT_APART = {
     "carom.kernels": {"carom.layouts"},
     "carom.native": {"carom.errors", "carom.record", "carom.layouts"},
     # They know nothing of physics.
-    "carom.remote": {"carom.errors"},
+    "carom.remote": {"carom.errors", "carom.writing"},
     "carom.cluster": {"carom.errors"},
     "carom.control": {"carom.checks"},
 }

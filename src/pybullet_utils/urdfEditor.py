@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Sequence
-from typing import TextIO
 from xml.sax.saxutils import quoteattr
 
 import pybullet as p
 from carom.formats.urdf_writer import roll_pitch_yaw
+from carom.writing import write_text
 from pybullet_utils._urdf_elements import (
     UrdfCollision,
     UrdfContact,
@@ -186,16 +186,10 @@ class UrdfEditor:
 
     def saveUrdf(self, fileName: str, saveVisuals: bool = True) -> None:
         """Writes the robot to a URDF file, with or without visual shapes."""
-        with open(fileName, "w", encoding="utf-8") as file:
-            self._write(file, saveVisuals)
-
-    def _write(self, file: TextIO, visuals: bool) -> None:
-        file.write(f'<?xml version="1.0" ?>\n<robot name={quoteattr(self.robotName)}>\n')
-        for link in self.urdfLinks:
-            file.write(link_element(link, visuals))
-        for joint in self.urdfJoints:
-            file.write(joint_element(joint))
-        file.write("</robot>\n")
+        begin = f'<?xml version="1.0" ?>\n<robot name={quoteattr(self.robotName)}>\n'
+        links = [link_element(link, saveVisuals) for link in self.urdfLinks]
+        joints = [joint_element(joint) for joint in self.urdfJoints]
+        write_text(fileName, "".join([begin, *links, *joints, "</robot>\n"]))
 
     def _take_link(self, body: int, index: int, client: int) -> None:
         info = p.getJointInfo(body, index, physicsClientId=client)

@@ -16,6 +16,7 @@ from carom.formats.urdf_writer import urdf_text
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.mjcf_inertia import set_mjcf_inertias
+from carom.writing import write_text
 
 
 def convert(source: Path, target: Path, model: str | None = None) -> None:
@@ -39,7 +40,7 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
         _chosen(source, read_robots(source, search=AssetSearch(shipped_folder())), model),
         is_mjcf=source.suffix.lower() in MJCF_SUFFIXES,
     )
-    target.write_text(urdf_text(robot, target.absolute().parent), encoding="utf-8")
+    write_text(target, urdf_text(robot, target.absolute().parent))
 
 
 def _with_moments(robot: Robot, *, is_mjcf: bool) -> Robot:

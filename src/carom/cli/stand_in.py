@@ -13,12 +13,14 @@ import subprocess
 import sys
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
 from tempfile import mkdtemp
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from carom.conflicts import cure
 from carom.errors import CaromError
+from carom.writing import write_whole
 
 # The PyBullet whose interface Carom has. `pybullet==3.2.7` allows for any local version.
 VERSION = "3.2.7+carom"
@@ -52,11 +54,13 @@ def write(folder: Path) -> Path:
     files = {f"{metadata}/METADATA": _METADATA, f"{metadata}/WHEEL": _WHEEL}
     lines = [f"{name},{_digest(text)},{len(text)}" for name, text in files.items()]
     files[record] = "".join(f"{line}\n" for line in [*lines, f"{record},,"])
-    with ZipFile(wheel, "w") as archive:
+    content = BytesIO()
+    with ZipFile(content, "w") as archive:
         for name, text in files.items():
             entry = ZipInfo(name)
             entry.external_attr = 0o644 << 16
             archive.writestr(entry, text, ZIP_DEFLATED)
+    write_whole(wheel, content.getvalue())
     return wheel
 
 

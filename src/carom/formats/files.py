@@ -6,11 +6,13 @@ import os
 import time
 from collections import OrderedDict
 from collections.abc import Hashable
+from contextlib import suppress
 from pathlib import Path
-from threading import Lock
+from threading import RLock
 from typing import Generic, NamedTuple, TypeVar
 
 from carom.errors import DescriptionError
+from carom.formats.unpacking import unpack
 
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
@@ -69,6 +71,7 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
     Raises:
         DescriptionError: It cannot be read, or is larger than `most_bytes`.
     """
+    unpack(file)
     try:
         stamp = FileStamp.of(file)
         if not file.is_file():
@@ -98,7 +101,8 @@ class FileCache(Generic[Key, Value]):
         self._capacity = capacity
         self._outlive = outlive
         self._entries: OrderedDict[Key, tuple[FileStamp, Value]] = OrderedDict()
-        self._lock = Lock()
+        # The thread that holds it may come again: a signal handler, a finalizer or a tracer can load files.
+        self._lock = RLock()
 
     def get(self, key: Key, file: Path) -> Value | None:
         """The value of `key`, made from `file`; None if there is none, or the file may have changed."""
@@ -113,16 +117,21 @@ class FileCache(Generic[Key, Value]):
                 unchanged = self._outlive
             except OSError:
                 unchanged = False
+            if self._entries.get(key) is not entry:
+                # It was replaced or dropped by the same thread meanwhile.
+                return value if unchanged else None
             if not unchanged:
-                del self._entries[key]
+                self._entries.pop(key, None)
                 return None
-            self._entries.move_to_end(key)
+            with suppress(KeyError):
+                self._entries.move_to_end(key)
             return value
 
     def put(self, key: Key, stamp: FileStamp, value: Value) -> None:
         """Keep a value made from a file that had this stamp before it was read."""
         with self._lock:
             self._entries[key] = (stamp, value)
-            self._entries.move_to_end(key)
-            while len(self._entries) > self._capacity:
-                self._entries.popitem(last=False)
+            with suppress(KeyError):
+                self._entries.move_to_end(key)
+                while len(self._entries) > self._capacity:
+                    self._entries.popitem(last=False)

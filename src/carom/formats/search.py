@@ -6,6 +6,7 @@ import os
 from functools import lru_cache
 from pathlib import Path
 
+from carom.formats.unpacking import appears
 from carom.record import record
 
 # Scripts written against a source tree name files relative to a `data` folder near the working directory.
@@ -99,6 +100,6 @@ def _without_scheme(name: str) -> str:
 def _is_file(path: str) -> bool:
     try:
         # Most places that are searched have no such file, and this says so in less than half the time.
-        return os.access(path, os.F_OK) and os.path.isfile(path)
+        return (os.access(path, os.F_OK) and os.path.isfile(path)) or appears(path)
     except ValueError:  # embedded NUL characters
         return False

@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from carom.remote.errors import RemoteError
+from carom.writing import write_whole
 
 
 def private_folder() -> Path:
@@ -34,15 +35,7 @@ def write_private(path: Path, content: bytes) -> None:
     Raises:
         OSError: It cannot be written; the file is then as before.
     """
-    # The file of `mkstemp` is private, and it is moved to its place when it is complete.
-    handle, draft = tempfile.mkstemp(dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.replace(draft, path)
-    except OSError:
-        Path(draft).unlink(missing_ok=True)
-        raise
+    write_whole(path, content, private=True)
 
 
 def is_private(status: os.stat_result) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from struct import Struct
 from typing import TYPE_CHECKING
@@ -51,6 +51,7 @@ class MotorGroup:
         kd: float,
     ) -> None:
         count = len(dofs)
+        self._count = count
         commands = ArrayTable(MotorCommands)
         commands.reserve({"joint": count})
         self._commands = commands
@@ -98,11 +99,11 @@ class MotorGroup:
         self,
         mode: int,
         time_step: float,
-        positions: Iterable[float] | None = None,
-        velocities: Iterable[float] | None = None,
-        forces: Iterable[float] | None = None,
-        kps: Iterable[float] | None = None,
-        kds: Iterable[float] | None = None,
+        positions: Sequence[float] | None = None,
+        velocities: Sequence[float] | None = None,
+        forces: Sequence[float] | None = None,
+        kps: Sequence[float] | None = None,
+        kds: Sequence[float] | None = None,
     ) -> None:
         """Set the motors by one number for each joint; None stands for the default numbers.
 
@@ -116,11 +117,16 @@ class MotorGroup:
             kds: Gains.
 
         Raises:
-            ValueError: The mode is unknown, or a number is not finite; nothing is set.
-            struct.error: An argument does not have a number for each joint; nothing is set.
+            ValueError: The mode is unknown, an argument does not have a number for each joint, or a number
+                is not finite; nothing is set.
+            struct.error: An argument contains something else than numbers; nothing is set.
         """
         if mode not in _MODES:
             raise ValueError("there is no such mode")
+        for numbers in (positions, velocities, forces, kps, kds):
+            # Before anything is read, because a range may be too long to be read.
+            if numbers is not None and len(numbers) != self._count:
+                raise ValueError("there has to be a number for each joint")
         given = 0
         if positions is not None:
             self._put_positions(*positions)

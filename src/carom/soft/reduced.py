@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
+from carom.formats.unpacking import appears
 from carom.native.products import determinants, inverses, product
 from carom.soft.materials import NeoHookean
 
@@ -45,7 +46,7 @@ def solid_of_modes(soft: Deformable) -> NeoHookean:
     names = ("K_r_diag_mat.bin", "modes.bin", "M_diag_mat.bin")
     paths = [folder / name for name in names]
     modulus = MODULUS
-    if all(path.is_file() for path in paths):
+    if all(appears(path) or path.is_file() for path in paths):
         stiffness, modes, masses = (_numbers(path) for path in paths)
         modulus = _modulus(soft.simulated or soft.visual, stiffness, modes)
         modulus *= soft.mass / float(masses.sum())

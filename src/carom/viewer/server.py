@@ -24,6 +24,7 @@ from carom.viewer.page_files import page_files
 from carom.viewer.pages import Page, Pages
 from carom.viewer.polling import Polling
 from carom.viewer.replay.page import replay_page
+from carom.viewer.strangers import BACKLOG, Strangers
 
 _log = logging.getLogger("carom")
 # The websockets library logs an error when a browser closes a connection during a request, which is normal.
@@ -117,6 +118,7 @@ class PageServer:
         self._frame: bytes | None = None
         self._receive = receive
         self._pages = Pages(gone)
+        self._strangers = Strangers()
         self._polling = Polling(self._pages, self._news, self._take)
         self._started = Event()
         self._problem: OSError | None = None
@@ -188,6 +190,8 @@ class PageServer:
             max_size=MAX_INCOMING_BYTES,
             logger=_quiet,
             close_timeout=1.0,
+            create_connection=self._strangers.connection_type(),
+            backlog=BACKLOG,
         )
 
     async def _beat(self) -> None:
@@ -213,6 +217,8 @@ class PageServer:
         host = hosts[0] if len(hosts) == 1 else None
         path = request.path.partition("?")[0]
         access = self.access
+        if access.knows_token(request.path) or access.has_cookie(cookies):
+            self._strangers.admit(connection)
         if access.guesses_token(request.path):
             return connection.respond(HTTPStatus.FORBIDDEN, _WHOLE_ADDRESS)
         # A header that may occur once, but occurs several times, counts as missing.
@@ -220,6 +226,7 @@ class PageServer:
             return connection.respond(HTTPStatus.MISDIRECTED_REQUEST, _OTHER_NAME)
         if path == "/socket":
             if access.may_connect(request.path, host, origins[0] if origins else None, cookies):
+                self._strangers.admit(connection)
                 return None
             return connection.respond(HTTPStatus.FORBIDDEN, "Only the viewer's own page may connect.\n")
         if path == "/poll":

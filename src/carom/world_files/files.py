@@ -19,6 +19,7 @@ from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.world_files.container import Blocks
 from carom.world_files.references import references
+from carom.writing import write_whole
 
 _MOST_BYTES = 1 << 30
 
@@ -120,7 +121,7 @@ def _place(path: str, members: dict[PurePosixPath, memoryview]) -> Path:
         target = folder / name
         if not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(data)
+            write_whole(target, data)
     return folder / first
 
 

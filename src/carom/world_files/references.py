@@ -11,6 +11,8 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from carom.formats.unpacking import appears
+
 _MATERIALS = frozenset({".mtl"})
 _IMAGES = frozenset({".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif", ".tif", ".tiff", ".webp"})
 _IMAGE_STARTS = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"BM", b"GIF8", b"II*\0", b"MM\0*", b"RIFF")
@@ -67,6 +69,7 @@ def _belongs(place: Path, suffixes: frozenset[str]) -> bool:
     """Whether a path is a regular file of the expected kind, also after following symbolic links."""
     try:
         target = place.resolve()
+        appears(target)
         if not target.is_file() or {place.suffix.lower(), target.suffix.lower()} - suffixes:
             return False
         if suffixes is _MATERIALS:

@@ -34,7 +34,7 @@ from carom.world_files.container import MOST_BYTES, packed, unpacked
 from carom.world_files.files import restored
 from carom.world_files.records import Reader, Writer
 from carom.world_files.saved_state import check_arrays, read_state, state_of, write_state
-from carom.world_files.writing import write_whole
+from carom.writing import write_whole
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

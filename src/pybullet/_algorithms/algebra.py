@@ -106,7 +106,7 @@ def calculateInverseDynamics(
             return client.bodies.forces_of_motion[bodyUniqueId](
                 client.world.parameters.gravity, objPositions, objVelocities, objAccelerations
             )
-    except (KeyError, TypeError, ValueError, StructError):
+    except (KeyError, TypeError, ValueError, OverflowError, StructError):
         pass
     body_id = one_body(bodyUniqueId, bodyIndex, "calculateInverseDynamics")
     required(
@@ -193,11 +193,16 @@ def calculateJacobian(
     """
     try:
         mechanism = clients[physicsClientId].bodies[bodyUniqueId].mechanism
-        if mechanism is not None and len(objVelocities) == len(objAccelerations) == mechanism.joint_dofs > 0:  # type: ignore[arg-type]
+        if (
+            mechanism is not None
+            and len(objVelocities) == len(objAccelerations) == mechanism.joint_dofs > 0  # type: ignore[arg-type]
+            and len(objPositions) == mechanism.coordinates  # type: ignore[arg-type]
+            and len(localPosition) == 3  # type: ignore[arg-type]
+        ):
             check = sum(localPosition) + sum(objPositions) + sum(objVelocities) + sum(objAccelerations)
             if -inf < check < inf:
                 return mechanism.jacobian(linkIndex, localPosition, objPositions)  # type: ignore[arg-type]
-    except (KeyError, TypeError, ValueError, StructError):
+    except (KeyError, TypeError, ValueError, OverflowError, StructError):
         pass
     body = body_of(client_of(physicsClientId), bodyUniqueId, _JACOBIAN_SIZES)
     link = integer(linkIndex, "linkIndex")
@@ -258,9 +263,14 @@ def calculateMassMatrix(
     """
     try:
         mechanism = clients[physicsClientId].bodies[bodyUniqueId].mechanism
-        if mechanism is not None and not flags and -inf < sum(objPositions) < inf:
+        if (
+            mechanism is not None
+            and not flags
+            and len(objPositions) == mechanism.coordinates  # type: ignore[arg-type]
+            and -inf < sum(objPositions) < inf
+        ):
             return mechanism.mass_matrix(objPositions)  # type: ignore[arg-type]
-    except (KeyError, TypeError, ValueError, StructError):
+    except (KeyError, TypeError, ValueError, OverflowError, StructError):
         pass
     problem = "Internal error in calculateMassMatrix"
     body = body_of(client_of(physicsClientId), bodyUniqueId, problem)

@@ -14,6 +14,7 @@ from pybullet._calls.arguments import (
     Vectors,
     indices,
     integer,
+    length,
     numbers,
     one_body,
     real,
@@ -252,10 +253,11 @@ def _orientation(values: Any) -> tuple[float, ...] | None:
     if values is None:
         return None
     try:
-        x, y, z, w = values
-        if 0.5 < x * x + y * y + z * z + w * w < 2.0:
-            return float(x), float(y), float(z), float(w)
-    except (TypeError, ValueError):
+        if len(values) == 4:
+            x, y, z, w = values
+            if 0.5 < x * x + y * y + z * z + w * w < 2.0:
+                return float(x), float(y), float(z), float(w)
+    except (TypeError, ValueError, OverflowError):
         pass
     name = "targetOrientation"
     given = numbers(values, _PROBLEM, name)
@@ -308,12 +310,12 @@ def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...
     """A list with one number, perhaps infinite, for each degree of freedom; None if its length differs."""
     if values is None:
         return None
+    if length(values, _PROBLEM, name) != freedoms:
+        return None
     try:
-        result = tuple(map(float, values))
+        result = tuple(map(float, sequence(values, _PROBLEM, name)))
     except (TypeError, ValueError):
         fail(_PROBLEM, f"{name} is {values!r}, not a list of numbers.")
-    if len(result) != freedoms:
-        return None
     if any(map(isnan, result)):
         fail(_PROBLEM, f"{name} is {values!r}, with a value that is not a number.")
     return result

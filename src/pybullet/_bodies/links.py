@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pybullet._calls.arguments import Indices, indices, integer
+from pybullet._calls.arguments import Indices, few, indices, integer
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import clients
@@ -106,7 +106,7 @@ def getLinkStates(
     """
     try:
         access = clients[physicsClientId].bodies[bodyUniqueId]
-        links = [access.links[index] for index in linkIndices]
+        links = [access.links[index] for index in few(linkIndices)]
         if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
             if computeForwardKinematics:
                 access.body.update_link_poses()

@@ -9,6 +9,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from itertools import islice
 from math import hypot, inf, isfinite, nan
 from operator import index
 from typing import Any, NoReturn, SupportsFloat
@@ -16,13 +17,20 @@ from typing import Any, NoReturn, SupportsFloat
 from pybullet._calls.errors import fail
 
 _ONLY_INTEGERS = frozenset((int,))
+# Types whose lengths are certainly those of what is read.
+_PLAIN = frozenset((list, tuple, range))
 _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
 # Range of the squared lengths of valid quaternions: their products neither underflow nor overflow.
 _LEAST_SQUARE, _GREATEST_SQUARE = 1e-60, 1e60
 MAX_MAGNITUDE = 1e30
 """Greatest magnitude of positions, velocities, masses and similar quantities; the same as in files."""
+MOST_ITEMS = 1 << 24
+"""Greatest length of sequences whose length no other argument determines."""
+# Greatest length of lists of joints or links that getters and setters take as they are.
+_MANY = 1 << 16
 
-# For a type checker, lists, tuples, ranges and NumPy arrays are all iterables, but not all sequences.
+# For a type checker, lists, tuples, ranges and NumPy arrays are all iterables, but not all sequences. At run
+# time only those are accepted that have a length, which is checked before anything is read.
 Vector = Iterable[float]
 Indices = Iterable[int]
 Vectors = Iterable[Vector]
@@ -128,8 +136,9 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
         except (TypeError, ValueError):
             pass
     result = array("d")
+    count = _checked_length(values, problem, name, MOST_ITEMS)
     try:
-        result.extend(values)
+        result.extend(islice(values, count))
     except TypeError:
         for position, item in enumerate(sequence(values, problem, name)):
             if not isinstance(item, SupportsFloat):
@@ -145,10 +154,11 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
 def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
     """Three quantities; raises `pybullet.error` as `quantities` does, and if there are more or fewer."""
     try:
-        x, y, z = values
-        if abs(x) + abs(y) + abs(z) <= MAX_MAGNITUDE:
-            return float(x), float(y), float(z)
-    except (TypeError, ValueError):
+        if len(values) == 3:
+            x, y, z = values
+            if abs(x) + abs(y) + abs(z) <= MAX_MAGNITUDE:
+                return float(x), float(y), float(z)
+    except (TypeError, ValueError, OverflowError):
         pass
     x, y, z = _counted(values, 3, problem, name)
     return x, y, z
@@ -157,10 +167,11 @@ def vector3(values: Any, problem: str, name: str) -> tuple[float, float, float]:
 def vector4(values: Any, problem: str, name: str) -> tuple[float, float, float, float]:
     """Four quantities; raises `pybullet.error` as `quantities` does, and if there are more or fewer."""
     try:
-        x, y, z, w = values
-        if abs(x) + abs(y) + abs(z) + abs(w) <= MAX_MAGNITUDE:
-            return float(x), float(y), float(z), float(w)
-    except (TypeError, ValueError):
+        if len(values) == 4:
+            x, y, z, w = values
+            if abs(x) + abs(y) + abs(z) + abs(w) <= MAX_MAGNITUDE:
+                return float(x), float(y), float(z), float(w)
+    except (TypeError, ValueError, OverflowError):
         pass
     x, y, z, w = _counted(values, 4, problem, name)
     return x, y, z, w
@@ -213,18 +224,54 @@ def quantities(values: Any, problem: str, name: str) -> tuple[float, ...]:
 
 
 def _counted(values: Any, count: int, problem: str, name: str) -> tuple[float, ...]:
+    given = length(values, problem, name)
+    if given != count:
+        fail(problem, f"{name} has {given} values instead of {count}.")
     result = quantities(values, problem, name)
     if len(result) != count:
-        fail(problem, f"{name} has {len(result)} values instead of {count}.")
+        fail(problem, f"{name} holds {len(result)} values instead of {count}.")
     return result
 
 
-def sequence(values: Any, problem: str, name: str) -> tuple[Any, ...]:
-    """The items of any sequence; raises `pybullet.error` if `values` is not a sequence."""
+def length(values: Any, problem: str, name: str) -> int:
+    """The length of any sequence, of which no item is read; raises `pybullet.error` for other values.
+
+    As in PyBullet, generators and other iterators are no sequences: they may have no end.
+    """
     try:
-        return tuple(values)
+        return len(values)
+    except OverflowError:
+        fail(problem, f"{name} has more than {MOST_ITEMS} items, which are too many.")
+    except (TypeError, ValueError):
+        hint = "; it has no length: pass a list" if hasattr(values, "__next__") else ""
+        fail(problem, f"{name} is {values!r}{hint}.")
+
+
+def _checked_length(values: Any, problem: str, name: str, most: int) -> int:
+    count = length(values, problem, name)
+    if count > most:
+        fail(problem, f"{name} has {count} items; at most {most} are accepted.")
+    return count
+
+
+def sequence(values: Any, problem: str, name: str, most: int = MOST_ITEMS) -> tuple[Any, ...]:
+    """The items of any sequence of at most `most`; raises `pybullet.error` if `values` is none."""
+    count = _checked_length(values, problem, name, most)
+    try:
+        return tuple(values) if type(values) in _PLAIN else tuple(islice(values, count))
     except TypeError:
         fail(problem, f"{name} is {values!r}.")
+
+
+def few(values: Any) -> tuple[Any, ...]:
+    """The items of a sequence that is not very long; raises `TypeError` or `ValueError` for other values."""
+    try:
+        count = len(values)
+        if count <= _MANY:
+            return tuple(values) if type(values) in _PLAIN else tuple(islice(values, count))
+    except OverflowError:
+        pass
+    raise ValueError("too many items")
 
 
 def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:

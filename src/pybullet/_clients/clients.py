@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from threading import RLock
 from typing import TYPE_CHECKING, Any, ClassVar
+from weakref import ref
 
 from pybullet._calls.arguments import integer
 from pybullet._calls.detours import remove_detour
@@ -121,6 +125,9 @@ clients: dict[int, Client] = {}
 remote_clients: dict[int, RemoteClient] = {}
 """Every client with a world in another process, by its id."""
 
+_being_connected: dict[int, object] = {}
+_owners: dict[int | None, Callable[[], object]] = {}
+
 
 def living_client(physics_client_id: Any) -> Client | None:
     """The client with an id, an integer; None if there is none, or its window was closed, which ends it."""
@@ -168,8 +175,48 @@ def forget(number: int) -> None:
         client.close()
 
 
-def free_slot() -> int | None:
-    """The lowest free id."""
-    return next(
-        (slot for slot in range(MAX_CLIENTS) if slot not in clients and slot not in remote_clients), None
-    )
+@contextmanager
+def free_slot() -> Iterator[int | None]:
+    """The lowest free id, which nobody else gets meanwhile; None if there is none.
+
+    Until the context is left nobody can know the id, and `is_being_connected` is true for it.
+    """
+    slot = next(filter(_claimed, range(MAX_CLIENTS)), None)
+    try:
+        if _owners.pop(slot, _nobody)() is not None:
+            # If nobody has that object now, it waits for garbage collection, to close a connection of this
+            # id, which was another one. It gets to know now that it is closed.
+            gc.collect()
+        yield slot
+    finally:
+        if slot is not None:
+            _being_connected.pop(slot, None)
+
+
+def note_owner(number: int, owner: object) -> None:
+    """Notes the object that has made a connection, and will close it when it is finalized."""
+    with suppress(TypeError):
+        _owners[number] = ref(owner)
+
+
+def _nobody() -> None:
+    return None
+
+
+def is_being_connected(number: int) -> bool:
+    """Whether an id belongs to a call of `connect` that has not returned yet."""
+    return number in _being_connected
+
+
+def _claimed(slot: int) -> bool:
+    """Claims an id if it is free. Without a lock, because garbage collection can begin anywhere in here."""
+    if slot in clients or slot in remote_clients:
+        return False
+    claim = object()
+    if _being_connected.setdefault(slot, claim) is not claim:
+        return False
+    if slot in clients or slot in remote_clients:
+        # Another thread has connected meanwhile.
+        del _being_connected[slot]
+        return False
+    return True

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import atexit
+import sys
 from functools import partial
 from operator import index
+from types import FrameType
 from typing import Any, overload
 
 from pybullet._calls.arguments import by_name, integer, real, text
@@ -37,7 +39,9 @@ from pybullet._clients.clients import (
     connection_of,
     forget,
     free_slot,
+    is_being_connected,
     living_client,
+    note_owner,
     remote_clients,
     why_not_connected,
 )
@@ -121,9 +125,27 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
     """
     method = integer(method, "method")
     target = _target(arguments, keywords)
-    slot = free_slot()
-    if slot is None:
-        fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
+    with free_slot() as slot:
+        if slot is None:
+            fail("Exceeding maximum number of physics connections.", f"{MAX_CLIENTS} are in use.")
+        number = _connected(slot, method, target)
+        owner = _finalized_caller(sys._getframe(1))
+        if owner is not None and number == slot:
+            note_owner(slot, owner)
+        return number
+
+
+def _finalized_caller(frame: FrameType) -> object | None:
+    """The object whose `__init__` is calling, if it has a finalizer, as copies of `BulletClient` have."""
+    code = frame.f_code
+    owner = (
+        frame.f_locals.get(code.co_varnames[0]) if code.co_name == "__init__" and code.co_varnames else None
+    )
+    return owner if hasattr(type(owner), "__del__") else None
+
+
+def _connected(slot: int, method: int, target: Target) -> int:
+    """Connects under an id that is free; returns it, or -1."""
     closed_by_users.discard(slot)
     if method not in _METHODS:
         fail("connectPhysicsServer unexpected argument", f"There is no connection method {method}.")
@@ -136,9 +158,9 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)
     ):
         fail(_ONE_WINDOW)
-    clients[slot] = _new_client(method, target)
+    client = clients[slot] = _new_client(method, target)
     if method == DIRECT:
-        _let_quick_calls_in(slot)
+        _let_quick_calls_in(slot, client)
     if method in _SERVERS:
         try:
             _serve(slot, target)
@@ -175,14 +197,13 @@ def _new_client(method: int, target: Target) -> Client:
     return client
 
 
-def _let_quick_calls_in(slot: int) -> None:
+def _let_quick_calls_in(slot: int, client: Client) -> None:
     """Lets the native library access the bodies of a client that has neither a window nor a server."""
     from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._calls.quick import install
 
     calls = install()
     if calls is not None:
-        client = clients[slot]
         client.bodies.quick = QuickBodies(calls, slot, client)
 
 
@@ -213,7 +234,7 @@ def disconnect(physicsClientId: int = 0) -> None:
         >>> p.isConnected()
         0
     """
-    if connection_of(physicsClientId) is None:
+    if connection_of(physicsClientId) is None or is_being_connected(index(physicsClientId)):
         number = index(physicsClientId)
         if number not in closed_by_users:
             fail(NOT_CONNECTED, why_not_connected(physicsClientId))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import chain
+from itertools import chain, islice
 from struct import error as StructError
 from struct import pack
 from typing import Any
@@ -22,12 +22,16 @@ def ray_points(values: Any, problem: str, name: str) -> np.ndarray:
     if isinstance(items, np.ndarray) and not items.ndim:
         fail(problem, f"{name} is {values!r}.")
     try:
-        if not isinstance(items, np.ndarray) and set(map(len, items)) == {3}:
-            # Four times as fast as `np.asarray`, which has to find the depth of the nested lists.
-            points = np.frombuffer(pack(f"{3 * len(items)}d", *chain.from_iterable(items))).reshape(-1, 3)
-        else:
+        if isinstance(items, np.ndarray):
             points = np.asarray(items, dtype=float).reshape(len(items), -1)
-    except (TypeError, ValueError, StructError):
+        elif set(map(len, items)) == {3}:
+            # Four times as fast as `np.asarray`, which has to find the depth of the nested lists.
+            count = 3 * len(items)
+            flat = islice(chain.from_iterable(items), count)
+            points = np.frombuffer(pack(f"{count}d", *flat)).reshape(-1, 3)
+        else:
+            points = np.empty((len(items), 0))
+    except (TypeError, ValueError, OverflowError, StructError):
         points = np.empty((len(items), 0))
     if len(items) and (points.shape[1] != 3 or not np.isfinite(points).all()):
         each = [vector3(item, problem, f"{name}[{number}]") for number, item in enumerate(items)]

@@ -5,7 +5,7 @@ Scripts use the same joints in every step of a control loop, so data of a group 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -24,15 +24,15 @@ _MOST_GROUPS = 64
 class JointGroup:
     """A group of joints of any types, handled one by one; base class for the other group."""
 
-    def command(self, mode: int, *lists: Iterable[float] | None) -> None:
+    def command(self, mode: int, *lists: Sequence[float] | None) -> None:
         """Set the motor of each joint as `setJointMotorControl2` does. After an error nothing has been set.
 
         The lists are positions, velocities, forces, position gains and velocity gains; None for defaults.
 
         Raises:
-            ValueError: Some joints are neither revolute nor prismatic, the mode is another one, or a number
-                is not finite.
-            struct.error: A list does not have a number for each joint.
+            ValueError: Some joints are neither revolute nor prismatic, the mode is another one, a list does
+                not have a number for each joint, or a number is not finite.
+            struct.error: A list contains something else than numbers.
         """
         raise ValueError("these motors are set one by one")
 
@@ -64,7 +64,7 @@ class AxisGroup(JointGroup):
     def record(self) -> MotorRecord | None:
         return self._motors.record([joint.index for joint in self._axes])
 
-    def command(self, mode: int, *lists: Iterable[float] | None) -> None:
+    def command(self, mode: int, *lists: Sequence[float] | None) -> None:
         self._motors.command(mode, self._client.time_step, *lists)
 
 

@@ -10,6 +10,7 @@ from pybullet._calls.arguments import (
     Vector,
     Vectors,
     check_rotation,
+    few,
     indices,
     integer,
     quantities,
@@ -140,7 +141,7 @@ def getJointStates(
     """
     try:
         joints = clients[physicsClientId].bodies[bodyUniqueId].joints
-        return tuple([joints[index].state() for index in jointIndices]) or None
+        return tuple([joints[index].state() for index in few(jointIndices)]) or None
     except (KeyError, TypeError, ValueError):
         client_of(physicsClientId)
         if integer(bodyUniqueId, "bodyUniqueId") < 0:

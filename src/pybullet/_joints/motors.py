@@ -11,8 +11,10 @@ from pybullet._calls.arguments import (
     Indices,
     Vector,
     bound,
+    few,
     indices,
     integer,
+    length,
     one_body,
     quantity,
     real,
@@ -222,11 +224,11 @@ def setJointMotorControlArray(
     """
     try:
         access = clients[physicsClientId].bodies[bodyUniqueId]
-        group = access.groups[tuple(jointIndices)]
+        group = access.groups[few(jointIndices)]
         group.command(controlMode, targetPositions, targetVelocities, forces, positionGains, velocityGains)
         access.commanded(group)
         return
-    except (KeyError, TypeError, ValueError, StructError):
+    except (KeyError, TypeError, ValueError, OverflowError, StructError):
         pass
     _set_array_carefully(
         one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
@@ -348,8 +350,9 @@ def _one_each(
     """A checked number for each joint; the default if no list is given."""
     if values is None:
         return (default,) * count
+    given = length(values, problem, name)
+    if given != count:
+        fail(problem, f"{name} has {given} values for {count} joints.")
     items = sequence(values, problem, name)
-    if len(items) != count:
-        fail(problem, f"{name} has {len(items)} values for {count} joints.")
     convert = bound if infinite else real
     return tuple([convert(item, name) for item in items])

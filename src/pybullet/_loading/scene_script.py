@@ -21,7 +21,7 @@ def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
     maps present ids to new ids. Colours, friction and motors are not written; `saveBullet` keeps everything.
 
     Args:
-        worldFileName: The script; an existing file is replaced.
+        worldFileName: The script; an existing file is replaced when the new one is complete.
         physicsClientId: The connection.
 
     Raises:
@@ -35,12 +35,12 @@ def saveWorld(worldFileName: str, physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     name = text(worldFileName, "worldFileName")
 
+    from carom.writing import write_text
     from pybullet._loading.scene_lines import scene_lines
 
     with client.lock:
         lines = scene_lines(client)
     try:
-        with open(name, "w", encoding="utf-8") as file:
-            file.write("\n".join(lines) + "\n")
+        write_text(name, "\n".join(lines) + "\n")
     except (OSError, ValueError) as problem:
         fail(_FAILED, f"{problem}.")

@@ -9,6 +9,7 @@ from typing import Any
 
 from carom.description import Pose
 from carom.errors import CaromError
+from carom.formats.unpacking import appears
 from pybullet._calls.arguments import Vector, integer, moderate, real, rotation, text, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -168,7 +169,7 @@ def _found(client: Client, name: str, beside: Path | None = None) -> Path:
     """Find a file in the search path, or else in the folder `beside`."""
     path = client.search().find(name)
     # `Path.is_file` raises an error for names that are too long.
-    if path is None and beside is not None and isfile(beside / name):
+    if path is None and beside is not None and (appears(beside / name) or isfile(beside / name)):
         path = beside / name
     if path is None:
         fail(_CANNOT_LOAD, f"The file {name!r} was not found.")

@@ -9,9 +9,10 @@ from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
 from carom.description.geometry import GREATEST_SIZE
 from carom.description.pose import Vector3
 from carom.formats.shipped import advice
-from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real, sequence
+from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real
 from pybullet._calls.constants import GEOM_BOX, GEOM_CAPSULE, GEOM_CYLINDER, GEOM_PLANE, GEOM_SPHERE
 from pybullet._calls.errors import fail
+from pybullet._calls.nested import nested
 from pybullet._calls.optional_vectors import optional_vector3
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def points(values: Any, problem: str, name: str, columns: int = 3) -> NDArray[np
     import numpy as np
 
     try:
-        rows = np.array(sequence(values, problem, name), dtype=np.float64)
+        rows = np.array(nested(values, problem, name), dtype=np.float64)
     except (TypeError, ValueError):
         fail(problem, f"{name} has to be a sequence of {columns} numbers each.")
     if rows.size == 0:
@@ -105,7 +106,7 @@ def triangles(values: Any, vertex_count: int, problem: str) -> NDArray[np.int32]
     import numpy as np
 
     try:
-        flat = np.array(sequence(values, problem, "indices"))
+        flat = np.array(nested(values, problem, "indices"))
     except ValueError:
         fail(problem, "indices has to be a flat sequence of integers.")
     if flat.size == 0:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.errors import DescriptionError
-from pybullet._calls.arguments import Vector, integer, sequence, text
+from pybullet._calls.arguments import MOST_ITEMS, Vector, integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import VISUAL_SHAPE_DOUBLE_SIDED
 from pybullet._calls.errors import fail, logger
+from pybullet._calls.nested import nested
 from pybullet._calls.optional_vectors import optional_vector3, optional_vector4
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import link_or_warning
@@ -212,8 +213,9 @@ def _pixels(values: Any, columns: int, rows: int) -> NDArray[np.uint8]:
     if isinstance(values, (bytes, bytearray, memoryview)):
         flat = np.frombuffer(values, dtype=np.uint8)
     else:
+        most = max(4 * columns * rows, MOST_ITEMS)
         try:
-            flat = np.asarray(values if isinstance(values, np.ndarray) else sequence(values, "", "pixels"))
+            flat = np.asarray(nested(values, _BAD_TEXTURE, "pixels", most))
         except ValueError as problem:
             fail(_BAD_TEXTURE, f"pixels: {problem}.")
         flat = flat.reshape(-1)

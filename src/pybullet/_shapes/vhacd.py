@@ -102,6 +102,7 @@ def vhacd(
     from carom.formats.mesh import read_mesh
     from carom.geometry.decomposition import DecompositionOptions, decompose
     from carom.model.shape_pieces import joined_parts
+    from carom.writing import write_text
 
     options = DecompositionOptions(
         threshold=_DEFAULT_THRESHOLD
@@ -116,13 +117,13 @@ def vhacd(
     try:
         vertices, triangles = joined_parts(read_mesh(Path(source)), (1.0, 1.0, 1.0))
         pieces = decompose(vertices, triangles, options)
-        Path(target).write_text(_obj(pieces), encoding="utf-8")
+        write_text(target, _obj(pieces))
         report = f"{source}: {len(vertices)} vertices, {len(triangles)} triangles\n{options}\n"
         report += "".join(
             f"{_name(number)}: {len(points)} vertices, {len(faces)} triangles\n"
             for number, (points, faces) in enumerate(pieces)
         )
-        Path(log).write_text(report, encoding="utf-8")
+        write_text(log, report)
     except (CaromError, OSError) as problem:
         fail(_FAILED, str(problem))
 

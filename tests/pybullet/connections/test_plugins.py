@@ -10,6 +10,8 @@ import pytest
 
 import pybullet as p
 import pybullet_data
+from carom.formats import archives
+from pybullet._clients.clients import clients
 
 DATA = Path(pybullet_data.getDataPath())
 
@@ -64,6 +66,48 @@ def test_files_in_archives_are_found(archive: Path) -> None:
     assert not found("deep/cart.urdf")
     assert p.executePluginCommand(plugin, str(archive), add) == -1
     assert not (archive.parent / "outside.txt").exists()
+
+
+def _members_on_disk() -> set[str]:
+    """Names of the files in the temporary folder of the archive in slot 1."""
+    place = clients[0].plugins.places[1]
+    assert not isinstance(place, Path)
+    return {path.name for path in place.folder.rglob("*") if path.is_file()}
+
+
+def test_members_are_unpacked_when_they_are_asked_for(archive: Path) -> None:
+    plugin = p.loadPlugin("fileIOPlugin")
+    p.executePluginCommand(plugin, str(archive), [p.AddFileIOAction, p.ZipFileIO])
+    assert _members_on_disk() == set()
+    assert found("robots/cube.urdf")
+    assert _members_on_disk() == {"cube.urdf", "mesh.obj"}
+    assert found("outside.txt") is False
+    assert p.createCollisionShape(p.GEOM_MESH, fileName="robots/../robots/mesh.obj") >= 0
+
+
+def test_members_may_have_so_many_bytes(
+    archive: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with zipfile.ZipFile(tmp_path / "bomb.zip", "w", zipfile.ZIP_DEFLATED) as bomb:
+        bomb.writestr("small.urdf", (DATA / "cartpole.urdf").read_text())
+        bomb.writestr("big.urdf", bytes(100_000))
+        bomb.writestr("big.png", bytes(100_000))
+    monkeypatch.setattr(archives, "MOST_MEMBER_BYTES", 99_999)
+    plugin = p.loadPlugin("fileIOPlugin")
+    assert p.executePluginCommand(plugin, str(tmp_path / "bomb.zip"), [p.AddFileIOAction, p.ZipFileIO]) == 1
+    assert found("small.urdf")
+    stated = r"bomb.zip: its member 'big.{}' has 100000 bytes; at most 99999 are accepted"
+    with pytest.raises(p.error, match=stated.format("urdf")):
+        p.loadURDF("big.urdf")
+    with pytest.raises(p.error, match=stated.format("png")):
+        p.loadTexture("big.png")
+    with pytest.raises(p.error, match=stated.format("urdf")):
+        p.loadMJCF("big.urdf")
+    assert _members_on_disk() == {"small.urdf"}
+    monkeypatch.setattr(archives, "MOST_MEMBER_BYTES", 100_000)
+    monkeypatch.setattr(archives, "MOST_BYTES", 100_000)
+    with pytest.raises(p.error, match=r"of the 100000 accepted for all members \d+ are left"):
+        p.loadURDF("big.urdf")
 
 
 def test_folders_are_searched(archive: Path, tmp_path: Path) -> None:

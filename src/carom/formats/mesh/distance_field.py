@@ -7,6 +7,7 @@ from pathlib import Path
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.formats.unpacking import unpack
 
 _DOMAIN = struct.Struct("<6d")
 _FURTHEST = 1e30
@@ -18,6 +19,7 @@ def read_field_bounds(path: Path) -> tuple[Vector3, Vector3]:
     Raises:
         DescriptionError: The file is missing or too short, or the corners are too far away or not in order.
     """
+    unpack(path)
     try:
         with open(path, "rb") as stream:
             header = stream.read(_DOMAIN.size)

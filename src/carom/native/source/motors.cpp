@@ -21,15 +21,11 @@ void write_target(double* row, double position, double velocity, double kp, doub
 }
 
 bool are_those_of(const MotorGroup& group, PyObject* indices) {
-    if (!indices || python.PySequence_Size(indices) != group.count)
+    if (!indices || length_of(indices) != group.count)
         return false;
     for (int64_t i = 0; i < group.count; ++i) {
-        PyObject* item = python.PySequence_GetItem(indices, i);
-        double index = -1.0;
-        const bool well = item && read_integer(item, &index) && index == group.indices[i];
-        if (item)
-            python.Py_DecRef(item);
-        if (!well)
+        double index;
+        if (!read_item(indices, i, &index) || index != group.indices[i])
             return false;
     }
     return true;

@@ -317,17 +317,32 @@ bool read_integer(PyObject* value, double* number) {
     return value->type == python.int_type && read_number(value, number) && __builtin_fabs(*number) <= 0x7FFFFFFF;
 }
 
+intptr_t length_of(PyObject* sequence) {
+    const intptr_t length = python.PySequence_Size(sequence);
+    // A range can be longer than its type can say.
+    if (length < 0)
+        python.PyErr_Clear();
+    return length;
+}
+
+bool read_item(PyObject* sequence, intptr_t place, double* number) {
+    PyObject* item = python.PySequence_GetItem(sequence, place);
+    if (!item) {
+        python.PyErr_Clear();
+        return false;
+    }
+    const bool well = read_integer(item, number);
+    python.Py_DecRef(item);
+    return well;
+}
+
 intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* indices) {
-    const intptr_t count = python.PySequence_Size(sequence);
+    const intptr_t count = length_of(sequence);
     if (count > most)
         return -1;
     for (intptr_t i = 0; i < count; ++i) {
-        PyObject* item = python.PySequence_GetItem(sequence, i);
-        double index = -1.0;
-        const bool well = item && read_integer(item, &index) && 0.0 <= index && index < end;
-        if (item)
-            python.Py_DecRef(item);
-        if (!well)
+        double index;
+        if (!read_item(sequence, i, &index) || index < 0.0 || index >= end)
             return -1;
         indices[i] = static_cast<int64_t>(index);
     }

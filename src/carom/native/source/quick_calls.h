@@ -220,6 +220,12 @@ inline bool has_joint(const Body& body, double index) { return 0.0 <= index && h
 // Reads a Python integer that fits into 32 bits; false if it is none.
 bool read_integer(PyObject* value, double* number);
 
+// The length of a sequence; -1 if it is too long to be said.
+intptr_t length_of(PyObject* sequence);
+
+// Reads an integer of a sequence; false if it is none.
+bool read_item(PyObject* sequence, intptr_t place, double* number);
+
 // Reads a sequence of at most `most` integers from 0 to `end` - 1; returns their number, or -1 if it is none.
 intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* indices);
 

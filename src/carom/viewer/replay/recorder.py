@@ -14,6 +14,7 @@ from carom.viewer.notebook import replay_frame
 from carom.viewer.replay.page import replay_of
 from carom.viewer.replay.recording import Recording
 from carom.viewer.scene_feed import SceneFeed
+from carom.writing import write_text
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -135,7 +136,7 @@ class ReplayRecorder:
         self._details.want(_PAGE, Wish())
         if self._recording.frame_count == 0 or self._last != float(self._world.time):
             self.shoot()
-        self._path.write_text(self._page(), encoding="utf-8")
+        write_text(self._path, self._page())
 
     @property
     def frame_count(self) -> int:

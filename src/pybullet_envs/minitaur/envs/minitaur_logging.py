@@ -7,6 +7,7 @@ import os
 from datetime import datetime
 from typing import Any
 
+from carom.writing import write_whole
 from pybullet_envs.minitaur.envs.minitaur_logging_pb2 import MinitaurEpisode
 
 NUM_MOTORS = 8
@@ -72,8 +73,7 @@ class MinitaurLogging:
             return self._log_path
         os.makedirs(self._log_path, exist_ok=True)
         file = os.path.join(self._log_path, f"minitaur_log_{datetime.now():%Y-%m-%d-%H%M%S}")
-        with open(file, "wb") as log:
-            log.write(episode_proto.SerializeToString())
+        write_whole(file, episode_proto.SerializeToString())
         return file
 
     def restore_episode(self, log_path: str) -> Any:
