@@ -30,8 +30,8 @@ BASES = {
     "of an arm": lambda: p.loadURDF("kuka_iiwa/model.urdf", [0.1, 0.0, -0.07], useFixedBase=1),
 }
 
-# Linear and angular velocity, their bound if not the usual one, substeps; and after three steps of PyBullet the
-# linear velocity, the angular one about z, and the position.
+# Linear and angular velocity, their bound if not the usual one, substeps; and after three steps of PyBullet
+# the linear velocity, the angular one about z, and the position.
 MEASURED: list[tuple[list[float], float, float | None, int, list[float], float, list[float]]] = [
     ([1, 0, 0], 3, None, 1, [0.9995312, 0.037498, 0], 3, [0.0124974, 0.0003125, 0]),
     ([200, 150, 0], 120, None, 1, [16.6666667, 100, 0], 100, [0.7291667, 1.25, 0]),
