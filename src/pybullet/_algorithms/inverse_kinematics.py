@@ -313,6 +313,11 @@ def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...
     except (TypeError, ValueError):
         fail(_PROBLEM, f"{name} is {values!r}, not a list of numbers.")
     if len(result) != freedoms:
+        if result:
+            warn_once(
+                f"calculateInverseKinematics: {name} has {len(result)} numbers, not {freedoms}, one for each "
+                "degree of freedom; it is ignored, as in PyBullet"
+            )
         return None
     if any(map(isnan, result)):
         fail(_PROBLEM, f"{name} is {values!r}, with a value that is not a number.")
