@@ -3,6 +3,9 @@
 Importing this package registers them if Gymnasium is installed. Observations, actions, rewards and ends of
 episodes are PyBullet's; the interface is Gymnasium's, whose `step` returns five values. Robots and other
 parts work without Gymnasium.
+
+Where gym, its predecessor, is installed instead, or was imported before, `gym.make` knows the environments as
+well, with the interface of that version of gym.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ from functools import partial
 from typing import Any, NoReturn
 
 import pybullet as p
+from pybullet_envs import _old_gym
 from pybullet_envs._absent_modules import ABSENT
 from pybullet_envs._gymnasium import INSTALLED, gymnasium, require_gymnasium
 from pybullet_utils._absent import announce
@@ -112,6 +116,8 @@ def _register_all() -> None:
 announce(__name__, ABSENT)
 if INSTALLED:
     _register_all()
+if _old_gym.INSTALLED and (_old_gym.is_asked_for() or not INSTALLED):
+    _old_gym.register_all(_ENVIRONMENTS)
 
 
 def register(id: str, *args: Any, **kvargs: Any) -> None:

@@ -1,4 +1,4 @@
-"""Gymnasium, or a stand-in for it if it is not installed.
+"""Gymnasium, or a stand-in for it if it is not installed: made of its predecessor, gym, if there is that.
 
 Scripts use parts of this package, such as robots, without any environment. These parts must not require
 Gymnasium before it is needed: for an environment, or for the spaces of its actions and observations.
@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, NoReturn
+
+from pybullet_envs import _old_gym
 
 INSTALLED = find_spec("gymnasium") is not None
 
@@ -20,8 +22,8 @@ def _raise(*arguments: Any, **keywords: Any) -> NoReturn:
 
 
 def require_gymnasium() -> None:
-    """Raises `ImportError`, with the command for installing it, if Gymnasium is not installed."""
-    if not INSTALLED:
+    """Raises `ImportError`, with the command for installing it, if neither Gymnasium nor gym is installed."""
+    if not INSTALLED and not _old_gym.INSTALLED:
         _raise()
 
 
@@ -49,6 +51,9 @@ class _StandIn:
 
 if TYPE_CHECKING or INSTALLED:
     import gymnasium
+    import gymnasium.utils.seeding
+elif _old_gym.INSTALLED:
+    gymnasium = _old_gym.stand_in()
 else:
     gymnasium = _StandIn
 

@@ -40,9 +40,7 @@ class BulletEnv(gymnasium.Env[np.ndarray, Any]):
 
     def seed(self, seed: int | None = None) -> list[int]:
         """Seeds the random numbers of episodes to come, as scripts for the old gym do; see also `reset`."""
-        from gymnasium.utils import seeding
-
-        self.np_random, used = seeding.np_random(seed)
+        self.np_random, used = gymnasium.utils.seeding.np_random(seed)
         return [used]
 
     def _connect(self) -> bool:

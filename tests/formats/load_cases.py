@@ -132,3 +132,23 @@ REFUSED = {
         '<link name="a"><visual><geometry><sphere radius="1"/></geometry><material/></visual></link>'
     ),
 }
+
+
+def _limits(**changes: str | None) -> str:
+    limit: dict[str, str | None] = {"lower": "-1", "upper": "1", "effort": "5", "velocity": "2"}
+    limit |= changes
+    stated = " ".join(f'{name}="{text}"' for name, text in limit.items() if text is not None)
+    return robot(_A, _B, joint(f"<limit {stated}/>", kind="revolute"))
+
+
+_TEXTS = (
+    *("-inf", "inf", "+Infinity", "-INFINITY", "infinite", "1e400", "-1e400", "1e308", "1e31", "1e-400"),
+    *("", "pi", "--1", "${limit}", "e5", ".", "0x", "0x10", "-0x1p3", "0x.8", "0x1p9999", "-0x1p9999"),
+    *(" 1 ", "1.0 2.0", "1,5", "+1", ".5", "5.", "1e", "1e+", "5abc", "1d3", "1_0"),
+)
+# Files with limits that are none, or no plain numbers, by what is unusual about them.
+LIMITS = {
+    f"{name}={text!r}": _limits(**{name: text})
+    for name in ("lower", "upper", "effort", "velocity")
+    for text in (None, *_TEXTS)
+}

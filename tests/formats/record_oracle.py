@@ -1,4 +1,5 @@
-"""Asks real PyBullet what it makes of the test robots, and writes its answers to `oracle.json`.
+"""Asks real PyBullet what it makes of the test robots, and writes its answers to `oracle.json` and
+`limits_oracle.json`.
 
 Run it with a Python that has PyBullet, not Carom:
 
@@ -13,10 +14,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from load_cases import CASES, DATA, REFUSED, LoadCase
+from load_cases import CASES, DATA, LIMITS, REFUSED, LoadCase
 from recording import is_refused, plain
 
 ANSWERS = Path(__file__).with_name("oracle.json")
+LIMITS_ANSWERS = Path(__file__).with_name("limits_oracle.json")
 
 
 def ask(pybullet: Any, case: LoadCase) -> dict[str, Any]:
@@ -34,6 +36,19 @@ def ask(pybullet: Any, case: LoadCase) -> dict[str, Any]:
     return answer
 
 
+def ask_limits(pybullet: Any, text: str, scratch: Path) -> list[float]:
+    """Lower and upper limit, effort and velocity of the first joint of a file."""
+    scratch.write_text(text, encoding="utf-8")
+    # A file of the same name is otherwise not read again.
+    pybullet.setPhysicsEngineParameter(enableFileCaching=0)
+    try:
+        limits = pybullet.getJointInfo(pybullet.loadURDF(str(scratch)), 0)[8:12]
+    finally:
+        scratch.unlink()
+        pybullet.resetSimulation()
+    return plain(limits)
+
+
 def main() -> None:
     pybullet: Any = importlib.import_module("pybullet")
     pybullet.connect(pybullet.DIRECT)
@@ -46,6 +61,9 @@ def main() -> None:
             for name, text in REFUSED.items()
         },
     }
+    limits = {name: ask_limits(pybullet, text, scratch) for name, text in LIMITS.items()}
+    lines = (f"{json.dumps(name)}: {json.dumps(answer)}" for name, answer in limits.items())
+    LIMITS_ANSWERS.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
     ANSWERS.write_text(json.dumps(answers, indent=None, separators=(",", ":")) + "\n", encoding="utf-8")
 
 

@@ -32,6 +32,15 @@ def test_includes_are_found_and_placed() -> None:
     assert first.robot.links == second.robot.links
 
 
+@pytest.mark.parametrize(("text", "static"), [("true", True), ("1", True), ("false", False), ("yes", False)])
+def test_static_models_are_fixed(text: str, static: bool, tmp_path: Path) -> None:
+    file = write(tmp_path, f"<sdf><model name='m'><static>{text}</static>{A}</model></sdf>")
+    (placed,) = read_sdf(file)
+    assert placed.fixed_base == static
+    (placed,) = read_sdf(file, words_are_true=False)
+    assert placed.fixed_base == (text == "1")
+
+
 def test_a_file_that_includes_itself_is_refused(tmp_path: Path) -> None:
     write(tmp_path, "<sdf><include><uri>b.sdf</uri></include></sdf>", "a.sdf")
     write(tmp_path, "<sdf><include><uri>a.sdf</uri></include></sdf>", "b.sdf")

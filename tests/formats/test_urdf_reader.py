@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import math
 import os
@@ -9,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from load_cases import LIMITS
 
 from carom.description import (
     Box,
@@ -255,7 +257,7 @@ BROKEN = [
     ([link(inside=collision('<sphere radius="-1"/>'))], 3, "<sphere>", "must not be negative"),
     ([link(inside=collision('<cylinder radius="${r}" length="1"/>'))], 3, "<cylinder>", "${r}"),
     ([A, B, joint("<axis xyz='0 0 " + "9" * 5000 + "'/>")], 4, "<axis>", "9999...'"),
-    ([A, B, joint('<limit lower="1e400"/>')], 4, "<limit>", "sensible size"),
+    ([A, B, joint('<limit lower="nan"/>')], 4, "<limit>", "lower='nan' is not a number"),
     ([A, B, joint('<axis xyz="0 0 0"/>')], 4, "<axis>", "no length"),
     ([A, B, joint('<axis xyz="0 0 1e300"/>')], 4, "<axis>", "out of range"),
     ([A, B, joint(), joint(name="k")], 5, '<joint name="k">', "is already the child of joint 'j'"),
@@ -284,6 +286,26 @@ def test_errors_name_file_line_element_and_reason(
     assert error.element.endswith(element.rsplit(" > ", maxsplit=1)[-1])
     assert reason in error.reason
     assert str(error) == f"{error.file}:{line}: {error.element}: {error.reason}"
+
+
+LIMITS_OF_PYBULLET = json.loads(Path(__file__).with_name("limits_oracle.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("case", LIMITS)
+def test_limits_are_read_as_by_pybullet(case: str, tmp_path: Path) -> None:
+    file = tmp_path / "limits.urdf"
+    file.write_text(LIMITS[case], encoding="utf-8")
+    limit = read_urdf(file).joints[0].limit
+    assert [limit.lower, limit.upper, limit.effort, limit.velocity] == LIMITS_OF_PYBULLET[case]
+
+
+@pytest.mark.parametrize("text", ["pi", "", "1.0 2.0"])
+def test_limits_that_are_no_single_number_are_warned_of(
+    read: Read, text: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    read(A, B, joint(f'<limit lower="{text}"/>'))
+    (record,) = caplog.records
+    assert f"lower='{text}' is" in record.getMessage()
 
 
 @pytest.mark.parametrize("text", ["0.5", " 0.5 ", "+.5", "5e-1", "0.5f", "0.5 metres", "0.5,"])

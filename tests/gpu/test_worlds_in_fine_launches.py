@@ -20,6 +20,7 @@ from tests.worlds.test_same_bits import (
     test_bodies_that_fall_asleep_and_are_woken,  # noqa: F401
     test_resets_of_some_worlds_in_between,  # noqa: F401
 )
+from tests.worlds.test_set_velocities import *  # noqa: F403
 from tests.worlds.test_touching_links import *  # noqa: F403
 from tests.worlds.test_worlds import *  # noqa: F403
 

@@ -86,7 +86,7 @@ def test_small_strains_are_those_of_a_linear_solid() -> None:
         ({"cells": ONE + 1}, "a cell names a node outside 0..3"),
         ({"cells": ONE[:, [0, 0, 2, 3]]}, "tetrahedron 0 has no volume"),
         ({"cells": ONE[:0]}, "no cells to simulate"),
-        ({"cells": np.array([[0, 1, 1]]), "springs": Springs(1.0)}, "a cell has node 1 twice"),
+        ({"cells": np.array([[0, 1, 1]]), "springs": Springs(1.0)}, "each of its faces names a node twice"),
         ({"nodes": TETRA * 0, "cells": np.array([[0, 1, 2]])}, "all corners of its cells are in one place"),
     ],
 )
@@ -104,6 +104,34 @@ def test_files_give_the_meshes_they_hold(tmp_path: Path) -> None:
     assert cube.soft is not None
     assert (len(cube.soft.nodes), len(cube.soft.faces), len(cube.soft.tetras)) == (64, 108, 162)
     assert np.ptp(cube.soft.nodes, axis=0) == pytest.approx([0.8] * 3)
+
+
+# How far the nodes of two triangles that hang from a corner are from where they are without a third face,
+# after 100 steps of PyBullet, by that face. One that names a node twice is no face, but its edge is a spring.
+_THIRD_FACES = {
+    "1 1 4": [[-0.0097, -0.0277, -0.0004], [-0.0277, -0.0097, -0.0004], [-0.0660, -0.0660, 0.0447]],
+    "4 1 4": [[-0.0097, -0.0277, -0.0004], [-0.0277, -0.0097, -0.0004], [-0.0660, -0.0660, 0.0447]],
+    "4 4 4": [[0.0, 0.0, 0.0]] * 3,
+    "1 2 2": [[0.0, 0.0, 0.0]] * 3,
+}
+
+
+@pytest.mark.parametrize("face", _THIRD_FACES)
+def test_faces_that_name_a_node_twice_are_none(face: str, tmp_path: Path) -> None:
+    hung = []
+    for name, third in (("without", ""), ("with", f"f {face}\n")):
+        file = tmp_path / f"{name}.obj"
+        file.write_text(f"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n{third}", encoding="utf-8")
+        world = World()
+        world.gravity = (0.0, 0.0, -10.0)
+        cloth = world.load_cloth(mesh=file, stiffness=40.0, bending=0.1, damping=0.1)
+        assert len(cloth.faces) == 2
+        # All of them are drawn.
+        assert len(cloth.surface[1]) == (3 if third else 2)
+        cloth.anchor(0)
+        world.step(100)
+        hung.append(cloth.nodes[1:].copy())
+    assert hung[1] - hung[0] == pytest.approx(np.array(_THIRD_FACES[face]), abs=1e-3)
 
 
 def test_corners_in_one_place_stay_there() -> None:

@@ -23,11 +23,16 @@ PlacedBody = tuple[BodySpec, Pose]
 """A body, and the world pose of the link frame of its base."""
 
 
-def sdf_bodies(path: Path, search: AssetSearch, *, scale: float) -> list[PlacedBody]:
-    """The bodies of an SDF file, in the order of the file; raises `DescriptionError`."""
+def sdf_bodies(
+    path: Path, search: AssetSearch, *, scale: float, words_are_true: bool = True
+) -> list[PlacedBody]:
+    """The bodies of an SDF file, in the order of the file; raises `DescriptionError`.
+
+    With `words_are_true`, `<static>true</static>` makes a model static; in PyBullet it does not.
+    """
     from carom.formats.sdf import read_sdf
 
-    robots = read_sdf(path, scale=scale, search=search)
+    robots = read_sdf(path, scale=scale, words_are_true=words_are_true, search=search)
     return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
 
 

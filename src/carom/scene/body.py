@@ -168,7 +168,10 @@ class Body:
         self.update_link_poses()
 
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
-        """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s]."""
+        """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s].
+
+        A fixed base moves with it, and as in Bullet the velocity turns with the base.
+        """
         first = self.first_velocity * _NUMBER.itemsize
         _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
 

@@ -267,8 +267,8 @@ class Joint:
 
         The wrench that the joint transmits from its parent link to its child link, due to weight and inertia
         of the links beyond it, applied forces, contacts, user constraints and soft bodies, but without the
-        force of its own motor or limit. It is in the inertial frame of the child link, unless
-        `EngineParameters.joint_feedback_mode` selects another frame.
+        force of its own motor or limit. The torque is about the child link's centre of mass. Both are in the
+        axes of its inertial frame, unless `EngineParameters.joint_feedback_mode` selects another frame.
         """
         return world_of(self.body).joint_reaction[self.body.first_link + 1 + self.index].copy()
 

@@ -53,7 +53,8 @@ def soft_body(
     Args:
         name: Its name.
         nodes: (n, 3) positions at rest [m].
-        cells: Its (m, 2) edges, (m, 3) triangles or (m, 4) tetrahedra.
+        cells: Its (m, 2) edges, (m, 3) triangles or (m, 4) tetrahedra. Triangles that name a node twice are
+            springs, but no faces, as in PyBullet.
         mass: Total mass of all nodes [kg].
         springs: Springs along the edges of the cells; None for no springs.
         solid: Material of tetrahedra; None if they do not resist deformation.
@@ -66,7 +67,8 @@ def soft_body(
 
     Raises:
         DescriptionError: A node is not finite or too far away; a cell refers to a node that does not exist,
-            refers to a node twice, or has no volume; all nodes are in one place; or a parameter is invalid.
+            or has no volume; no face refers to three nodes; all nodes are in one place; or a parameter is
+            invalid.
     """
     _check_parameters(mass, springs, solid, margin, friction, source)
     nodes = np.array(nodes, dtype=np.float64).reshape(-1, 3)
@@ -75,11 +77,13 @@ def soft_body(
     center = nodes.mean(axis=0)
     places = nodes - center
     tetras = np.empty((0, 4), dtype=np.int32)
-    faces = cells if cells.shape[1] == 3 else np.empty((0, 3), dtype=np.int32)
+    faces = drawn = cells if cells.shape[1] == 3 else np.empty((0, 3), dtype=np.int32)
     if cells.shape[1] == 4:
         tetras = cells = oriented(places, cells)
         _check_volumes(places, tetras, source)
-        faces = surface_of(tetras)
+        faces = drawn = surface_of(tetras)
+    elif cells.shape[1] == 3:
+        faces = _with_three_nodes(cells, source)
     pairs, terms = _springs(places, cells, springs, source)
     elastic = solid or NeoHookean(0.0, 0.0)
     soft = SoftSpec(
@@ -96,10 +100,13 @@ def soft_body(
         margin=margin,
         self_collision=self_collision,
     )
-    vertices, triangles = (nodes, soft.faces) if seen is None else seen
+    vertices, triangles = (nodes, np.ascontiguousarray(drawn)) if seen is None else seen
     if seen is not None:
-        soft.skin = Skin(*bind(vertices, nodes, cells), triangles)
-    elif textured is None and cells.shape[1] == 4:
+        soft.skin = Skin(*bind(vertices, nodes, faces if cells.shape[1] == 3 else cells), triangles)
+    elif len(triangles) != len(faces):
+        every = np.arange(len(nodes), dtype=np.int32)[:, None]
+        soft.skin = Skin(every, np.ones(every.shape), triangles)
+    if seen is None and textured is None and cells.shape[1] == 4:
         textured = checkered(vertices, triangles)
     soft.checkered = textured is not None and textured.checkered
     x, y, z = center.tolist()
@@ -171,12 +178,20 @@ def _check_volumes(nodes: Floats, tetras: Ints, source: Path | None) -> None:
         )
 
 
+def _with_three_nodes(triangles: Ints, source: Path | None) -> Ints:
+    """The triangles without those that name a node twice; raises `DescriptionError` if none is left."""
+    a, b, c = triangles.T
+    kept = triangles[(a != b) & (b != c) & (c != a)]
+    if not len(kept):
+        raise DescriptionError("each of its faces names a node twice", file=source)
+    return kept
+
+
 def _springs(nodes: Floats, cells: Ints, springs: Springs | None, source: Path | None) -> tuple[Ints, Floats]:
     """Pairs of nodes (s, 2), and the length, stiffness and damping of the springs between them (s, 3)."""
     edges = edges_of(cells)
-    same = np.flatnonzero(edges[:, 0] == edges[:, 1])
-    if len(same):
-        raise DescriptionError(f"a cell has node {edges[same[0], 0]} twice", file=source)
+    # A triangle that names a node twice has one edge of two nodes; PyBullet puts a spring there as well.
+    edges = edges[edges[:, 0] != edges[:, 1]]
     # Springs of zero length are allowed: they hold nodes in the same place together, as in seams of garments.
     size = float(np.ptp(nodes, axis=0).max())
     if not (np.linalg.norm(nodes[edges[:, 1]] - nodes[edges[:, 0]], axis=1) > SHORT * size).any():

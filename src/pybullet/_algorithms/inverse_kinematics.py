@@ -310,7 +310,13 @@ def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...
     """A list with one number, perhaps infinite, for each degree of freedom; None if its length differs."""
     if values is None:
         return None
-    if length(values, _PROBLEM, name) != freedoms:
+    count = length(values, _PROBLEM, name)
+    if count != freedoms:
+        if count:
+            warn_once(
+                f"calculateInverseKinematics: {name} has {count} numbers, not {freedoms}, one for each "
+                "degree of freedom; it is ignored, as in PyBullet"
+            )
         return None
     try:
         result = tuple(map(float, sequence(values, _PROBLEM, name)))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from carom.description.transform import subtracted
-from pybullet._calls.arguments import Vector, integer, vector3
+from pybullet._calls.arguments import Vector, integer, numbers, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
 from pybullet._calls.errors import fail, logger
@@ -58,7 +59,7 @@ def applyExternalForce(
         True
     """
     client = client_of(physicsClientId)
-    force = vector3(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
+    force = _of_any_size(forceObj, "force needs a 3 coordinates [x,y,z].", "forceObj")
     point = vector3(posObj, "position needs a 3 coordinates [x,y,z].", "posObj")
     frame = _frame(flags)
     soft = client.body(objectUniqueId)
@@ -100,7 +101,7 @@ def applyExternalTorque(
         True
     """
     client = client_of(physicsClientId)
-    torque = vector3(torqueObj, "torque needs a 3 coordinates [x,y,z].", "torqueObj")
+    torque = _of_any_size(torqueObj, "torque needs a 3 coordinates [x,y,z].", "torqueObj")
     if integer(linkIndex, "linkIndex") < BASE:
         fail(_WRONG_LINK, f"It is {linkIndex}.")
     frame = _frame(flags)
@@ -110,6 +111,20 @@ def applyExternalTorque(
     if frame == LINK_FRAME:
         torque = turned(access.inertial_frame(linkIndex)[1], torque)
     access.push(linkIndex, (0.0, 0.0, 0.0), torque)
+
+
+def _of_any_size(values: Vector, problem: str, name: str) -> Vector3:
+    """Three finite numbers, unlike those of `vector3` also beyond its bound."""
+    try:
+        x, y, z = values
+        if -inf < x + y + z < inf:
+            return float(x), float(y), float(z)
+    except (TypeError, ValueError):
+        pass
+    found = numbers(values, problem, name)
+    if len(found) != 3:
+        return vector3(values, problem, name)
+    return found[0], found[1], found[2]
 
 
 def _push_node(body: Body, node_index: int, force: Vector3, frame: int) -> None:

@@ -99,10 +99,10 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
 
     Returns:
         (position [rad or m], velocity, (Fx, Fy, Fz, Mx, My, Mz) [N, N m], motor torque [N m or N]).
-        The third is the force and torque of the joint on its link, zeros unless
-        `enableJointForceTorqueSensor` was called; the fourth is that of the motor in the last step, and does
-        not change when the motor is switched off. Zeros for a fixed joint; for a spherical one see
-        `getJointStateMultiDof`.
+        The third is the force and torque of the joint on its link, about the link's centre of mass and in the
+        axes of its inertial frame; zeros unless `enableJointForceTorqueSensor` was called. The fourth is that
+        of the motor in the last step, and does not change when the motor is switched off. Zeros for a fixed
+        joint; for a spherical one see `getJointStateMultiDof`.
 
     Raises:
         pybullet.error: Not connected, or there is no such body or joint.

@@ -15,6 +15,7 @@ from pybullet._calls.arguments import (
     check_rotation,
     indices,
     integer,
+    numbers,
     quantities,
     quantity,
     sequence,
@@ -83,7 +84,7 @@ def setJointMotorControlMultiDof(
     client_of(physicsClientId)
     position = _list(targetPosition, "targetPosition", 4)
     velocity = _list(targetVelocity, "targetVelocity", 3)
-    forces = _list(force, "force", 3)
+    forces = _list(force, "force", 3, inf)
     kp, kd = _gain(positionGain, "positionGain"), _gain(velocityGain, "velocityGain")
     damped = _gain(damping, "damping")
     clamp = bound(maxVelocity, "maxVelocity")
@@ -164,7 +165,7 @@ def setJointMotorControlMultiDofArray(
         fail(OUT_OF_RANGE, no_joint(access.body, missing.args[0]))
     positions = _column(lists[0], "targetPositions", 4)
     velocities = _column(lists[1], "targetVelocities", 3)
-    bounds = _column(lists[2], "forces", 3)
+    bounds = _column(lists[2], "forces", 3, inf)
     kps = _gains(lists[3], "positionGains") or [DEFAULT_POSITION_GAIN] * count
     kds = _gains(lists[4], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
     for position in positions.entries:
@@ -187,18 +188,20 @@ def setJointMotorControlMultiDofArray(
             joint.command_multi_dof(mode, (position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING))
 
 
-def _column(entries: Sequence[Vector | None], name: str, most: int) -> Column:
+def _column(
+    entries: Sequence[Vector | None], name: str, most: int, greatest: float = MAX_MAGNITUDE
+) -> Column:
     """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
     if not entries:
         return NO_ENTRIES
     if _USUAL_LISTS.issuperset(map(type, entries)):
         usual = column_of(entries)  # type: ignore[arg-type]
         try:
-            if max(usual.counts) <= most and -inf < sum(usual.numbers) < inf:
+            if max(usual.counts) <= most and -greatest < sum(usual.numbers) < greatest:
                 return usual
         except (TypeError, ValueError):
             pass
-    return column_of([_list(values, name, most) for values in entries])
+    return column_of([_list(values, name, most, greatest) for values in entries])
 
 
 def _gains(values: Sequence[float], name: str) -> Sequence[float]:
@@ -208,15 +211,21 @@ def _gains(values: Sequence[float], name: str) -> Sequence[float]:
     return [quantity(value, name) for value in values]
 
 
-def _list(values: Vector | None, name: str, most: int) -> Sequence[float]:
-    """The checked numbers of one joint, cut off after `most`; empty if not given."""
+def _list(values: Vector | None, name: str, most: int, greatest: float = MAX_MAGNITUDE) -> Sequence[float]:
+    """The checked numbers of one joint, cut off after `most`; empty if not given.
+
+    Their magnitude is at most `MAX_MAGNITUDE`, or finite if `greatest` is infinite.
+    """
     if isinstance(values, (list, tuple)) and len(values) <= most:
         try:
-            if -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
+            if -greatest < sum(values) < greatest:
                 return values
         except (TypeError, ValueError):
             pass
-    return () if values is None else quantities(values, f"expected a {name} sequence", name)[:most]
+    if values is None:
+        return ()
+    checked = numbers if greatest == inf else quantities
+    return checked(values, f"expected a {name} sequence", name)[:most]
 
 
 def _entries(values: Any, name: str) -> tuple[Any, ...]:

@@ -67,7 +67,8 @@ def loadSDF(
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.model.from_files import sdf_bodies
 
-        return sdf_bodies(Path(name), search, scale=scaling if scaling > 0.0 else 1.0)
+        scale = scaling if scaling > 0.0 else 1.0
+        return sdf_bodies(Path(name), search, scale=scale, words_are_true=False)
 
     load = FileLoad("loadSDF", {"globalScaling": scaling})
     return _load(client, read, _CANNOT_LOAD_SDF, load)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import isfinite
+from math import inf, isfinite, nan
 from time import perf_counter
 from typing import Any
 
@@ -92,6 +92,65 @@ def test_bounds_may_be_as_great_as_one_likes() -> None:
     for _ in range(5):
         p.stepSimulation()
     assert all(map(isfinite, p.getJointState(1, 0)[:2]))
+
+
+# The velocities in PyBullet of a hinge after one step: the greatest, or that of an unlimited motor.
+_GREAT_FORCES: dict[str, tuple[Callable[[float], Any], float]] = {
+    "torque on a link": (lambda f: p.applyExternalTorque(0, 0, [0, 0, f], p.WORLD_FRAME), 100.0),
+    "torque of an array": (lambda f: p.applyExternalTorque(0, 0, np.array([0, 0, f]), p.LINK_FRAME), 100.0),
+    "force beside the centre": (
+        lambda f: p.applyExternalForce(0, 0, [0, f, 0], [1, 0, 0], p.WORLD_FRAME),
+        100.0,
+    ),
+    "motor": (lambda f: p.setJointMotorControl2(0, 0, p.TORQUE_CONTROL, force=f), 100.0),
+    "motors": (lambda f: p.setJointMotorControlArray(0, [0], p.TORQUE_CONTROL, forces=[f]), 100.0),
+    "motor of lists": (
+        lambda f: p.setJointMotorControlMultiDof(0, 0, p.POSITION_CONTROL, targetPosition=[1], force=[f]),
+        24.0,
+    ),
+    "motors of lists": (
+        lambda f: p.setJointMotorControlMultiDofArray(
+            0, [0], p.POSITION_CONTROL, targetPositions=[[1]], forces=[[f]]
+        ),
+        24.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("force", [1e29, 1e31, 1e100, 1e300])
+@pytest.mark.parametrize("case", _GREAT_FORCES)
+def test_forces_may_be_as_great_as_one_likes(case: str, force: float) -> None:
+    push, velocity = _GREAT_FORCES[case]
+    p.resetSimulation()
+    p.createMultiBody(
+        linkMasses=[1], linkCollisionShapeIndices=[-1], linkVisualShapeIndices=[-1],
+        linkPositions=[[0, 0, 0]], linkOrientations=[[0, 0, 0, 1]],
+        linkInertialFramePositions=[[0, 0, 0]], linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        linkParentIndices=[0], linkJointTypes=[p.JOINT_REVOLUTE], linkJointAxis=[[0, 0, 1]],
+    )  # fmt: skip
+    p.changeDynamics(0, 0, localInertiaDiagonal=[1, 1, 1])
+    p.setJointMotorControl2(0, 0, p.VELOCITY_CONTROL, force=0)
+    push(force)
+    p.stepSimulation()
+    assert p.getJointState(0, 0)[1] == pytest.approx(velocity, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: p.applyExternalForce(1, 0, [inf, 0, 0], [0, 0, 0], p.WORLD_FRAME),
+        lambda: p.applyExternalForce(1, 0, [0, 0], [0, 0, 0], p.WORLD_FRAME),
+        lambda: p.applyExternalForce(1, 0, [1, 0, 0], [1e300, 0, 0], p.WORLD_FRAME),
+        lambda: p.applyExternalTorque(1, 0, [0, nan, 0], p.WORLD_FRAME),
+        lambda: p.setJointMotorControlMultiDof(1, 0, p.TORQUE_CONTROL, force=[inf]),
+        lambda: p.setJointMotorControlMultiDofArray(
+            1, [0], p.POSITION_CONTROL, targetPositions=[[1e300]], forces=[[1]]
+        ),
+    ],
+)
+def test_other_numbers_of_forces_are_refused(call: Callable[[], Any]) -> None:
+    with pytest.raises(p.error, match=r"needs a 3|expected a"):
+        call()
 
 
 @pytest.mark.parametrize("scale", [1e-82, 1e-201, 1e-160, 5e-324])
@@ -208,3 +267,12 @@ def test_names_no_file_can_have(name: str) -> None:
     with pytest.raises(p.error):
         p.createCollisionShape(p.GEOM_MESH, fileName=name)
     assert p.loadPlugin(name) == -1
+
+
+def test_null_space_lists_of_the_wrong_length_are_warned_of(caplog: pytest.LogCaptureFixture) -> None:
+    plain = p.calculateInverseKinematics(1, 6, [0.4, 0.2, 0.6])
+    lists = {"lowerLimits": [-1] * 7, "upperLimits": [1] * 7, "jointRanges": [2] * 7, "restPoses": [0] * 6}
+    assert p.calculateInverseKinematics(1, 6, [0.4, 0.2, 0.6], lowerLimits=[], upperLimits=[]) == plain
+    assert not caplog.records
+    p.calculateInverseKinematics(1, 6, [0.4, 0.2, 0.6], **lists)
+    assert "restPoses has 6 numbers, not 7" in caplog.text

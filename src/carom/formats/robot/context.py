@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from math import isfinite
+from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import TypeVar
 
@@ -20,6 +20,12 @@ Default = TypeVar("Default")
 _log = Logger(__name__)
 _LEADING_NUMBER = re.compile(r"(?![+-]?0[xX])[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _LEADING_BITS = re.compile(r"[+-]?0[xX][0-9a-fA-F]+|" + _LEADING_NUMBER.pattern)
+_LEADING_HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?\d+)?"
+_LEADING_NOT_FINITE = r"[+-]?(?:inf(?:inity)?|nan)"
+# The numbers that C's `strtod` knows.
+_LEADING_BOUND = re.compile(
+    f"{_LEADING_NOT_FINITE}|{_LEADING_HEXADECIMAL}|{_LEADING_NUMBER.pattern}", re.IGNORECASE
+)
 _LEAST_BITS = -(1 << 31)
 
 _LONGEST_SHOWN = 60
@@ -74,16 +80,44 @@ class FileContext:
 
     def states(self, element: Element, key: str) -> bool:
         """Whether an element states a value."""
-        return key in element.attributes
+        return self.stated(element, key) is not None
+
+    def stated(self, element: Element, key: str) -> tuple[Element, str] | None:
+        """The element that holds a value of an element, and the text of the value; None if it is missing."""
+        text = element.attributes.get(key)
+        return None if text is None else (element, text)
 
     def value(self, element: Element, key: str, default: float | None = None) -> float:
         """A finite number that an element states; an error if it is missing and has no default."""
-        text = element.attributes.get(key)
-        if text is None:
-            if default is None:
-                raise self.error(element, f"attribute {key!r} is missing")
+        stated = self.stated(element, key)
+        if stated is not None:
+            return self.parse_number(stated[0], key, stated[1])
+        if default is None:
+            raise self.error(element, f"{self.value_name(key)} is missing")
+        return default
+
+    def value_name(self, key: str) -> str:
+        """What messages call a value."""
+        return f"attribute {key!r}"
+
+    def bound(self, element: Element, key: str, default: float) -> float:
+        """A number of any size that bounds something; infinite where there is no bound.
+
+        As in PyBullet, a text that does not begin with a number is read as 0, with a warning.
+        """
+        stated = self.stated(element, key)
+        if stated is None:
             return default
-        return self.parse_number(element, key, text)
+        place, text = stated
+        bound = _leading_number(_LEADING_BOUND, text)
+        if bound is None:
+            self.warn(place, f"{key}={shown(text)} is no number, so it is read as 0, as in PyBullet")
+            return 0.0
+        if isnan(bound[0]):
+            raise self.error(place, f"{key}={shown(text)} is not a number")
+        if bound[1] != text.strip():
+            self.warn(place, f"{key}={shown(text)} is read as {bound[1]}")
+        return bound[0]
 
     def place(self, parent: Element, tag: str) -> tuple[Element, str]:
         """The arguments of `value` for a number that a child of an element states."""
@@ -130,7 +164,7 @@ class FileContext:
         try:
             value = float(text)
         except ValueError:
-            value = self._leading_number(element, attribute, text)
+            value = self._number_before_text(element, attribute, text)
         if not isfinite(value) or abs(value) > MAX_MAGNITUDE:
             raise self.error(element, f"{attribute}={shown(text)} is not a finite number of sensible size")
         return value
@@ -149,12 +183,12 @@ class FileContext:
             return None
         return components
 
-    def _leading_number(self, element: Element, attribute: str, text: str) -> float:
-        match = _LEADING_NUMBER.match(text.strip())
-        if match is None:
+    def _number_before_text(self, element: Element, attribute: str, text: str) -> float:
+        number = _leading_number(_LEADING_NUMBER, text)
+        if number is None:
             raise self.error(element, f"{attribute}={shown(text)} is not a number")
-        self.warn(element, f"{attribute}={shown(text)} is read as {match.group()}")
-        return float(match.group())
+        self.warn(element, f"{attribute}={shown(text)} is read as {number[1]}")
+        return number[0]
 
     def vector(self, element: Element, attribute: str) -> Vector3 | None:
         """Three numbers from an attribute; None where it holds fewer. More than three are ignored."""
@@ -223,6 +257,22 @@ class FileContext:
             for entry in bullet.all("user-data"):
                 pairs[self.required(entry, "key")] = "" if entry.text.isspace() else entry.text
         return pairs
+
+
+def _leading_number(numbers: re.Pattern[str], text: str) -> tuple[float, str] | None:
+    """The number that a text begins with, and how it is written there; None if there is none."""
+    match = numbers.match(text.strip())
+    if match is None:
+        return None
+    digits = match.group()
+    return _float_from_hexadecimal(digits) if "x" in digits.lower() else float(digits), digits
+
+
+def _float_from_hexadecimal(digits: str) -> float:
+    try:
+        return float.fromhex(digits)
+    except OverflowError:
+        return -inf if digits.startswith("-") else inf
 
 
 def _whole(value: float) -> int:

@@ -47,7 +47,7 @@ def read_limit(context: FileContext, owner: Element, kind: JointType, scale: flo
     """The `<limit>` below an element; `scale` is a factor on lower and upper limit.
 
     Raises:
-        DescriptionError: A joint of this type needs a limit, or a value is not a number.
+        DescriptionError: A joint of this type needs a limit, or a value is NaN.
     """
     element = owner.first("limit")
     if element is None:
@@ -56,11 +56,11 @@ def read_limit(context: FileContext, owner: Element, kind: JointType, scale: flo
         return JointLimit()
     # Missing limits are scaled like given ones, which is visible in PyBullet's getJointInfo.
     return JointLimit(
-        lower=context.value(element, "lower", 0.0) * scale,
-        upper=context.value(element, "upper", -1.0) * scale,
-        effort=context.value(element, "effort", 0.0),
-        velocity=context.value(element, "velocity", 0.0),
-        twist=context.value(element, "twist", -1.0),
+        lower=context.bound(element, "lower", 0.0) * scale,
+        upper=context.bound(element, "upper", -1.0) * scale,
+        effort=context.bound(element, "effort", 0.0),
+        velocity=context.bound(element, "velocity", 0.0),
+        twist=context.bound(element, "twist", -1.0),
     )
 
 

@@ -10,7 +10,13 @@ from carom.formats.xml_element import Element
 
 
 class SdfContext(FileContext):
-    """State of one reading; its root is the `<sdf>` element, and values are the text of child elements."""
+    """State of one reading; its root is the `<sdf>` element, and values are the text of child elements.
+
+    Attributes:
+        words_are_true: `true` means 1 as in the format's specification, not 0 as in PyBullet.
+    """
+
+    words_are_true: bool = True
 
     def text(self, parent: Element, tag: str) -> str | None:
         """The text of a child without surrounding white space; None if there is no such child."""
@@ -20,18 +26,13 @@ class SdfContext(FileContext):
     def place(self, parent: Element, tag: str) -> tuple[Element, str]:  # noqa: D102
         return parent, tag
 
-    def states(self, element: Element, key: str) -> bool:
-        """Whether an element has a child of that name."""
-        return element.first(key) is not None
-
-    def value(self, element: Element, key: str, default: float | None = None) -> float:
-        """A finite number from the text of a child; an error if there is neither a child nor a default."""
+    def stated(self, element: Element, key: str) -> tuple[Element, str] | None:
+        """The child of that name, and its text; None if there is no such child."""
         child = element.first(key)
-        if child is None:
-            if default is None:
-                raise self.error(element, f"<{key}> is missing")
-            return default
-        return self.parse_number(child, key, child.text.strip())
+        return None if child is None else (child, child.text.strip())
+
+    def value_name(self, key: str) -> str:  # noqa: D102
+        return f"<{key}>"
 
     def values(self, element: Element) -> list[float]:
         """All numbers in the text of an element."""

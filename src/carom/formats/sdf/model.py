@@ -17,6 +17,7 @@ from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.xml_element import Element
 
+_WORDS = {"true": True, "false": False}
 _IGNORED = {"model": "nested models are", "frame": "frames are", "plugin": "plugins are"}
 
 
@@ -86,10 +87,12 @@ def _colour(context: SdfContext, element: Element | None, counts: tuple[int, ...
 
 
 def _is_static(context: SdfContext, model: Element) -> bool:
-    """Whether a model is fixed in the world: as in PyBullet, only if `<static>` is 1."""
+    """Whether a model is fixed in the world, by `<static>`: 1, or if the context says so also `true`."""
     element = model.first("static")
     if element is None:
         return False
+    if context.words_are_true and element.text.strip() in _WORDS:
+        return _WORDS[element.text.strip()]
     try:
         return int(context.value(model, "static")) == 1
     except DescriptionError:

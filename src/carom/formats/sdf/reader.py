@@ -19,12 +19,15 @@ from carom.formats.xml_tree import parse_root
 _MODEL_FILE = "model.sdf"
 
 
-def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = None) -> list[PlacedRobot]:
+def read_sdf(
+    path: Path, *, scale: float = 1.0, words_are_true: bool = True, search: AssetSearch | None = None
+) -> list[PlacedRobot]:
     """Reads and checks an SDF file, looked up with `AssetSearch.find`; models are in the order of the file.
 
     Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
     and plugins are ignored. `scale` is a factor on lengths: positions, boxes, cylinders, capsules and meshes,
-    but as in PyBullet neither spheres nor limits.
+    but as in PyBullet neither spheres nor limits. Without `words_are_true`, `<static>true</static>` means 0,
+    as in PyBullet.
 
     Raises:
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.
@@ -32,14 +35,15 @@ def read_sdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = Non
     """
     check_scale(scale)
     search = search or AssetSearch()
-    return _Reading(scale, search).read(locate(path, search), ())
+    return _Reading(scale, words_are_true, search).read(locate(path, search), ())
 
 
 class _Reading:
     """The reading of one file and of all files that it includes."""
 
-    def __init__(self, scale: float, search: AssetSearch) -> None:
+    def __init__(self, scale: float, words_are_true: bool, search: AssetSearch) -> None:
         self.scale = scale
+        self.words_are_true = words_are_true
         self.search = search
         self.includes = Includes()
 
@@ -48,6 +52,7 @@ class _Reading:
         data, _ = read_bounded(file, MAX_FILE_BYTES)
         root = parse_root(data, file, "sdf")
         context = SdfContext(file, root, self.scale, self.search)
+        context.words_are_true = self.words_are_true
         robots: list[PlacedRobot] = []
         for element in (root.first("world") or root).children:
             if element.tag == "model":

@@ -176,11 +176,30 @@ def generalized_forces(
 
 
 @func
+def turn_base_velocity(
+    model: Model, settings: Settings, state: State, bound: real, world: Int32, tree: Int32
+):
+    """Update the velocity that was set for a base without dofs: as in Bullet, it turns with the base.
+
+    Bullet's spatial acceleration of such a base is 0, that of its centre of mass therefore ω x v.
+    """
+    omega = base_omega(model, state, world, tree)
+    velocity = base_velocity(model, state, world, tree)
+    velocity += settings.time_step * wp.cross(omega, velocity)
+    first = model.tree[tree].first_velocity
+    for axis in range(3):
+        state.dof_velocity[world, first + axis] = within_bounds(omega[axis], -bound, bound)
+        state.dof_velocity[world, first + 3 + axis] = within_bounds(velocity[axis], -bound, bound)
+
+
+@func
 def update_velocities(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Update velocities by the accelerations in `dof_force`, without constraints."""
     bound = model.tree_max_velocity[world, tree]
+    if model.tree[tree].fixed == 1:
+        turn_base_velocity(model, settings, state, bound, world, tree)
     first = model.tree[tree].first_dof
     total = real(0.0)
     for dof in range(first, first + model.tree[tree].dof_count):
