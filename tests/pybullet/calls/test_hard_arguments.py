@@ -271,7 +271,12 @@ def test_names_no_file_can_have(name: str) -> None:
 
 def test_null_space_lists_of_the_wrong_length_are_warned_of(caplog: pytest.LogCaptureFixture) -> None:
     plain = p.calculateInverseKinematics(1, 6, [0.4, 0.2, 0.6])
-    lists = {"lowerLimits": [-1] * 7, "upperLimits": [1] * 7, "jointRanges": [2] * 7, "restPoses": [0] * 6}
+    lists: dict[str, Any] = {
+        "lowerLimits": [-1] * 7,
+        "upperLimits": [1] * 7,
+        "jointRanges": [2] * 7,
+        "restPoses": [0] * 6,
+    }
     assert p.calculateInverseKinematics(1, 6, [0.4, 0.2, 0.6], lowerLimits=[], upperLimits=[]) == plain
     assert not caplog.records
     p.calculateInverseKinematics(1, 6, [0.4, 0.2, 0.6], **lists)
