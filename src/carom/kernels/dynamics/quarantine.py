@@ -23,7 +23,8 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         world,
         model.tree[tree].position_count,
     )
-    dof = model.tree[tree].first_dof
+    # The velocities of a base come before the dofs of a fixed tree.
+    dof = model.tree[tree].first_velocity + 0
     while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
         scratch.dof[world, dof].start_velocity = state.dof_velocity[world, dof]
         scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
@@ -52,7 +53,7 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         world,
         model.tree[tree].position_count,
     )
-    dof = model.tree[tree].first_dof
+    dof = model.tree[tree].first_velocity + 0
     while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
         state.dof_velocity[world, dof] = scratch.dof[world, dof].start_velocity
         state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
