@@ -32,6 +32,7 @@ SHARED = {
         "ROUNDING": body.ROUNDING,
     },
     "boxes.cpp": {"POSE": fields_of(State)["link_pose"].shape[0]},
+    "contacts.cpp": {"OVERLAPS": contacts.OVERLAPS},
     "joints.cpp": {"SPATIAL": fields_of(State)["link_reaction"].shape[0]},
     "motors.cpp": {
         "VELOCITY": motor_commands.VELOCITY,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sized
 from functools import cache
 from math import isnan
 from typing import TYPE_CHECKING, Any, overload
@@ -310,6 +310,8 @@ def _for_each_freedom(values: Any, name: str, freedoms: int) -> tuple[float, ...
     """A list with one number, perhaps infinite, for each degree of freedom; None if its length differs."""
     if values is None:
         return None
+    if not isinstance(values, (Sized, Iterator)):
+        fail(_PROBLEM, f"{name} is {values!r}, not a list of numbers.")
     count = length(values, _PROBLEM, name)
     if count != freedoms:
         if count:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
-from carom.scene.dynamics_changes import shape_inertia
 from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
@@ -227,6 +226,8 @@ def changeDynamics(
         elif not _INERTIA.isdisjoint(changes.values):
             client.bodies.forget_inertia(body.id)
         if "mass" in changes.values and "inertia" not in changes.values:
+            from carom.scene.dynamics_changes import shape_inertia
+
             changes.values["inertia"] = shape_inertia(body, link, changes.values["mass"])
         body.change_dynamics(link, **changes.values)
         # Let the native library handle the next change.

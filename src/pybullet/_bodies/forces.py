@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from carom.description.transform import subtracted
 from pybullet._calls.arguments import Vector, integer, numbers, vector3
@@ -113,13 +113,14 @@ def applyExternalTorque(
     access.push(linkIndex, (0.0, 0.0, 0.0), torque)
 
 
-def _of_any_size(values: Vector, problem: str, name: str) -> Vector3:
+def _of_any_size(values: Any, problem: str, name: str) -> Vector3:
     """Three finite numbers, unlike those of `vector3` also beyond its bound."""
     try:
-        x, y, z = values
-        if -inf < x + y + z < inf:
-            return float(x), float(y), float(z)
-    except (TypeError, ValueError):
+        if len(values) == 3:
+            x, y, z = values
+            if -inf < x + y + z < inf:
+                return float(x), float(y), float(z)
+    except (TypeError, ValueError, OverflowError):
         pass
     found = numbers(values, problem, name)
     if len(found) != 3:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from carom.scene.changes import part
 from pybullet._calls.arguments import integer
 from pybullet._calls.builtin import exported
 from pybullet._clients.clients import Client, client_of
@@ -45,6 +44,8 @@ def setCollisionFilterPair(
         >>> p.getBasePositionAndOrientation(cube)[0][2] < -1
         True
     """
+    from carom.scene.changes import part
+
     client = client_of(physicsClientId)
     enabled = integer(enableCollision, "enableCollision") != 0
     row_a = _row(client, bodyUniqueIdA, linkIndexA, "setCollisionFilterPair")
@@ -87,6 +88,8 @@ def setCollisionFilterGroupMask(
     Examples:
         >>> p.setCollisionFilterGroupMask(cube, -1, collisionFilterGroup=0, collisionFilterMask=0)
     """
+    from carom.scene.changes import part
+
     client = client_of(physicsClientId)
     group = integer(collisionFilterGroup, "collisionFilterGroup")
     mask = integer(collisionFilterMask, "collisionFilterMask")
