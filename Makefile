@@ -69,7 +69,8 @@ $(VENV)/carom: pyproject.toml | $(VENV)/created
 
 $(VENV)/dev: $(VENV)/carom
 	$(PIP) install --upgrade 'pip>=25.1'
-	$(PIP) install --group dev
+	@# What is never imported need not be compiled.
+	$(PIP) install --no-compile --group dev
 	@touch $@
 
 $(VENV)/docs: $(VENV)/carom
@@ -119,6 +120,9 @@ CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
 	.clients/oracle/bin/python -m pip --quiet --disable-pip-version-check install pybullet==3.2.7 $(CLIENT_NEEDS)
 	@touch $@
 
+# One more than cores: some tests wait for processes, browsers and time limits.
+TEST_PROCESSES := $(shell $(PYTHON) -c "import os; print((os.cpu_count() or 1) + 1)")
+
 # --- what users run ------------------------------------------------------------------------------
 
 demo: $(VENV)/carom
@@ -127,7 +131,7 @@ demo: $(VENV)/carom
 
 test: $(VENV)/dev
 	$(RUN) -m carom warmup
-	$(RUN) -m pytest --numprocesses auto
+	$(RUN) -m pytest --numprocesses $(TEST_PROCESSES)
 
 # --- what developers run -------------------------------------------------------------------------
 
@@ -142,7 +146,7 @@ QUICK := tests/physics tests/collision tests/geometry tests/model tests/kernels 
 
 quick: lint
 	$(RUN) -m carom warmup
-	$(RUN) -m pytest --quiet --numprocesses auto $(QUICK)
+	$(RUN) -m pytest --quiet --numprocesses $(TEST_PROCESSES) $(QUICK)
 
 lint: $(VENV)/dev
 	$(RUN) -m ruff check

@@ -20,10 +20,13 @@ COUNT = 150
 def silent(viewer: Viewer, count: int) -> Iterator[list[socket.socket]]:
     """Connections that say nothing."""
     host, port = origin_of(viewer.address).removeprefix("http://").rsplit(":", 1)
+    peers: list[socket.socket] = []
     with ExitStack() as opened:
-        yield [
-            opened.enter_context(socket.create_connection((host, int(port)), PATIENCE)) for _ in range(count)
-        ]
+        for _ in range(count):
+            peers.append(opened.enter_context(socket.create_connection((host, int(port)), PATIENCE)))
+            # Those that find the backlog full are made a second later.
+            time.sleep(0.002)
+        yield peers
 
 
 def is_open(peer: socket.socket) -> bool:
