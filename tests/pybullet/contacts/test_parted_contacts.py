@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from tests.pybullet.contacts.touching import add_pair
 
 import pybullet as p
 
@@ -50,21 +51,7 @@ def scene(client: int) -> None:
     ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
     for i in range(3):
         p.createMultiBody(1 + i, ball, basePosition=[0.5 * i, 0, 0.6])
-    p.createMultiBody(
-        1,
-        ball,
-        basePosition=[2, 0, 0.6],
-        linkMasses=[1],
-        linkCollisionShapeIndices=[ball],
-        linkVisualShapeIndices=[-1],
-        linkPositions=[[0.5, 0, 0]],
-        linkOrientations=[[0, 0, 0, 1]],
-        linkInertialFramePositions=[[0, 0, 0]],
-        linkInertialFrameOrientations=[[0, 0, 0, 1]],
-        linkParentIndices=[0],
-        linkJointTypes=[p.JOINT_FIXED],
-        linkJointAxis=[[0, 0, 1]],
-    )
+    add_pair(1, ball, (2, 0, 0.6))
     for _ in range(30):
         p.stepSimulation()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from tests.pybullet.contacts.touching import add_pair
 
 import pybullet as p
 
@@ -63,21 +64,7 @@ def test_links_of_later_bodies_are_still_those_that_touch() -> None:
     floor()
     early = balls(1)[0]
     shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
-    pair = p.createMultiBody(
-        1,
-        shape,
-        basePosition=[2, 0, 0.6],
-        linkMasses=[1],
-        linkCollisionShapeIndices=[shape],
-        linkVisualShapeIndices=[-1],
-        linkPositions=[[0.5, 0, 0]],
-        linkOrientations=[[0, 0, 0, 1]],
-        linkInertialFramePositions=[[0, 0, 0]],
-        linkInertialFrameOrientations=[[0, 0, 0, 1]],
-        linkParentIndices=[0],
-        linkJointTypes=[p.JOINT_FIXED],
-        linkJointAxis=[[0, 0, 1]],
-    )
+    pair = add_pair(1, shape, (2, 0, 0.6))
     settle()
     p.removeBody(early)
     assert sorted(point[1:5] for point in p.getContactPoints()) == [(0, pair, -1, -1), (0, pair, -1, 0)]

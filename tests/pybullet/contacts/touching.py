@@ -1,5 +1,7 @@
 """A floor with a ball and a pair of balls on it, as real PyBullet was asked about them."""
 
+from collections.abc import Sequence
+
 import pytest
 
 import pybullet as p
@@ -9,12 +11,12 @@ RADIUS = 0.1
 WEIGHT = 9.81
 
 
-def add_pair(mass: float, shape: int) -> int:
-    """Two balls fixed to each other, on the floor; the base is fixed if it has no mass."""
+def add_pair(mass: float, shape: int, place: Sequence[float] = (1, 0, RADIUS)) -> int:
+    """Two balls fixed to each other, half a metre apart; the base is fixed if it has no mass."""
     return p.createMultiBody(
         mass,
         shape,
-        basePosition=[1, 0, RADIUS],
+        basePosition=place,
         linkMasses=[1],
         linkCollisionShapeIndices=[shape],
         linkVisualShapeIndices=[-1],
