@@ -120,9 +120,6 @@ CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
 	.clients/oracle/bin/python -m pip --quiet --disable-pip-version-check install pybullet==3.2.7 $(CLIENT_NEEDS)
 	@touch $@
 
-# One more than cores: some tests wait for processes, browsers and time limits.
-TEST_PROCESSES := $(shell $(PYTHON) -c "import os; print((os.cpu_count() or 1) + 1)")
-
 # --- what users run ------------------------------------------------------------------------------
 
 demo: $(VENV)/carom
@@ -131,7 +128,7 @@ demo: $(VENV)/carom
 
 test: $(VENV)/dev
 	$(RUN) -m carom warmup
-	$(RUN) -m pytest --numprocesses $(TEST_PROCESSES)
+	$(RUN) -m pytest --numprocesses auto
 
 # --- what developers run -------------------------------------------------------------------------
 
@@ -146,7 +143,7 @@ QUICK := tests/physics tests/collision tests/geometry tests/model tests/kernels 
 
 quick: lint
 	$(RUN) -m carom warmup
-	$(RUN) -m pytest --quiet --numprocesses $(TEST_PROCESSES) $(QUICK)
+	$(RUN) -m pytest --quiet --numprocesses auto $(QUICK)
 
 lint: $(VENV)/dev
 	$(RUN) -m ruff check
