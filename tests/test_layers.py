@@ -22,6 +22,7 @@ FLOORS = (
         "carom.conflicts",
         "carom.errors",
         "carom.logger",
+        "carom.forks",
         "carom.record",
         "carom.suggestions",
         "carom.version",
@@ -75,7 +76,7 @@ KEPT_APART = {
     "carom.layouts": {"carom.record"},
     # Device code: nothing that runs on the host imports it but what compiles and launches it.
     "carom.kernels": {"carom.layouts"},
-    "carom.native": {"carom.errors", "carom.record", "carom.layouts"},
+    "carom.native": {"carom.errors", "carom.forks", "carom.record", "carom.layouts"},
     # They know nothing of physics.
     "carom.remote": {"carom.errors", "carom.writing"},
     "carom.cluster": {"carom.errors"},

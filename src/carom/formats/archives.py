@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from threading import RLock
 
 from carom.errors import DescriptionError
+from carom.forks import free_in_forks
 from carom.formats.unpacking import in_use
 from carom.writing import write_whole
 
@@ -41,7 +42,7 @@ class Archive:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._lock = RLock()
+        self._lock = free_in_forks(RLock())
         self._unpacked = 0
         self._temporary = TemporaryDirectory(prefix="carom-zip-")
         # Without symbolic links, which readers may resolve.

@@ -12,6 +12,7 @@ from threading import RLock
 from typing import Generic, NamedTuple, TypeVar
 
 from carom.errors import DescriptionError
+from carom.forks import free_in_forks
 from carom.formats.unpacking import unpack
 
 Key = TypeVar("Key", bound=Hashable)
@@ -102,7 +103,7 @@ class FileCache(Generic[Key, Value]):
         self._outlive = outlive
         self._entries: OrderedDict[Key, tuple[FileStamp, Value]] = OrderedDict()
         # The thread that holds it may come again: a signal handler, a finalizer or a tracer can load files.
-        self._lock = RLock()
+        self._lock = free_in_forks(RLock())
 
     def get(self, key: Key, file: Path) -> Value | None:
         """The value of `key`, made from `file`; None if there is none, or the file may have changed."""

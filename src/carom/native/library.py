@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from carom.errors import NativeLibraryError
+from carom.forks import free_in_forks
 from carom.native.cpu import cpu_levels
 from carom.native.digest import source_digest
 from carom.native.targets import NoTarget, Target, this_target
@@ -25,7 +26,7 @@ PACKAGED = _HERE / "libraries"
 """The folder of the libraries in wheels."""
 # Packages that compile libraries.
 _COMPILERS = ("warp", "ziglang")
-_loading = threading.Lock()
+_loading = free_in_forks(threading.RLock())
 
 
 class Library:

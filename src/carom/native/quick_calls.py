@@ -14,9 +14,12 @@ import ctypes
 import sys
 import sysconfig
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import Any
 
+from carom.native.gates import BuiltinMaker, GateLock, lock_of
 from carom.native.library import library
+from carom.native.uninterrupted import begin, end, is_our_own
 from carom.record import record
 
 MOST_PARAMETERS = 26
@@ -198,12 +201,12 @@ class Body(ctypes.Structure):
 
 
 class Client(ctypes.Structure):
-    """A world, its bodies by number, and two methods of the lock that is held while it changes."""
+    """A world, its bodies by number, and its lock."""
 
     _fields_ = (
         *_fields(_Address, "scene bodies"),
         ("body_count", _Count),
-        *_fields(_Address, "acquire release without_waiting connection time_step_name"),
+        *_fields(_Address, "gate connection time_step_name"),
         ("reports_analytics", _Count),
         *_fields(_Address, "world_bodies joint_count_name encoded_names_name"),
     )
@@ -225,6 +228,16 @@ class _QuickCall(ctypes.Structure):
         ("groups", ctypes.c_int32 * (MOST_GROUPS + 1)),
         ("is_flat", ctypes.c_int32),
     )
+
+
+class _Guard(ctypes.Structure):
+    _fields_ = _fields(ctypes.c_int32, "conduct client_place is_known")
+
+
+class Conduct(IntEnum):
+    """What a function does to a world; `native/source/gate.h` has the same numbers, and explains them."""
+
+    FREE, READS, CHANGES = range(3)
 
 
 @record
@@ -249,23 +262,43 @@ class QuickCalls:
 
     Attributes:
         clients: Address of a `Client`, by number; 0 if Python has to handle its calls.
+        gates: Address of a `Gate`, by number of the connection; 0 if it is none of this process.
         is_paused: Its value is not 0 while Python has to handle all calls that name a connection.
     """
 
-    def __init__(self, symbols: Any, calls: int, clients: int, python: dict[str, ctypes.c_void_p]) -> None:
+    def __init__(
+        self, symbols: Any, calls: int, guards: int, clients: int, python: dict[str, ctypes.c_void_p]
+    ) -> None:
         self.clients: Any = (ctypes.c_void_p * symbols.carom_most_clients()).from_address(clients)
+        symbols.carom_gates.restype = ctypes.c_void_p
+        self.gates: Any = (ctypes.c_void_p * len(self.clients)).from_address(symbols.carom_gates())
         self.is_paused: ctypes.c_int32 = ctypes.c_int32.in_dll(symbols, "carom_quick_calls_paused")
         self._symbols = symbols
-        self._calls = (_QuickCall * symbols.carom_most_quick_calls()).from_address(calls)
+        count = symbols.carom_most_quick_calls()
+        self._calls = (_QuickCall * count).from_address(calls)
+        self._guards = (_Guard * count).from_address(guards)
+        symbols.carom_quick_entry.restype = ctypes.c_void_p
+        symbols.carom_meet_host.argtypes = [ctypes.py_object] * 3
+        symbols.carom_meet_host(begin, end, is_our_own)
         self._python = python
         # Memory that the library points to.
-        self._kept: list[Any] = []
+        self._kept: list[Any] = [begin, end, is_our_own]
         self._made = 0
 
-    def add(
+    def guard(self, conduct: Conduct, client_place: int) -> int:
+        """The address of the C code of a builtin whose Python function has the world for itself.
+
+        `client_place` is that of the connection among its positional arguments; -1 if it is none of them.
+        """
+        guard = self._guards[self._made]
+        guard.conduct, guard.client_place = conduct, client_place
+        self._made += 1
+        return self._symbols.carom_quick_entry(self._made - 1)
+
+    def quicken(
         self, kernel: str, parameters: Sequence[Parameter], groups: Sequence[int] | None, *, flat: bool
-    ) -> int:
-        """The address of the C code of a builtin that tries a kernel first.
+    ) -> None:
+        """Let the builtin that is guarded next try a kernel first.
 
         The kernel's name is without the prefix `carom_`; parameters are in the order of the Python function.
         `groups` are the lengths of the tuples in the result, 0 for a number in place of a tuple; empty if the
@@ -286,10 +319,10 @@ class QuickCalls:
             parameter.is_required = given.missing is None
             parameter.missing = given.missing or 0.0
         made.is_flat = flat
-        entry = self._symbols.carom_quick_entry
-        entry.restype = ctypes.c_void_p
-        self._made += 1
-        return entry(self._made - 1)
+
+    def new_lock(self, new_builtin: BuiltinMaker) -> GateLock:
+        """A lock of a world, which the library takes as well."""
+        return lock_of(self._symbols, new_builtin)
 
     def meet_numpy(self) -> None:
         """Accept arrays as arguments, too, if NumPy has been imported."""
@@ -316,8 +349,8 @@ def quick_calls(vectorcall: int) -> QuickCalls | None:
     if symbols is None:
         # The library is in another process; see `tools.wheels.elsewhere`.
         return None
-    python, calls, clients = (ctypes.c_void_p() for _ in range(3))
-    if not symbols.carom_claim_quick_calls(*map(ctypes.byref, (python, calls, clients))):
+    python, calls, guards, clients = (ctypes.c_void_p() for _ in range(4))
+    if not symbols.carom_claim_quick_calls(*map(ctypes.byref, (python, calls, guards, clients))):
         return None
     functions, objects = (
         ctypes.string_at(_address(symbols, f"carom_python_{kind}")).decode().split()
@@ -333,7 +366,7 @@ def quick_calls(vectorcall: int) -> QuickCalls | None:
     for name in objects:
         if hasattr(builtins, name):
             places[name].value = id(getattr(builtins, name))
-    return QuickCalls(symbols, calls.value or 0, clients.value or 0, places)
+    return QuickCalls(symbols, calls.value or 0, guards.value or 0, clients.value or 0, places)
 
 
 def _address(symbols: Any, name: str) -> int:

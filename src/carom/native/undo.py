@@ -1,12 +1,15 @@
 """Changes of several parts that an exception may interrupt at any line.
 
-Ctrl-C and timers raise exceptions between any two lines of the main thread, and any allocation may fail.
+Signal handlers of the user do not run in the middle of them (`carom.native.uninterrupted`). But Ctrl-C raises
+`KeyboardInterrupt` between any two lines of the main thread, and any allocation may fail.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from types import TracebackType
+
+from carom.native.uninterrupted import begin, end, uninterrupted
 
 # Ctrl-C may interrupt the repair of an interrupted change as well: maximum number of attempts.
 _PATIENCE = 100
@@ -28,19 +31,24 @@ class Undo:
         self._steps: list[Callable[[], None]] = []
 
     def __enter__(self) -> Undo:
+        begin()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        if error is None:
-            self.settle()
-        else:
-            self._settle_patiently()
+        try:
+            if error is None:
+                self.settle()
+            else:
+                self._settle_patiently()
+        finally:
+            end()
 
     def at_once(self, change: Callable[[], None]) -> None:
         """Make a repeatable change; if it is interrupted, it is completed before the exception goes on."""
         # The context manager would do this as well, but takes longer, and scripts change parameters often.
+        begin()
         try:
             self._steps.append(change)
             change()
@@ -48,6 +56,8 @@ class Undo:
         except BaseException:
             self._settle_patiently()
             raise
+        finally:
+            end()
 
     def note(self, step: Callable[[], None]) -> None:
         """Add a step, which is performed unless `done` is called."""
@@ -55,9 +65,12 @@ class Undo:
 
     def settle(self) -> None:
         """Perform the remaining steps. None may be left of an earlier change when another begins."""
-        while self._steps:
-            self._steps[-1]()
-            self._steps.pop()
+        if not self._steps:
+            return
+        with uninterrupted:
+            while self._steps:
+                self._steps[-1]()
+                self._steps.pop()
 
     def _settle_patiently(self) -> None:
         """Perform the remaining steps while an exception is being handled; retry if another one occurs."""

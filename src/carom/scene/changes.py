@@ -14,6 +14,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BodySpec
 from carom.native.undo import Undo
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import change_base_freedom, set_base_freedom
 from carom.scene.pattern import pattern_of
@@ -120,7 +121,6 @@ def remove_body(world: World, body: Body) -> None:
 
 def tie(world: World, constraint: UserConstraint) -> UserConstraint:
     """Add a new user constraint, and return it."""
-    world.undo.settle()
     users = world.user_constraints
     numbers = users.next_numbers
 
@@ -130,6 +130,7 @@ def tie(world: World, constraint: UserConstraint) -> UserConstraint:
         world.constraints_changed()
 
     with world.undo as undo:
+        undo.settle()
         undo.note(go_back)
         users.put(constraint)
         world.constraints.add_user(constraint)
@@ -140,21 +141,23 @@ def tie(world: World, constraint: UserConstraint) -> UserConstraint:
 
 def untie(world: World, constraint: UserConstraint) -> None:
     """Remove a user constraint."""
-    world.undo.settle()
-    remove_constraint = world.constraints.user_removal(constraint)
+    with uninterrupted:
+        world.undo.settle()
+        remove_constraint = world.constraints.user_removal(constraint)
 
-    def remove() -> None:
-        world.user_constraints.discard(constraint.id)
-        remove_constraint()
-        world.constraints_changed()
+        def remove() -> None:
+            world.user_constraints.discard(constraint.id)
+            remove_constraint()
+            world.constraints_changed()
 
-    world.undo.at_once(remove)
+        world.undo.at_once(remove)
 
 
 def part(world: World, links: Sequence[int]) -> None:
     """Drop the contacts of links, by row: they may collide with others from now on."""
-    world.undo.settle()
-    world.undo.at_once(world.contact_arrays.parting(links))
+    with uninterrupted:
+        world.undo.settle()
+        world.undo.at_once(world.contact_arrays.parting(links))
 
 
 def free_base(world: World, body: Body, *, free: bool) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
 from carom.model.inertia import mass_terms, moments_at
+from carom.native.uninterrupted import uninterrupted
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
@@ -41,8 +42,9 @@ _NOT_OF_SURFACE = {
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     undo = body.world.undo
-    undo.settle()
-    undo.at_once(dynamics_change(body, link, changes))
+    with uninterrupted:
+        undo.settle()
+        undo.at_once(dynamics_change(body, link, changes))
 
 
 def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:

@@ -24,6 +24,7 @@ from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 from carom.native.undo import Undo
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
@@ -295,17 +296,18 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
 
             restore_world(self, Path(state), update_poses=update_poses)
             return
-        self.undo.settle()
-        put_back = return_to(self, self._layout, state)
+        with uninterrupted:
+            self.undo.settle()
+            put_back = return_to(self, self._layout, state)
 
-        def restore() -> None:
-            put_back()
-            for body in self.bodies.values() if update_poses else ():
-                body.update_link_poses()
+            def restore() -> None:
+                put_back()
+                for body in self.bodies.values() if update_poses else ():
+                    body.update_link_poses()
 
-        with self.undo:
-            self.undo.note(self.scene_changed)
-            self.undo.at_once(restore)
+            with self.undo:
+                self.undo.note(self.scene_changed)
+                self.undo.at_once(restore)
 
     def log(self, *names: str, every: int = 1) -> Log:
         """Record state arrays after each step, until the log is stopped.
@@ -456,8 +458,9 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
 
     def _look_into_status(self) -> None:
         """Repeat the step if arrays were too short; raise an error if a velocity is not finite."""
-        self.engine.recover()
-        self._renew_after_growth()
+        with uninterrupted:
+            self.engine.recover()
+            self._renew_after_growth()
         if self._status[STATUS]:
             self._raise_fault()
 
@@ -486,6 +489,10 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
 
     def _prepare_step(self) -> Callable[[], None]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
+        with uninterrupted:
+            return self._prepared_step()
+
+    def _prepared_step(self) -> Callable[[], None]:
         self.undo.settle()
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size

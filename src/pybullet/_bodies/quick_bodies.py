@@ -42,15 +42,12 @@ class QuickBodies:
         self._places: Array[c_void_p] = (c_void_p * _FIRST_ROOM)()
         # The objects that the addresses in each record point to, by body id.
         self._shown: dict[int, Any] = {}
-        lock = client.lock
-        self._kept = (client.world.quick, lock.acquire, lock.release, (False,), client.world.listing)
+        self._kept = client.world.quick, client.world.listing
         self._record = Client(
             scene=client.world.quick.address,
             bodies=addressof(self._places),
             body_count=_FIRST_ROOM,
-            acquire=id(self._kept[1]),
-            release=id(self._kept[2]),
-            without_waiting=id(self._kept[3]),
+            gate=calls.gates[number],
             connection=id(client),
             time_step_name=id(_TIME_STEP),
             reports_analytics=client.report_analytics,

@@ -75,6 +75,17 @@ exports: dict[str, Export] = {}
 _definitions: list[_MethodDefinition] = []
 
 
+def new_builtin(name: str, code: int, its_self: Any) -> Any:
+    """A builtin of C code at an address, of the form `f(self, args, nargs, kwnames)`."""
+    return _new_builtin(ctypes.byref(_defined(name, code, "")), its_self, "pybullet")
+
+
+def _defined(name: str, code: int, documentation: str) -> _MethodDefinition:
+    definition = _MethodDefinition(name.encode(), code, _METH_FASTCALL_WITH_KEYWORDS, documentation.encode())
+    _definitions.append(definition)
+    return definition
+
+
 def exported(function: F) -> F:
     """Makes a function of the public interface a builtin of the module `pybullet`."""
     return exported_as(_plain_signature(function))(function)
@@ -90,10 +101,7 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
         assert isinstance(function, FunctionType)
         function.__module__ = "pybullet"
         documentation = f"{function.__name__}{signature}\n--\n\n{_documentation(function)}"
-        definition = _MethodDefinition(
-            function.__name__.encode(), vectorcall, _METH_FASTCALL_WITH_KEYWORDS, documentation.encode()
-        )
-        _definitions.append(definition)
+        definition = _defined(function.__name__, vectorcall, documentation)
         builtin = _new_builtin(ctypes.byref(definition), function, "pybullet")
         exports[function.__name__] = Export(function, builtin, usual_form, definition, function.__code__)
         return builtin

@@ -10,7 +10,8 @@ from math import nan
 from threading import Lock
 from typing import TYPE_CHECKING
 
-from pybullet._calls.builtin import exports, vectorcall
+from pybullet._calls.builtin import Export, exports, vectorcall
+from pybullet._calls.conduct import FREE, client_place, reads
 from pybullet._calls.errors import logger
 
 if TYPE_CHECKING:
@@ -86,8 +87,8 @@ def install() -> QuickCalls | None:
             else:
                 calls.is_paused.value = _Installed.is_paused
                 _Installed.calls = calls
-                for name, description in _KERNELS.items():
-                    _install(calls, name, *description)
+                for name, export in exports.items():
+                    _guard(calls, name, export)
     if _Installed.calls is not None:
         _Installed.calls.meet_numpy()
     return _Installed.calls
@@ -101,16 +102,26 @@ def pause(*, paused: bool) -> None:
             _Installed.calls.is_paused.value = paused
 
 
-def _install(calls: QuickCalls, name: str, kernel: str, kinds: str, groups: tuple[int, ...] | None) -> None:
+def _guard(calls: QuickCalls, name: str, export: Export) -> None:
+    from carom.native.quick_calls import Conduct
+
+    conduct = Conduct.FREE if name in FREE else Conduct.READS if reads(name) else Conduct.CHANGES
+    if name in _KERNELS:
+        _quicken(calls, export, *_KERNELS[name])
+    elif conduct == Conduct.FREE:
+        return
+    export.definition.code = calls.guard(conduct, client_place(export.code))
+
+
+def _quicken(
+    calls: QuickCalls, export: Export, kernel: str, kinds: str, groups: tuple[int, ...] | None
+) -> None:
     from carom.native.quick_calls import Parameter
 
-    export = exports[name]
     # Not the function's present code, which has no named parameters while there are detours.
     names = export.code.co_varnames[: export.code.co_argcount]
     defaults = export.function.__defaults__ or ()
     required = len(names) - len(defaults)
     missing = [None] * required + [nan if value is None else float(value) for value in defaults]
     parameters = [Parameter(*parts) for parts in zip(names, kinds, missing, strict=True)]
-    export.definition.code = calls.add(
-        kernel, parameters, groups, flat=groups is not None and len(groups) == 1
-    )
+    calls.quicken(kernel, parameters, groups, flat=groups is not None and len(groups) == 1)

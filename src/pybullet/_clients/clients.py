@@ -5,13 +5,13 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from threading import RLock
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import ref
 
 from pybullet._calls.arguments import integer
 from pybullet._calls.detours import remove_detour
 from pybullet._calls.errors import fail
+from pybullet._clients.locks import let_go
 from pybullet._clients.log_registry import Logs
 from pybullet._clients.plugin_registry import Plugins
 from pybullet._clients.shape_registry import ShapeRegistry
@@ -49,13 +49,12 @@ class Client:
             connections, and keeps it when they end.
         clock: Steps the world in real time; None if that is not enabled.
         deformable: Whether the last `resetSimulation` had a flag for deformable worlds.
-        lock: Held during a step and while bodies are added, removed or change shape. Getters and setters of
-            the state do not need it: they read and write single numbers.
+        lock: Held from the arguments of a call to its results, and by other threads that use the world.
     """
 
     latest_search_path: ClassVar[Path | None] = None
 
-    def __init__(self, method: int, world: World, bodies: BodyTable, window: Window) -> None:
+    def __init__(self, method: int, world: World, bodies: BodyTable, window: Window, lock: Any) -> None:
         self._report_analytics = False
         self.method = method
         self.world = world
@@ -72,7 +71,7 @@ class Client:
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.server: Served | None = None
-        self.lock = RLock()
+        self.lock = lock
         bodies.client = self
 
     @property
@@ -170,6 +169,7 @@ def connection_of(physics_client_id: Any) -> Client | RemoteClient | None:
 def forget(number: int) -> None:
     """Closes a client and frees its id."""
     remove_detour(number)
+    let_go(number)
     client = clients.pop(number, None) or remote_clients.pop(number, None)
     if client is not None:
         client.close()

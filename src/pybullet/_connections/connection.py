@@ -45,6 +45,7 @@ from pybullet._clients.clients import (
     remote_clients,
     why_not_connected,
 )
+from pybullet._clients.locks import lock_of
 from pybullet._window.window import Window
 
 __all__ = [
@@ -158,7 +159,7 @@ def _connected(slot: int, method: int, target: Target) -> int:
         living_client(slot) and clients[slot].method in _WITH_WINDOW for slot in list(clients)
     ):
         fail(_ONE_WINDOW)
-    client = clients[slot] = _new_client(method, target)
+    client = clients[slot] = _new_client(slot, method, target)
     if method == DIRECT:
         _let_quick_calls_in(slot, client)
     if method in _SERVERS:
@@ -183,13 +184,13 @@ def _join(slot: int, method: int, target: Target) -> bool:
     return True
 
 
-def _new_client(method: int, target: Target) -> Client:
+def _new_client(slot: int, method: int, target: Target) -> Client:
     """A client with a new world in this process."""
     # The engine is imported when it is needed, so that importing the module stays quick.
     from carom.world.world import World
     from pybullet._bodies.body_access import BodyTable
 
-    client = Client(method, World(), BodyTable(), Window())
+    client = Client(method, World(), BodyTable(), Window(), lock_of(slot))
     if method in _WITH_WINDOW:
         from pybullet._window.page_window import open_window
 

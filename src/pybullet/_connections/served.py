@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from threading import RLock, current_thread, local
+from threading import current_thread, local
 from typing import Any
 
 from carom.remote.connection import Connection
@@ -94,8 +94,6 @@ class Served:
         self._notes = []
         self._listener.abandon()
         remove_detour(self._number)
-        # A thread that does not exist in this process may have held the old lock.
-        self._client.lock = RLock()
         self._client.server = None
 
     def _answer(self, frame: Frame) -> tuple[bytes, list[memoryview]]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from carom.errors import SimulationError
+from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import integer, quantity, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import DIRECT, RESET_USE_DEFORMABLE_WORLD, RESET_USE_REDUCED_DEFORMABLE_WORLD
@@ -106,7 +107,7 @@ def stepSimulation(physicsClientId: int = 0) -> tuple[dict[str, int | float], ..
         client = client_of(physicsClientId)
         if not goes_on:
             return ()
-    with client.lock:
+    with client.lock, uninterrupted:
         try:
             client.world.step()
         except SimulationError as problem:

@@ -42,8 +42,14 @@ struct PyBuffer {
     F(double, PyFloat_AsDouble, (PyObject*))                                          \
     F(PyObject*, PyLong_FromLong, (long))                                             \
     F(double, PyLong_AsDouble, (PyObject*))                                           \
+    F(void*, PyLong_AsVoidPtr, (PyObject*))                                           \
+    F(intptr_t, PyNumber_AsSsize_t, (PyObject*, PyObject*))                           \
+    F(int, PyUnicode_CompareWithASCIIString, (PyObject*, const char*))                \
     F(PyObject*, PyErr_Occurred, ())                                                  \
     F(void, PyErr_Clear, ())                                                          \
+    F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))                        \
+    F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))                         \
+    F(unsigned long, PyThread_get_thread_ident, ())                                   \
     F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))                           \
     F(void, PyBuffer_Release, (PyBuffer*))                                            \
     F(void, Py_IncRef, (PyObject*))                                                   \

@@ -16,7 +16,7 @@ extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused;
 
 namespace {
 
-enum { MOST_CALLS = 48, MOST_PARAMETERS = 26, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8, MOST_CLIENTS = 1024 };
+enum { MOST_CALLS = 192, MOST_PARAMETERS = 26, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8 };
 enum { RECORDS = 0x1C };  // PyBUF_RECORDS_RO
 
 // Bounds of numbers and of squared lengths of quaternions. Calls with others are left to Python.
@@ -49,6 +49,7 @@ struct Arrangement {
 };
 
 QuickCall calls[MOST_CALLS];
+Guard guards[MOST_CALLS];
 Arrangement arrangements[MOST_CALLS];
 const Client* clients[MOST_CLIENTS];
 
@@ -232,21 +233,27 @@ PyObject* result_of(const QuickCall& made, const double* numbers, int count) {
     return row.tuple;
 }
 
-PyObject* answer(int place, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names) {
+// The result of a quick call. If it is null and no error is set, Python has to handle the call.
+PyObject* quick_answer(int place, PyObject* const* arguments, intptr_t count, PyObject* names) {
     const QuickCall& made = calls[place];
     const Arrangement& arrangement = arrangements[place];
     double numbers[MOST_NUMBERS], results[MOST_RESULTS];
     Call call = {};
-    if (read_all(made, arrangement, arguments, count, names, numbers, &call) && find(arrangement, numbers, &call)) {
-        if (made.maker) {
-            PyObject* result = made.maker(numbers, &call);
-            if (result || python.PyErr_Occurred())
-                return result;
-        } else if (const int groups = made.kernel(numbers, results, &call)) {
-            return result_of(made, results, groups);
-        }
+    if (!read_all(made, arrangement, arguments, count, names, numbers, &call) || !find(arrangement, numbers, &call))
+        return nullptr;
+    if (made.maker)
+        return made.maker(numbers, &call);
+    const int groups = made.kernel(numbers, results, &call);
+    return groups ? result_of(made, results, groups) : nullptr;
+}
+
+PyObject* answer(int place, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names) {
+    if (calls[place].kernel || calls[place].maker) {
+        PyObject* result = quick_answer(place, arguments, count, names);
+        if (result || python.PyErr_Occurred())
+            return result;
     }
-    return python.PyObject_Vectorcall(function, arguments, count, names);
+    return call_alone(guards[place], function, arguments, count, names);
 }
 
 // A C function for each quick call. CPython passes the Python function, which does not identify the call; so each quick
@@ -306,7 +313,14 @@ PyObject* tuple_of(const double* numbers, int count) {
 
 const Client* find_client(double number) {
     const bool is_known = !carom_quick_calls_paused && number >= 0.0 && number < MOST_CLIENTS;
-    return is_known ? clients[static_cast<int>(number)] : nullptr;
+    const Client* client = is_known ? clients[static_cast<int>(number)] : nullptr;
+    if (client && client->gate->owner) {
+        if (is_closed(*client->gate))
+            return nullptr;
+        // This call runs in the middle of another.
+        ++client->gate->calls;
+    }
+    return client;
 }
 
 const Body* find_body(const Client& client, double number) {
@@ -357,17 +371,6 @@ void run(const Launch& launch, int64_t tree) {
     *launch.tree = before;
 }
 
-Lock::Lock(const Client& of) : client(of) {
-    PyObject* taken = python.PyObject_CallObject(client.acquire, client.without_waiting);
-    is_held = taken == python.True;
-    release(taken);
-}
-
-Lock::~Lock() {
-    if (is_held)
-        ::release(python.PyObject_CallObject(client.release, nullptr));
-}
-
 // Names of the functions and objects that the host writes to the table `python`, in order.
 #define F(result, name, arguments) #name " "
 extern "C" CAROM_EXPORT const char carom_python_functions[] = CAROM_PYTHON_FUNCTIONS(F);
@@ -382,15 +385,18 @@ extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused = 0;
 extern "C" CAROM_EXPORT int carom_most_quick_calls() { return MOST_CALLS; }
 extern "C" CAROM_EXPORT int carom_most_clients() { return MOST_CLIENTS; }
 
-// Gives the host the addresses of the tables of Python's functions, of quick calls and of clients. Returns 0 if another
+// Gives the host the addresses of the tables of Python's functions, of quick calls, of guards and of clients. Returns 0 if another
 // interpreter of the process already has them.
-extern "C" CAROM_EXPORT int carom_claim_quick_calls(void** of_python, QuickCall** of_calls, const Client*** of_clients) {
+extern "C" CAROM_EXPORT int carom_claim_quick_calls(
+    void** of_python, QuickCall** of_calls, Guard** of_guards, const Client*** of_clients
+) {
     static bool is_claimed = false;
     if (is_claimed)
         return 0;
     is_claimed = true;
     *of_python = &python;
     *of_calls = calls;
+    *of_guards = guards;
     *of_clients = clients;
     return 1;
 }

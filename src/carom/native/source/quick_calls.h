@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "gate.h"
 #include "perform.h"
 #include "python.h"
 
@@ -172,8 +173,7 @@ struct Client {
     Scene* scene;
     Body** bodies;
     int64_t body_count;
-    // Two methods of the lock that is held while the world changes, and the arguments of `acquire`.
-    PyObject *acquire, *release, *without_waiting;
+    Gate* gate;
     // An object, and the name of its attribute with the duration of a step.
     PyObject *connection, *time_step_name;
     int64_t reports_analytics;  // 1 if steps return statistics of the solver, which Python makes
@@ -205,7 +205,7 @@ bool read_numbers(PyObject* value, int count, double* numbers);
 // The duration of a step [s]; false if it is not known.
 bool read_time_step(const Client& client, double* seconds);
 
-// A connection by its number; null if Python has to handle its calls.
+// A connection by its number; null if Python has to handle its calls, as while another thread is in one of them.
 const Client* find_client(double number);
 
 // A body by its number; null if there is none, or it has no record yet.
@@ -265,10 +265,13 @@ struct Instead {
     T before;
 };
 
-// Takes the lock of a client if it is free, and releases it on destruction.
+// Takes the lock of a world if it is free, and releases it on destruction.
 struct Lock {
-    explicit Lock(const Client& client);
-    ~Lock();
-    const Client& client;
-    bool is_held;
+    explicit Lock(const Client& client) : gate(*client.gate), is_held(enter_at_once(gate) == ENTERED) {}
+    ~Lock() {
+        if (is_held)
+            leave(gate);
+    }
+    Gate& gate;
+    const bool is_held;
 };
