@@ -96,8 +96,8 @@ def test_messages_may_say_more_but_nothing_else():
     assert place and place.field == "ok/error"
 
 
-def state(x: float, contacts: int = 0) -> Any:
-    return ["ok", [[[0, [[x, 0.0, 0.0]], [], [], []]], contacts]]
+def state(x: float, contacts: int = 0, deepest: float = 0.0) -> Any:
+    return ["ok", [[[0, [[x, 0.0, 0.0]], [], [], []]], contacts, deepest]]
 
 
 def test_states_are_compared_until_they_differ():
@@ -114,6 +114,14 @@ def test_after_contacts_states_are_compared_for_some_steps_only():
     for steps, differs in ((2, True), (10, False)):
         ours = [*theirs[: 2 * steps - 1], *([state(1, contacts=1), ["ok", None]] * 20)][: len(calls)]
         assert bool(compare(calls, outcome(*theirs), outcome(*ours))) == differs
+
+
+def test_nothing_is_compared_after_bodies_were_deep_in_each_other():
+    calls = [call(number, f) for number, f in enumerate(("stepSimulation", "@probe", "getNumBodies"))]
+    for deepest, differs in ((-0.001, True), (-0.1, False)):
+        results = (["ok", None], state(0, 1, deepest))
+        found = compare(calls, outcome(*results, ["ok", 1]), outcome(*results, ["ok", 2]))
+        assert bool(found) == differs
 
 
 def test_a_process_that_dies_differs():

@@ -3,7 +3,8 @@
 Up to the first contact everything has to agree to `STRICT` of the largest number beside it; after it the
 first steps to `AFTER_CONTACT`, and what follows not at all, since contacts make rounding grow. After the
 first step whose `@probe` differs nothing is compared, as everything else would follow from it; nor is
-anything where PyBullet's own state is NaN.
+anything after a step in which bodies are in each other deeper than `DEEP`, which docs/differences has a
+paragraph about, or where PyBullet's own state is NaN.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from tools.differ.values import Place, first_difference, lost
 
 STRICT, AFTER_CONTACT = 1e-9, 1e-6
 STEPS_AFTER_CONTACT = 6
+DEEP = -0.005
+"""Distance of contact points [m] below which PyBullet's own motion is left to rounding."""
 _REACTIONS = 100.0
 # PyBullet passes through single precision, where Carom does not; or iterates to a bound of its own.
 _SINGLE = dict.fromkeys(
@@ -86,7 +89,7 @@ def compare(calls: Sequence[Call], theirs: Outcome, ours: Outcome) -> list[Diffe
             if phase == "free" and (x[1][1] or y[1][1]):
                 phase = "contact"
             since += phase == "contact"
-            if since > STEPS_AFTER_CONTACT:
+            if since > STEPS_AFTER_CONTACT or min(x[1][2], y[1][2]) < DEEP:
                 return found
         try:
             place = difference(function, x, y, AFTER_CONTACT if phase == "contact" else STRICT)

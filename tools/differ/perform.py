@@ -157,7 +157,7 @@ def plain(value):
 
 
 def probe():
-    """The state of all bodies, and how many contact points there are.
+    """The state of all bodies, how many contact points there are, and the least of their distances.
 
     A body is its id, its base (pose and velocity), positions and velocities of its joints, and their
     reactions and torques.
@@ -176,7 +176,8 @@ def probe():
         ]
         positions, velocities = [state[0] for state in states], [state[1] for state in states]
         bodies.append([body, *map(plain, (base, positions, velocities, reactions))])
-    return [bodies, len(p.getContactPoints() or ())]
+    contacts = p.getContactPoints() or ()
+    return [bodies, len(contacts), min((point[8] for point in contacts), default=0.0)]
 
 
 def reach(body, links, answer, targets, turn):

@@ -19,7 +19,7 @@ from tools.differ.pair import ORACLE, ROOT, Server, data_of
 from tools.differ.themes import THEMES, program
 
 SAMPLE = ROOT / "tests" / "differ" / "programs.json.xz"
-_EACH, _DIGITS = 8, 13
+_EACH, _DIGITS = 6, 13
 _LONGEST = 100_000
 
 
