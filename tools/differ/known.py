@@ -54,7 +54,104 @@ class Known:
     recognises: Callable[[Seen], bool]
 
 
-KNOWN: tuple[Known, ...] = ()
+_MASSES = (
+    "calculateMassMatrix",
+    "calculateInverseDynamics",
+    "calculateJacobian",
+    "calculateInverseKinematics",
+)
+_SHAPE_OF_HEIGHTS = 9
+_GEAR, _NO_SUCH_LINK = "of a gear has to be", "has no link"
+_GLOBAL_VELOCITIES = 256
+
+
+def _error(seen: Seen) -> str:
+    """The text of Carom's error, where only Carom raises one."""
+    ours = seen.difference.place.ours
+    return str(ours[1]) if seen.difference.place.field == "ok/error" else ""
+
+
+def _pybullet_raises(seen: Seen) -> bool:
+    return seen.difference.place.field == "error/ok"
+
+
+def _makes(seen: Seen, *kinds: int) -> bool:
+    return any(call["f"] == "createCollisionShape" and call["a"][0] in kinds for call in seen.before)
+
+
+KNOWN: tuple[Known, ...] = (
+    Known(
+        "Every entry of `getCollisionShapeData` has the ids of its body and link",
+        lambda seen: seen.differs("getCollisionShapeData .1.0", "getCollisionShapeData .1.1"),
+    ),
+    Known(
+        "`getVisualShapeData` reports the texture that `changeVisualShape` has put on",
+        lambda seen: (
+            seen.call["f"] == "getVisualShapeData"
+            and seen.difference.place.field.endswith(".8")
+            and seen.has("changeVisualShape", "textureUniqueId")
+        ),
+    ),
+    Known(
+        "`getVisualShapeData` says where a geom given by `fromto` is",
+        lambda seen: (
+            seen.call["f"] == "getVisualShapeData"
+            and seen.difference.place.field.endswith((".5", ".6"))
+            and seen.has("loadMJCF")
+        ),
+    ),
+    Known(
+        "`getOverlappingObjects` lists links in the order of bodies and links, by their present bounds.",
+        lambda seen: seen.call["f"] == "getOverlappingObjects",
+    ),
+    Known(
+        "`createConstraint` refuses a child body or link that does not exist, and gears",
+        lambda seen: (
+            seen.call["f"] == "createConstraint" and (_GEAR in _error(seen) or _NO_SUCH_LINK in _error(seen))
+        ),
+    ),
+    Known(
+        "`applyExternalForce` and `applyExternalTorque` refuse links that do not exist.",
+        lambda seen: seen.call["f"].startswith("applyExternal") and _NO_SUCH_LINK in _error(seen),
+    ),
+    Known(
+        "`getConstraintInfo` reports frames as rotations, of length 1",
+        lambda seen: seen.differs(*(f"getConstraintInfo .{place} " for place in (8, 9, 11, 12, 13, 14))),
+    ),
+    Known(
+        "PyBullet **remembers masses and inertias** from the first call",
+        lambda seen: seen.call["f"] in _MASSES and not _error(seen) and seen.has("changeDynamics"),
+    ),
+    Known(
+        "Where PyBullet finds no answer at all for a body, it raises; here there is one.",
+        lambda seen: seen.call["f"] in _MASSES and _pybullet_raises(seen),
+    ),
+    Known(
+        "`collisionMargin` of `changeDynamics` widens the bounds (`getAABB`) of a body of several shapes",
+        lambda seen: (
+            seen.has("changeDynamics", "collisionMargin") and not seen.differs("getDynamicsInfo .11")
+        ),
+    ),
+    Known(
+        "`URDF_GLOBAL_VELOCITIES_MB` has no effect.",
+        lambda seen: (
+            seen.differs("@probe")
+            and any(
+                call["k"].get("flags", 0) & _GLOBAL_VELOCITIES
+                for call in seen.before
+                if call["f"] != "rayTest"
+            )
+        ),
+    ),
+    Known(
+        "**on triangle meshes and height fields** shapes touch with all points at once",
+        lambda seen: (
+            seen.difference.phase == "contact"
+            and seen.differs("@probe", "getContactPoints")
+            and _makes(seen, _SHAPE_OF_HEIGHTS)
+        ),
+    ),
+)
 
 
 def statement(calls: Sequence[Call], difference: Difference) -> str | None:

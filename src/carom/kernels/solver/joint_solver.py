@@ -77,7 +77,7 @@ def joint_constraint_rows(
         auto change = own.change - rate;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {
-            // A negative greatest force puts the bounds the wrong way round: as in Bullet, the lower comes first.
+            // A negative greatest force exchanges the bounds: as in Bullet, the lower comes first.
             after = after < own.lower ? own.lower : own.upper;
             change = (after - before) / own.effective_mass;
             after = before + change * own.effective_mass;
