@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from tools.differ.compare import compare, difference
 from tools.differ.each_call import CALLS, programs_of_getters
-from tools.differ.known import KNOWN
+from tools.differ.known import KNOWN, statement
 from tools.differ.minimise import Minimiser
 from tools.differ.pair import ROOT, Outcome
 from tools.differ.perform import perform
@@ -150,6 +150,15 @@ def test_programs_are_made_short():
     short, found = Minimiser(Fake(), "b", budget=200).minimise(calls)  # pyright: ignore[reportArgumentType]
     assert found and found.call == 1
     assert short == [call(4, "a", 0.1), call(15, "b", size=0.8)]
+
+
+def test_a_difference_is_known_only_where_the_program_has_its_cause():
+    calls = [call(0, "changeDynamics", 0, -1, collisionMargin=0.1), call(1, "getAABB", 0, -1)]
+    found = compare(calls, outcome(["ok", None], ["ok", [1.0]]), outcome(["ok", None], ["ok", [2.0]]))
+    says = statement(calls, found[0])
+    assert says and "collisionMargin" in says
+    calls[0]["k"] = {"mass": 1}
+    assert statement(calls, found[0]) is None
 
 
 def test_known_differences_are_stated():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable
 from typing import Any
 
@@ -14,7 +15,7 @@ _ARRIVED, _ARRIVED_TURNED, _OTHER_POSE = 1e-4, 1e-3, 1e-3
 _LIMIT = 2.5
 _SHARE_OF_SEGMENTS, _SHARE_OF_DEPTHS, _SHARE_OF_COLOURS = 0.06, 0.04, 0.08
 _DEPTH, _COLOUR = 2e-3, 12
-_CORNER = 3e-5
+_CORNER, _SHARE_OF_CORNERS = 1e-5, 0.01
 
 
 def of_rays(theirs: Any, ours: Any) -> Place | None:
@@ -80,14 +81,25 @@ def of_kinematics(theirs: Any, ours: Any) -> Place | None:
 
 
 def of_meshes(theirs: Any, ours: Any) -> Place | None:
-    """Corners of meshes, in whatever order."""
+    """Corners of meshes, in whatever order; of large hulls a few may be others."""
     if not theirs or not ours:
         return first_difference(theirs, ours, 0)
-    if theirs[0] != ours[0]:
-        return Place("len", theirs[0], ours[0])
-    # Rounded, so that one order is found for both.
-    corners = ([[round(x, 4) + 0.0 for x in corner] for corner in mesh[1]] for mesh in (theirs, ours))
-    return first_difference(*map(sorted, corners), bound=4 * _CORNER, field="corners")
+    gone, new = _not_among(theirs[1], ours[1]), _not_among(ours[1], theirs[1])
+    if max(len(gone), len(new)) > _SHARE_OF_CORNERS * len(theirs[1]):
+        return Place("corners", gone, new)
+    return None
+
+
+def _not_among(corners: list[list[float]], others: list[list[float]]) -> list[list[float]]:
+    """The corners that are not in a list of others."""
+    ordered = sorted(others)
+    gone = []
+    for corner in corners:
+        first = bisect_left(ordered, [corner[0] - _CORNER])
+        last = bisect_left(ordered, [corner[0] + _CORNER])
+        if not any(_furthest(corner, other) <= _CORNER for other in ordered[first:last]):
+            gone.append(corner)
+    return gone
 
 
 def of_overlaps(theirs: Any, ours: Any) -> Place | None:

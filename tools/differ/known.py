@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from tools.differ.assets import SPHERICAL
 from tools.differ.compare import Difference
 from tools.differ.programs import Call
 
@@ -63,6 +64,7 @@ _MASSES = (
 _SHAPE_OF_HEIGHTS = 9
 _GEAR, _NO_SUCH_LINK = "of a gear has to be", "has no link"
 _GLOBAL_VELOCITIES = 256
+_POSITION_CONTROL = 2
 
 
 def _error(seen: Seen) -> str:
@@ -73,6 +75,22 @@ def _error(seen: Seen) -> str:
 
 def _pybullet_raises(seen: Seen) -> bool:
     return seen.difference.place.field == "error/ok"
+
+
+def _aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
+    """Whether position control of one number drives a spherical joint of a body made of shapes."""
+    balls = {
+        (call["id"], joint)
+        for call in seen.before
+        for joint, kind in enumerate(call["k"].get("linkJointTypes", ()))
+        if kind == SPHERICAL
+    }
+    return any(
+        call["f"] == "setJointMotorControl2"
+        and call["a"][2] == _POSITION_CONTROL
+        and (call["a"][0]["$"], call["a"][1]) in balls
+        for call in seen.before
+    )
 
 
 def _makes(seen: Seen, *kinds: int) -> bool:
@@ -142,6 +160,10 @@ KNOWN: tuple[Known, ...] = (
                 if call["f"] != "rayTest"
             )
         ),
+    ),
+    Known(
+        "**A number as `targetPosition` of a spherical joint**",
+        lambda seen: seen.differs("@probe", "getJointState") and _aims_a_ball_joint_by_a_number(seen),
     ),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",

@@ -7,10 +7,9 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Capsule, Sphere
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
-from carom.model.inertia import collision_margin, is_in_place, mass_terms, moments_at
+from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
@@ -259,10 +258,7 @@ def shape_terms(body: Body, link: int) -> MassTerms:
 
 def has_margin(body: Body, link: int) -> bool:
     """Whether a link's margin can change: that of a ball or a capsule is its radius, as in Bullet."""
-    spec = body.link_spec(link)
-    if not is_in_place(spec.collisions, spec.inertial_frame):
-        return True
-    return not isinstance(spec.collisions[0].geometry, (Sphere, Capsule))
+    return not margin_is_radius(body.link_spec(link))
 
 
 def _set_inertia(body: Body, link: int, inertia: Vector3) -> None:
