@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tools.differ.pair import ORACLE
 from tools.thorough import parts, run
 from tools.thorough.parts import PARTS, ROOT, all_pieces
 from tools.thorough.pieces import Piece
@@ -15,7 +16,8 @@ PIECES = all_pieces(list(PARTS))
 
 def test_pieces_have_names_of_their_own():
     assert len({piece.key for piece in PIECES}) == len(PIECES)
-    assert {piece.part for piece in PIECES} == set(PARTS)
+    # Without real PyBullet there is nothing to differ from.
+    assert {piece.part for piece in PIECES} == {part for part in PARTS if part != "differ" or ORACLE.exists()}
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tests.fuzz.files import SEEDS
 from tests.workers.episodes import METHODS
+from tools.differ.pair import ORACLE
 from tools.thorough.pieces import SEED, Piece
 
 from carom.native.kernel_modules import CUDA_MODULES
@@ -20,6 +21,8 @@ API_PIECES, OPERATIONS = 50, 20_000
 """Of the fuzzer of the API: a million operations."""
 FILE_PIECES, FILE_CASES = 10, 10_000
 """Of the fuzzer of files: 100,000 cases of each kind."""
+DIFFER_PIECES, DIFFER_SEEDS = 42, 20
+"""Of the differential fuzzer: 10,080 programs, one of each theme for each seed."""
 MUTATION_PIECES, MUTATIONS = 12, 4
 """Samples of the list of mutations, and how many are in one."""
 _PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider")
@@ -72,6 +75,20 @@ def fuzz() -> list[Piece]:
     ]
 
 
+def differ() -> list[Piece]:
+    """Random programs beside real PyBullet, where there is one: `make oracle`."""
+    if not ORACLE.exists():
+        return []
+    seeds = ("-m", "tools.differ.run", "--seeds", str(DIFFER_SEEDS), "--first", SEED)
+    return [
+        Piece("differ", "getters", ("-m", "tools.differ.run", "--getters")),
+        *(
+            Piece("differ", f"programs {number}", seeds, number * DIFFER_SEEDS)
+            for number in range(DIFFER_PIECES)
+        ),
+    ]
+
+
 def soak() -> list[Piece]:
     """Long work, and long lives of workers, whose memory must not grow."""
     work = ("-m", "tests.conformance.soak")
@@ -92,7 +109,7 @@ def mutations() -> list[Piece]:
 
 
 PARTS: dict[str, Callable[[], Sequence[Piece]]] = {
-    part.__name__: part for part in (properties, gpu, platforms, fuzz, soak, mutations)
+    part.__name__: part for part in (properties, gpu, platforms, fuzz, differ, soak, mutations)
 }
 
 

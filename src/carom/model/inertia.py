@@ -151,6 +151,13 @@ def collision_margin(link: LinkSpec) -> float:
     return MARGIN
 
 
+def margin_is_radius(link: LinkSpec) -> bool:
+    """Whether a link's margin is the radius of its only shape, a ball or capsule; it never changes then."""
+    if not is_in_place(link.collisions, link.inertial_frame):
+        return False
+    return isinstance(link.collisions[0].geometry, (Sphere, Capsule))
+
+
 def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:
     """Rotation and position of a shape in the inertial frame.
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
-from carom.model.inertia import mass_terms, moments_at
+from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.native.uninterrupted import uninterrupted
 
 if TYPE_CHECKING:
@@ -245,9 +246,21 @@ def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
 
 
 def shape_terms(body: Body, link: int) -> MassTerms:
-    """The principal moments of inertia of a link's collision shapes as a function of the mass."""
+    """The principal moments of inertia of a link's collision shapes as a function of the mass.
+
+    The margin that `collision_margin` has set widens the box that several shapes count as.
+    """
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-    return mass_terms(body.link_spec(link), implicit_cylinder=implicit)
+    spec = body.link_spec(link)
+    margin = body.dynamics(link).collision_margin
+    if margin != collision_margin(spec):
+        spec = replace(spec, compound_margin=margin)
+    return mass_terms(spec, implicit_cylinder=implicit)
+
+
+def has_margin(body: Body, link: int) -> bool:
+    """Whether a link's margin can change: that of a ball or a capsule is its radius, as in Bullet."""
+    return not margin_is_radius(body.link_spec(link))
 
 
 def _set_inertia(body: Body, link: int, inertia: Vector3) -> None:

@@ -110,6 +110,11 @@ class BodyAccess:
             self.record.links = addressof(self._link_records)
         return links
 
+    def forget_moments(self, link: int) -> None:
+        """Let the moments of a link be computed anew when its mass changes next; -1 is the base."""
+        if self.record is not None and self.record.moments:
+            self._moments[link + 1].is_known = False
+
     def weighed(self, link: int) -> None:
         """Let the native library handle the next changes of a link's mass; -1 is the base."""
         if self.record is None:

@@ -229,6 +229,12 @@ def changeDynamics(
             from carom.scene.dynamics_changes import shape_inertia
 
             changes.values["inertia"] = shape_inertia(body, link, changes.values["mass"])
+        if "collision_margin" in changes.values:
+            from carom.scene.dynamics_changes import has_margin
+
+            client.bodies[body.id].forget_moments(link)
+            if not has_margin(body, link):
+                del changes.values["collision_margin"]
         body.change_dynamics(link, **changes.values)
         # Let the native library handle the next change.
         access = client.bodies[body.id]

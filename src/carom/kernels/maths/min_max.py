@@ -22,8 +22,12 @@ def maximum(a: real, b: real) -> real:
 
 @func
 def within_bounds(value: real, lower: real, upper: real) -> real:
-    """Clamp `value` to [lower, upper]; NaN stays NaN."""
-    return minimum(maximum(value, lower), upper)
+    """Clamp `value` to [lower, upper]; NaN stays NaN.
+
+    Where a motor's greatest force is negative, `lower` is above `upper`: as in Bullet, what is below `lower`
+    becomes `lower` then, and everything else `upper`.
+    """
+    return wp.where(value < lower, lower, minimum(value, upper))
 
 
 @func

@@ -77,8 +77,8 @@ def joint_constraint_rows(
         auto change = own.change - rate;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {
-            after = after < own.lower ? own.lower : after;
-            after = after > own.upper ? own.upper : after;
+            // A negative greatest force exchanges the bounds: as in Bullet, the lower comes first.
+            after = after < own.lower ? own.lower : own.upper;
             change = (after - before) / own.effective_mass;
             after = before + change * own.effective_mass;
         }

@@ -1,0 +1,34 @@
+"""Files of `pybullet_data` that programs load, with the joints that PyBullet says they have.
+
+`env -u PYTHONPATH .oracle/bin/python tools/differ/record_assets.py` writes `assets.json`: the bodies of each
+file, as the types of their joints.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = range(5)
+POINT, GEAR = 5, 6
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint of a body; only its type matters."""
+
+    type: int
+
+
+def _read() -> dict[str, tuple[tuple[Joint, ...], ...]]:
+    files = json.loads(Path(__file__).with_name("assets.json").read_text(encoding="utf-8"))
+    return {name: tuple(tuple(map(Joint, types)) for types in bodies) for name, bodies in files.items()}
+
+
+FILES = _read()
+"""The joints of the bodies in each file."""
+URDFS = [name for name in FILES if name.endswith(".urdf")]
+ROBOTS = [name for name in URDFS if FILES[name][0]]
+SMALL = [name for name in URDFS if len(FILES[name][0]) < 2 and "plane" not in name]
+SCENES = [name for name in FILES if not name.endswith(".urdf")]

@@ -1,0 +1,115 @@
+"""A pair of interpreters, with real PyBullet and with Carom, which perform the same programs."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, TypedDict
+
+from tools.differ.programs import Call
+
+ROOT = Path(__file__).parents[2]
+ORACLE = ROOT / ".oracle" / "bin" / "python"
+_SECONDS = 20.0
+
+
+class Outcome(TypedDict):
+    """What came of a program: results of its calls, as `perform.py` has them, and how its process died."""
+
+    results: list[Any]
+    died: str | None
+
+
+class Server:
+    """One interpreter that performs programs.
+
+    Args:
+        python: The interpreter.
+        data: The folder that files are searched in.
+        warm: Files that are loaded once before.
+    """
+
+    def __init__(self, python: str | Path, data: str, warm: Sequence[str] = ()) -> None:
+        # A path to Carom's sources would hide the real module.
+        environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+        self._data = data
+        self._process = subprocess.Popen(
+            [str(python), "-u", str(Path(__file__).with_name("perform.py"))],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            cwd=tempfile.gettempdir(),
+            env=environment,
+        )
+        self._send({"warm": list(warm), "data": data})
+        self.answer()
+
+    def order(self, calls: Sequence[Call], seconds: float = _SECONDS) -> None:
+        """Let a program be performed for so many seconds at most; `answer` waits for it."""
+        self._send({"calls": calls, "data": self._data, "timeout": seconds})
+
+    def answer(self) -> Outcome:
+        """What came of the program that was ordered.
+
+        Raises:
+            RuntimeError: The interpreter has ended.
+        """
+        assert self._process.stdout
+        line = self._process.stdout.readline()
+        if not line:
+            raise RuntimeError(f"{self._process.args!r} ended with status {self._process.wait()}")
+        return json.loads(line)
+
+    def close(self) -> None:
+        """End the interpreter."""
+        assert self._process.stdin
+        assert self._process.stdout
+        self._process.stdin.close()
+        self._process.stdout.close()
+        self._process.wait()
+
+    def _send(self, order: dict[str, Any]) -> None:
+        assert self._process.stdin
+        self._process.stdin.write(json.dumps(order) + "\n")
+        self._process.stdin.flush()
+
+
+class Pair:
+    """Both interpreters; files are PyBullet's own for both.
+
+    Args:
+        oracle: The interpreter with real PyBullet.
+        warm: Files that are loaded once before.
+    """
+
+    def __init__(self, oracle: Path = ORACLE, warm: Sequence[str] = ()) -> None:
+        if not oracle.exists():
+            raise FileNotFoundError(f"there is no {oracle}; `make oracle` makes it")
+        data = data_of(oracle)
+        self.oracle = Server(oracle, data, warm)
+        self.carom = Server(sys.executable, data, warm)
+
+    def run(self, calls: Sequence[Call], seconds: float = _SECONDS) -> tuple[Outcome, Outcome]:
+        """What came of a program in PyBullet, and in Carom, performed at the same time."""
+        self.oracle.order(calls, seconds)
+        self.carom.order(calls, seconds)
+        return self.oracle.answer(), self.carom.answer()
+
+    def close(self) -> None:
+        """End both interpreters."""
+        self.oracle.close()
+        self.carom.close()
+
+
+def data_of(python: Path) -> str:
+    """The folder of an interpreter's `pybullet_data`."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    code = "import pybullet_data; print(pybullet_data.getDataPath())"
+    command = [str(python), "-c", code]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    return done.stdout.strip()

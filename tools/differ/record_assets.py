@@ -1,0 +1,65 @@
+"""Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
+
+Run by the interpreter with PyBullet; it needs nothing else.
+"""
+
+import glob
+import json
+import os
+import time
+
+import pybullet as p
+import pybullet_data
+
+# Too slow, soft, or refused; or they end PyBullet.
+LEFT_OUT = (
+    "torus_deform", "cloth_z_up", "model_for_sdf", "samurai", "microtaur", "free_base.sdf", "kuka_world",
+    "model2", "gripper_new_free",
+)  # fmt: skip
+SLOW, MANY_BODIES = 0.4, 8
+
+
+def load(name):
+    """Load a file; its bodies."""
+    p.resetSimulation()
+    if name.endswith("urdf"):
+        return [p.loadURDF(name)]
+    return list((p.loadSDF if name.endswith("sdf") else p.loadMJCF)(name))
+
+
+def loads(name):
+    """Whether a file can be loaded: tried in a process of its own."""
+    child = os.fork()
+    if child == 0:
+        try:
+            load(name)
+            os._exit(0)
+        except BaseException:
+            os._exit(1)
+    return os.waitpid(child, 0)[1] == 0
+
+
+def main():
+    """Write the table."""
+    into = os.path.join(os.path.dirname(os.path.abspath(__file__)), "assets.json")
+    os.chdir(pybullet_data.getDataPath())
+    names = sorted(name for name in glob.glob("**/*.urdf", recursive=True) if "random_urdfs" not in name)
+    names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
+    names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
+    p.connect(p.DIRECT)
+    lines = []
+    for name in names:
+        if any(word in name for word in LEFT_OUT) or not loads(name):
+            continue
+        start = time.time()
+        bodies = load(name)
+        if time.time() - start > SLOW or len(bodies) > MANY_BODIES:
+            continue
+        types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
+        lines.append(f"{json.dumps(name)}: {json.dumps(types, separators=(',', ':'))}")
+    with open(into, "w") as file:
+        file.write("{\n" + ",\n".join(lines) + "\n}\n")
+
+
+if __name__ == "__main__":
+    main()
