@@ -55,7 +55,7 @@ def move() -> None:
         p.resetBasePositionAndOrientation(body, [serial, 0.5, 3.0 + serial], turn)
         p.resetBaseVelocity(body, [0.1, 0.2 * serial, -0.3], [0.5, -0.4, 0.3 + serial])
         for joint in range(p.getNumJoints(body)):
-            kind = (p.getJointInfo(body, joint) or ())[2]
+            kind = list(p.getJointInfo(body, joint) or ())[2]
             if kind == p.JOINT_SPHERICAL:
                 p.resetJointStateMultiDof(
                     body, joint, p.getQuaternionFromEuler([0.3, 0.2, serial]), [1, -2, 0.5]
