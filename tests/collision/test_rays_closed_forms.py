@@ -78,11 +78,13 @@ def test_rays_at_round_shapes(name: str) -> None:
     starts, ends = starts[outside], ends[outside]
     expected = np.array([march(distance, start, end) for start, end in zip(starts, ends, strict=True)])
     fraction = cast(shape, starts, ends, position, turn)
-    # A ray may graze a shape so that rounding decides.
-    sure = np.abs([distance(s + f * (e - s)) for s, e, f in zip(starts, ends, expected, strict=True)])
-    sure = (expected < 1.0 - 1e-9) | (sure > 1e-6)
     assert (expected < 1.0).sum() > 50
-    assert_allclose(fraction[sure], expected[sure], rtol=0, atol=1e-6)
+    # A ray that grazes a shape hits it where it first comes within a millimetre.
+    grazes = fraction < expected - 1e-6
+    assert grazes.mean() < 0.05
+    rays = zip(starts[grazes], ends[grazes], fraction[grazes], strict=True)
+    assert all(0.0 < distance(start + at * (end - start)) < 1.001e-3 for start, end, at in rays)
+    assert_allclose(fraction[~grazes], expected[~grazes], rtol=0, atol=1e-6)
 
 
 def meet(start: np.ndarray, end: np.ndarray, corners: np.ndarray) -> float:

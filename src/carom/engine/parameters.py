@@ -31,6 +31,9 @@ class EngineParameters:
         split_impulse: Deep errors are not turned into velocity.
         split_impulse_penetration_threshold: Threshold of a deep error (negative) [rad or m].
         cone_friction: Friction is bounded by a cone, not by a pyramid.
+        isotropic_friction: Friction is bounded by a cone and opposite to the velocity of sliding, in whatever
+            direction a body moves. Off as in PyBullet, where a vehicle with skid steering turns faster at
+            some headings than at others.
         deterministic_overlapping_pairs: Contacts are relaxed in the order of their links, instead of in the
             order in which bounds have met.
         joint_feedback_mode: Bit 1: force-torque sensors in world axes; bit 2: about the joint.
@@ -61,6 +64,7 @@ class EngineParameters:
     split_impulse: bool = True
     split_impulse_penetration_threshold: float = DEFAULT_SPLIT_THRESHOLD
     cone_friction: bool = True
+    isotropic_friction: bool = False
     deterministic_overlapping_pairs: bool = False
     joint_feedback_mode: int = 0
     allowed_ccd_penetration: float = 0.04

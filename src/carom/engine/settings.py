@@ -9,6 +9,7 @@ from typing import Any
 
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.parameters import EngineParameters
+from carom.layouts.codes import FrictionBound
 from carom.layouts.model import Settings
 from carom.model.builder import WorldArrays
 
@@ -94,9 +95,15 @@ def _values(
         "contact_slop": parameters.contact_slop,
         "contact_warm_starting": parameters.contact_warm_starting,
         "restitution_threshold": parameters.restitution_velocity_threshold,
-        "cone_friction": int(parameters.cone_friction),
+        "cone_friction": _friction_bound(parameters),
         "shape_count": contact_arrays.shapes.shape_count,
         "filter_count": contact_arrays.shapes.filter_count,
         "looks_ahead": int(contact_arrays.shapes.looks_ahead),
         "filter_both": int(parameters.collision_filter_mode == 0),
     }
+
+
+def _friction_bound(parameters: EngineParameters) -> int:
+    if parameters.isotropic_friction:
+        return int(FrictionBound.ISOTROPIC)
+    return int(FrictionBound.CONE if parameters.cone_friction else FrictionBound.PYRAMID)

@@ -43,6 +43,14 @@ class Activity(IntEnum):
     WOKEN = 3  # as WANTS_SLEEP, in the first substep after being asleep
 
 
+class FrictionBound(IntEnum):
+    """How the impulses of two friction rows of a contact are bounded."""
+
+    PYRAMID = 0  # each one
+    CONE = 1  # both together
+    ISOTROPIC = 2  # both together, after steps of the same size
+
+
 class ShapeKind(IntEnum):
     """Kinds of collision shape; in comments the content of `Shapes.shape_size` for each."""
 
@@ -107,6 +115,7 @@ REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = map(int, JointCode)
 MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER = map(int, ConstraintKind)
 USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR = map(int, UserConstraintKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
+ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)
 ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from ctypes import c_double
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
@@ -277,13 +277,18 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
         """
         return take(self, self._layout)
 
-    def restore(self, state: Snapshot | str | Path, *, update_poses: bool = False) -> None:
+    def restore(
+        self, state: Snapshot | str | Path, *, update_poses: bool = False, maximal: Collection[int] = ()
+    ) -> None:
         """Restore a state. The steps that follow are then the same, bit for bit, as the first time.
 
         Args:
-            state: The state, or a file of `save`, of which only the state is read.
+            state: The state, or a file of `save`, of which only the state is read, or a file of PyBullet's
+                `saveBullet`: then bodies, in their order, get their poses, velocities and joint states, and
+                contacts are found at the next step.
             update_poses: Compute `link_pose` from the coordinates; as saved, it is that of the start of the
                 last substep.
+            maximal: Of a file of PyBullet: numbers of the bodies that had maximal coordinates there.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as it was.
@@ -294,7 +299,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
         if not isinstance(state, Snapshot):
             from carom.world_files.world_file import restore_world
 
-            restore_world(self, Path(state), update_poses=update_poses)
+            restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
             return
         with uninterrupted:
             self.undo.settle()

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from functools import partial
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.parameters import EngineParameters
 from carom.errors import DescriptionError
+from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
@@ -29,6 +30,7 @@ from carom.scene.undoing import begin
 from carom.scene.user_constraints import UserConstraint
 from carom.scene.user_data import UserDatum
 from carom.version import __version__
+from carom.world_files.bullet_state import refuse_to_load, restore_bullet
 from carom.world_files.check import check_body, check_finite
 from carom.world_files.container import MOST_BYTES, packed, unpacked
 from carom.world_files.files import restored
@@ -191,8 +193,10 @@ def save_world(world: World, path: Path, parts: Parts) -> None:
 
 def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
+    data, _ = read_bounded(path, MOST_BYTES)
+    refuse_to_load(data, path)
     with _guarded(path):
-        document, reader, saved = _read(path)
+        document, reader, saved = _read(data, path)
         state = read_state(reader, document.get("state"))
         with begin(world) as undo:
             undo.note(return_to(world, layout(world), world.snapshot()))
@@ -212,15 +216,21 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
         return bodies
 
 
-def restore_world(world: World, path: Path, *, update_poses: bool = False) -> None:
+def restore_world(
+    world: World, path: Path, *, update_poses: bool = False, maximal: Collection[int] = ()
+) -> None:
     """Restore the state in a file, as `World.restore` does.
 
     Raises:
         DescriptionError: The file cannot be used; the world is as it was.
         StateError: The world has other bodies; it is as it was.
     """
+    data, _ = read_bounded(path, MOST_BYTES)
+    if is_bullet(data):
+        restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
+        return
     with _guarded(path):
-        document, reader, _ = _read(path)
+        document, reader, _ = _read(data, path)
         snapshot = read_state(reader, document.get("state"))
         check_same(snapshot.layout, layout(world))
         check_arrays(world, [world.bodies[body.id] for body in snapshot.layout.bodies], snapshot)
@@ -236,8 +246,7 @@ def _guarded(path: Path) -> Iterator[None]:
         raise DescriptionError(f"its content is invalid: {problem}", file=path) from problem
 
 
-def _read(path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:
-    data, _ = read_bounded(path, MOST_BYTES)
+def _read(data: bytes, path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:
     document, blocks = unpacked(data, path)
     reader = Reader(path, blocks, restored(document.get("files"), blocks, path))
     saved = reader.record(SavedWorld, document.get("world"), "world")

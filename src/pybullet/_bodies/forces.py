@@ -9,7 +9,7 @@ from carom.description.transform import subtracted
 from pybullet._calls.arguments import Vector, integer, numbers, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail, warn_once_here
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import BASE, link_of, no_body
 from pybullet._maths.camera_maths import cross
@@ -157,7 +157,7 @@ def _body(client: Client, body_id: int, link_index: int, function: str) -> BodyA
     body = client.body(body_id)
     link = integer(link_index, "linkIndex")
     if body is None:
-        logger.warning("%s: %s", function, no_body(body_id))
+        warn_once_here(f"{function}: {no_body(body_id)}")
         return None
     link_of(body, link, "linkIndex", _WRONG_LINK)
     return client.bodies[body.id]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from typing import NoReturn
 
@@ -26,8 +27,25 @@ def fail(text: str, particulars: str = "") -> NoReturn:
 
 logger = Logger("pybullet")
 
+# Places in scripts that were warned, with the message; not more, since scripts can make lines without end.
+_warned: set[tuple[str, int, str]] = set()
+_MOST_WARNED = 10_000
+
 
 @cache
 def warn_once(message: str) -> None:
     """Logs a warning only the first time, because control loops make the same call in every step."""
     logger.warning(message)
+
+
+def warn_once_here(message: str) -> None:
+    """Logs a warning the first time that a line of the script causes it."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "pybullet":
+        frame = frame.f_back
+    place = frame.f_code.co_filename, frame.f_lineno, message
+    if place not in _warned:
+        if len(_warned) >= _MOST_WARNED:
+            _warned.clear()
+        _warned.add(place)
+        logger.warning("%s", message)

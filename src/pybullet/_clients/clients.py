@@ -43,6 +43,7 @@ class Client:
             added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
+        maximal: Ids of the bodies for which the script asked for maximal coordinates.
         real_time: `useRealTimeSimulation` as the script set it.
         server: The server for other processes, if there is one.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all
@@ -68,6 +69,7 @@ class Client:
         self.logs = Logs()
         self.plugins = Plugins()
         self.origins: dict[int, Origin] = {}
+        self.maximal: set[int] = set()
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.server: Served | None = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pybullet._calls.arguments import integer
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail, warn_once_here
 from pybullet._clients.clients import Client, client_of
 
 if TYPE_CHECKING:
@@ -46,13 +46,16 @@ def link_of(body: Body, link_index: Any, name: str, problem: str) -> int:
 
 
 def link_or_warning(client: Client, body_id: Any, link_index: Any, function: str) -> tuple[Body, int] | None:
-    """A body and the index of its link, -1 for the base; None, with a warning, if one does not exist."""
+    """A body and the index of its link, -1 for the base; None if one does not exist.
+
+    Each line of a script is warned of it once, because control loops make the same call in every step.
+    """
     body, link = client.body(body_id), integer(link_index, "linkIndex")
     if body is None:
-        logger.warning("%s: %s", function, no_body(body_id))
+        warn_once_here(f"{function}: {no_body(body_id)}")
         return None
     if not BASE <= link < body.joint_count:
-        logger.warning("%s: %s", function, no_joint(body, link))
+        warn_once_here(f"{function}: {no_joint(body, link)}")
         return None
     return body, link
 

@@ -33,6 +33,8 @@ _WORK = {
     "noncontact_inner_iterations": ("numNonContactInnerIterations", 10_000),
 }
 _MOST_WORK = 10_000_000
+# `enableConeFriction` of Carom alone.
+_ISOTROPIC = 2
 # Forces are computed as impulses divided by the time step [s], which must not be too small.
 _LEAST_TIME_STEP = 1e-12
 
@@ -144,6 +146,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
             client.shapes = ShapeRegistry()
             client.states.clear()
             client.origins.clear()
+            client.maximal.clear()
             client.report_analytics = False
             client.deformable = deformable
             client.window.remove_drawings()
@@ -344,7 +347,9 @@ def setPhysicsEngineParameter(
         contactERP: The same for penetration.
         frictionERP: The same for friction with an anchor.
         enableConeFriction: 1: friction along both tangents together stays within the cone; 0: each separately
-            (pyramid).
+            (pyramid). 2, which is the same as 1 in PyBullet: the cone, and friction is opposite to the
+            velocity of sliding whatever the direction in which a body moves; with 0 and 1 it isn't, so that a
+            vehicle with skid steering turns faster at some headings than at others.
         deterministicOverlappingPairs: 1: relax contacts in the order of bodies, not in which bounds met.
         allowedCcdPenetration: Penetration that continuous collision detection allows [m]; no effect: bodies
             stop where they touch.
@@ -380,6 +385,8 @@ def setPhysicsEngineParameter(
         number = convert(given[name], name)
         if number >= least:
             changes[parameter] = number
+    if "cone_friction" in changes:
+        changes["isotropic_friction"] = integer(enableConeFriction, "enableConeFriction") == _ISOTROPIC
     _check_work(client, changes)
     integer(maxNumCmdPer1ms, "maxNumCmdPer1ms")
     integer(enableFileCaching, "enableFileCaching")

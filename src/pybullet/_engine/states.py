@@ -54,8 +54,10 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
 
     Args:
         stateId: A state of `saveState`; it can be restored any number of times.
-        fileName: A file of `saveBullet` instead: as given, in `data` folders near the working directory,
-            or in the directory of `setAdditionalSearchPath`.
+        fileName: A file of `saveBullet` instead, Carom's or PyBullet's: as given, in `data` folders near the
+            working directory, or in the directory of `setAdditionalSearchPath`. From a file that PyBullet
+            wrote, bodies get their poses, velocities and joint states, matched by their order as in PyBullet;
+            contacts are found at the next step.
         physicsClientId: The connection.
 
     Raises:
@@ -77,10 +79,11 @@ def restoreState(stateId: int = -1, fileName: str | None = None, physicsClientId
                 fail(_CANNOT_RESTORE, f"There is no state {number}.")
             state = client.states[number]
         else:
+            # PyBullet's files keep bodies with maximal coordinates apart.
             state = find_file(client, text(fileName, "fileName"), _CANNOT_RESTORE)
         try:
             # As in PyBullet, getLinkState returns current poses after this call.
-            client.world.restore(state, update_poses=True)
+            client.world.restore(state, update_poses=True, maximal=client.maximal)
         except CaromError as problem:
             fail(_CANNOT_RESTORE, f"{str(problem)[0].upper()}{str(problem)[1:]}.")
 
@@ -148,8 +151,9 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
         The ids of the bodies.
 
     Raises:
-        pybullet.error: Not connected, the file is missing or damaged, or it is not a file of `saveBullet`.
-            The world is then unchanged.
+        pybullet.error: Not connected, the file is missing or damaged, or it is not a file of Carom's
+            `saveBullet`: from PyBullet's, only `restoreState` can restore something. The world is then
+            unchanged.
 
     Examples:
         >>> p.saveBullet(folder + "/scene.bullet")
@@ -169,5 +173,6 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
         client.report_analytics = bool(client.world.parameters.report_solver_analytics)
         for body in bodies:
             client.origins.pop(body.id, None)
+            client.maximal.discard(body.id)
             body.update_link_poses()
         return tuple(body.id for body in bodies)

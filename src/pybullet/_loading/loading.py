@@ -141,7 +141,8 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         {"useFixedBase": int(fixed_base), "flags": flags, "globalScaling": scaling},
         takes_pose=True,
     )
-    return add_bodies(client, [(spec, Pose(position, orientation))], _CANNOT_LOAD, load)[0]
+    poses = [(spec, Pose(position, orientation))]
+    return add_bodies(client, poses, _CANNOT_LOAD, load, maximal=maximal > 0)[0]
 
 
 _DEFAULTS = {

@@ -71,7 +71,7 @@ def loadSDF(
         return sdf_bodies(Path(name), search, scale=scale, words_are_true=False)
 
     load = FileLoad("loadSDF", {"globalScaling": scaling})
-    return _load(client, read, _CANNOT_LOAD_SDF, load)
+    return _load(client, read, _CANNOT_LOAD_SDF, load, maximal=maximal > 0)
 
 
 @exported
@@ -108,7 +108,8 @@ def loadMJCF(
     name = text(mjcfFileName, "mjcfFileName")
     bits = max(0, integer(flags, "flags"))
     client = client_of(physicsClientId)
-    if integer(useMultiBody, "useMultiBody") == 0:
+    maximal = integer(useMultiBody, "useMultiBody") == 0
+    if maximal:
         logger.warning("loadMJCF: useMultiBody=0 has no effect; bodies have reduced coordinates.")
 
     def read(search: AssetSearch) -> list[PlacedBody]:
@@ -116,11 +117,17 @@ def loadMJCF(
 
         return mjcf_bodies(Path(name), search, flags=bits, as_mujoco=False)
 
-    return _load(client, read, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
+    load = FileLoad("loadMJCF", {"flags": bits})
+    return _load(client, read, _CANNOT_LOAD_MJCF, load, maximal=maximal)
 
 
 def _load(
-    client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
+    client: Client,
+    read: Callable[[AssetSearch], list[PlacedBody]],
+    problem: str,
+    load: FileLoad,
+    *,
+    maximal: bool,
 ) -> tuple[int, ...]:
     """Load all bodies of a file into the world of a client, or none if there is an error."""
     try:
@@ -129,4 +136,4 @@ def _load(
         fail(problem, str(error))
     if len(bodies) > _MOST_BODIES:
         fail(f"SDF exceeds body capacity: {len(bodies)} > {_MOST_BODIES}")
-    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)))
+    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)), maximal=maximal)

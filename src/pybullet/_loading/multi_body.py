@@ -195,7 +195,7 @@ def createMultiBody(
     warn_of_coordinates("createMultiBody", maximal)
     spec = _assembled(robot, max(bits, 0))
     poses = [Pose(place, pose.orientation) for place in batch or [pose.position]]
-    ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED)
+    ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED, maximal=maximal > 0)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
         shape = client.shapes.collisions.get(integer(number, "collision shape"))
         if shape is not None:

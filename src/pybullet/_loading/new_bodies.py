@@ -26,12 +26,18 @@ def warn_of_coordinates(function: str, use_maximal: int) -> None:
 
 
 def add_bodies(
-    client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str, load: FileLoad | None = None
+    client: Client,
+    bodies: Sequence[tuple[BodySpec, Pose]],
+    problem: str,
+    load: FileLoad | None = None,
+    *,
+    maximal: bool = False,
 ) -> tuple[int, ...]:
     """Add bodies to the world of a client, each with the pose of its base's link frame; returns their ids.
 
-    `load` is the call that loads them from a file. If the file of a mesh cannot be used, `pybullet.error` is
-    raised, with `problem` first, and the world is unchanged.
+    `load` is the call that loads them from a file; `maximal` says whether the script asked for maximal
+    coordinates, which files that PyBullet wrote keep apart. If the file of a mesh cannot be used,
+    `pybullet.error` is raised, with `problem` first, and the world is unchanged.
     """
     try:
         with client.lock:
@@ -40,6 +46,9 @@ def add_bodies(
             def also(added: list[Body]) -> None:
                 for index, body in enumerate(added):
                     client.origins.pop(body.id, None)
+                    client.maximal.discard(body.id)
+                    if maximal:
+                        client.maximal.add(body.id)
                     if load is not None:
                         client.origins[body.id] = Origin(load, index)
                 _look_at_fresh_files(client, [spec for spec, _ in bodies])

@@ -6,6 +6,7 @@ the same boxes.
 
 import warp as wp
 
+from carom.kernels.queries.ray_solids import GRAZE
 from carom.kernels.queries.ray_surfaces import inverse_way
 from carom.kernels.structs import Rays
 from carom.kernels.types import Int32, Vector3, Vector4, func, real
@@ -21,9 +22,12 @@ class Packet:
 
     first: Int32  # ray in the first lane
     end: Int32  # ray after the one in the last lane
-    start_x: Vector4
-    start_y: Vector4
-    start_z: Vector4
+    near_x: Vector4  # start of the ray, moved by `GRAZE` to the upper side: for lower sides of boxes
+    near_y: Vector4
+    near_z: Vector4
+    far_x: Vector4  # start of the ray, moved by `GRAZE` to the lower side: for upper sides of boxes
+    far_y: Vector4
+    far_z: Vector4
     inverse_x: Vector4  # reciprocal of the ray's extent along the axis
     inverse_y: Vector4
     inverse_z: Vector4
@@ -52,9 +56,12 @@ def packet_of(rays: Rays, first: Int32, count: Int32):
         total = start[0] + start[1] + start[2] + way[0] + way[1] + way[2]
         if first + lane == ray and wp.isfinite(total):
             inverse = inverse_way(way)
-            packet.start_x[lane] = start[0]
-            packet.start_y[lane] = start[1]
-            packet.start_z[lane] = start[2]
+            packet.near_x[lane] = start[0] + GRAZE
+            packet.far_x[lane] = start[0] - GRAZE
+            packet.near_y[lane] = start[1] + GRAZE
+            packet.far_y[lane] = start[1] - GRAZE
+            packet.near_z[lane] = start[2] + GRAZE
+            packet.far_z[lane] = start[2] - GRAZE
             packet.inverse_x[lane] = inverse[0]
             packet.inverse_y[lane] = inverse[1]
             packet.inverse_z[lane] = inverse[2]
@@ -86,13 +93,13 @@ def maximum(a: Vector4, b: Vector4) -> Vector4:
 
 @func
 def length_within(packet: Packet, limit: Vector4, lower: Vector3, upper: Vector3) -> Vector4:
-    """Fraction of each ray, up to its limit, that is inside a box; negative if the ray misses the box."""
-    one_x = wp.cw_mul(Vector4(lower[0]) - packet.start_x, packet.inverse_x)
-    one_y = wp.cw_mul(Vector4(lower[1]) - packet.start_y, packet.inverse_y)
-    one_z = wp.cw_mul(Vector4(lower[2]) - packet.start_z, packet.inverse_z)
-    other_x = wp.cw_mul(Vector4(upper[0]) - packet.start_x, packet.inverse_x)
-    other_y = wp.cw_mul(Vector4(upper[1]) - packet.start_y, packet.inverse_y)
-    other_z = wp.cw_mul(Vector4(upper[2]) - packet.start_z, packet.inverse_z)
+    """Fraction of each ray, up to its limit, inside a box enlarged by `GRAZE`; negative if it misses."""
+    one_x = wp.cw_mul(Vector4(lower[0]) - packet.near_x, packet.inverse_x)
+    one_y = wp.cw_mul(Vector4(lower[1]) - packet.near_y, packet.inverse_y)
+    one_z = wp.cw_mul(Vector4(lower[2]) - packet.near_z, packet.inverse_z)
+    other_x = wp.cw_mul(Vector4(upper[0]) - packet.far_x, packet.inverse_x)
+    other_y = wp.cw_mul(Vector4(upper[1]) - packet.far_y, packet.inverse_y)
+    other_z = wp.cw_mul(Vector4(upper[2]) - packet.far_z, packet.inverse_z)
     enter_xy = maximum(minimum(one_x, other_x), minimum(one_y, other_y))
     enter = maximum(enter_xy, maximum(minimum(one_z, other_z), Vector4(0.0)))
     leave_xy = minimum(maximum(one_x, other_x), maximum(one_y, other_y))

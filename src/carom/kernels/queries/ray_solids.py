@@ -14,6 +14,8 @@ from carom.layouts.contacts import MARGIN
 
 MISS = real(2.0)
 TINY = real(1.0e-30)
+GRAZE = real(1.0e-3)
+"""Distance from a convex shape at which a ray hits it, see `ray_grazing` [m]."""
 THICKNESS = real(MARGIN)
 """Thickness of the margin around the core of boxes and cylinders [m]."""
 

@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import place_shapes
 from carom.kernels.contact.hierarchy import build_hierarchy, leaf_start, next_node
+from carom.kernels.queries.ray_grazing import is_convex, may_graze, ray_grazing
 from carom.kernels.queries.ray_hulls import ray_hull
 from carom.kernels.queries.ray_packets import (
     LANES,
@@ -80,6 +81,12 @@ def ray_shape(
         else:
             fraction, normal = ray_field(shapes, shape, origin, along, after, inclusive, last)
         normal = frame * normal
+    if is_convex(kind) and may_graze(fraction, normal, way):
+        to_frame = wp.transpose(frame)
+        at, outward = ray_grazing(shapes, shape, to_frame * (start - position), to_frame * way, last)
+        if at < fraction:
+            fraction = at
+            normal = frame * outward
     if not comes_after(fraction, after, inclusive) or fraction > last:
         fraction = real(MISS)
     return fraction, normal

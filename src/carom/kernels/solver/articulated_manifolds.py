@@ -81,4 +81,4 @@ def relax_articulated_friction(
                 scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
                 place[2 * side + 1],
             )  # fmt: skip
-    return friction_residual(pair_rows, world, manifold_block, change)
+    return friction_residual(settings, pair_rows, world, manifold_block, change)

@@ -4,9 +4,11 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
+from carom.kernels.maths.equal_steps import equal_steps
 from carom.kernels.maths.min_max import within_bounds
-from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, State
-from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, Settings, State
+from carom.kernels.types import Index4, Int32, Vector2, Vector3, func, real
+from carom.layouts.codes import ISOTROPIC
 from carom.layouts.contacts import ROWS_PER_PAIR
 
 
@@ -184,8 +186,13 @@ def relax_pair_row(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int
 
 
 @func
-def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, bound: real) -> real:
-    """Relax two perpendicular rows, this and the next, with the length of both impulses at most `bound`."""
+def relax_in_circle(
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, bound: real
+) -> real:
+    """Relax two perpendicular rows, this and the next, with the length of both impulses at most `bound`.
+
+    Returns the sum of the changes of their velocities; if friction is isotropic, their length.
+    """
     place = pair_rows.row_place[world, row]
     start1 = pair_rows.row_start[world, row]
     start2 = start1 + place[1] + place[3]
@@ -193,6 +200,13 @@ def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: In
     terms2 = pair_rows.row_terms[world, row + 1]
     first = wanted_impulse(scratch, pair_rows, world, place, start1, terms1)
     second = wanted_impulse(scratch, pair_rows, world, place, start2, terms2)
+    if settings.cone_friction == ISOTROPIC:
+        coupling = dot_product(
+            pair_rows.jacobian_response, start1, pair_rows.jacobian_row, start2, world, place[1] + place[3]
+        )
+        steps = equal_steps(terms1.inverse_mass, terms2.inverse_mass, coupling)
+        first = terms1.impulse + (first - terms1.impulse) * steps[0]
+        second = terms2.impulse + (second - terms2.impulse) * steps[1]
     square = first * first + second * second
     if square >= bound * bound:
         scale = bound / wp.sqrt(square) if square > 0.0 else 0.0
@@ -202,6 +216,8 @@ def relax_in_circle(scratch: Scratch, pair_rows: PairRows, world: Int32, row: In
     pair_rows.row_terms[world, row + 1].impulse = second
     push_row(scratch, pair_rows, world, place, start1, change1)
     push_row(scratch, pair_rows, world, place, start2, change2)
+    if settings.cone_friction == ISOTROPIC:
+        return wp.length(Vector2(change1 * terms1.inverse_mass, change2 * terms2.inverse_mass))
     return change1 * terms1.inverse_mass + change2 * terms2.inverse_mass
 
 

@@ -13,9 +13,11 @@ from typing import Any
 
 import warp as wp
 
+from carom.kernels.maths.equal_steps import equal_steps
 from carom.kernels.maths.min_max import maximum, within_bounds
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, shared_func
+from carom.layouts.codes import ISOTROPIC
 
 
 @func
@@ -135,6 +137,14 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
         second = before[2 * i + 1] + wanted[2 * i + 1]
         change1 = wanted[2 * i]
         change2 = wanted[2 * i + 1]
+        if settings.cone_friction == ISOTROPIC:
+            inverse1 = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[2 * i]
+            inverse2 = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[2 * i + 1]
+            steps = equal_steps(inverse1, inverse2, delassus[2 * i, 2 * i + 1] * inverse2)
+            change1 *= steps[0]
+            change2 *= steps[1]
+            first = before[2 * i] + change1
+            second = before[2 * i + 1] + change2
         if settings.cone_friction != 0:
             square = first * first + second * second
             if square > bound * bound:
@@ -155,9 +165,20 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
 
 
 @func
-def friction_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector8) -> real:
-    """Maximum square of the sum of a contact's two velocity changes, by a change of friction impulses."""
+def friction_residual(
+    settings: Settings, pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector8
+) -> real:
+    """Maximum square of the sum of a contact's two velocity changes, by a change of friction impulses.
+
+    If friction is isotropic, the maximum of the sum of their squares.
+    """
     velocity = wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].friction_inverse_mass)
+    if settings.cone_friction == ISOTROPIC:
+        most = real(0.0)
+        for i in range(4):
+            first, second = velocity[2 * i], velocity[2 * i + 1]
+            most = maximum(most, first * first + second * second)
+        return most
     return greatest_square(
         Vector4(
             velocity[0] + velocity[1],
@@ -206,4 +227,4 @@ def relax_rigid_friction(
         if place[2 * body + 1] > 0:
             response = pair_rows.side[world, 2 * manifold_block + body].friction_response
             add_change(scratch, world, place[2 * body], combination(response, change))
-    return friction_residual(pair_rows, world, manifold_block, change)
+    return friction_residual(settings, pair_rows, world, manifold_block, change)

@@ -12,6 +12,7 @@ and responses are zero, that changes nothing, and takes less time than to distin
 import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
+from carom.kernels.maths.equal_steps import equal_steps
 from carom.kernels.maths.min_max import maximum, within_bounds
 from carom.kernels.solver.contact_terms import friction_change, keep_contact_impulse, normal_change
 from carom.kernels.solver.pair_rows import tree_blocks
@@ -30,6 +31,7 @@ from carom.kernels.types import (
     func,
     real,
 )
+from carom.layouts.codes import ISOTROPIC
 
 # Added to the index of a single contact, this is the code of its unit; see `units`.
 SINGLES = 1 << 30
@@ -176,12 +178,38 @@ def relax_in_pyramid(scratch: Scratch, pair_rows: PairRows, world: Int32, single
 
 
 @func
-def relax_in_cone(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
-    """Relax both friction rows of a contact at once; returns the sum of the changes of their velocities."""
+def lateral_coupling(pair_rows: PairRows, world: Int32, single: Int32) -> real:
+    """Change of the velocity of one friction row of a contact by a unit impulse of the other."""
+    coupling = real(0.0)
+    for dof in range(6):
+        second = 2 * dof + 1
+        coupling += (
+            pair_rows.single_lateral[world, single].jacobian_a[second]
+            * pair_rows.single_lateral[world, single].response_a1[dof]
+        )
+        coupling += (
+            pair_rows.single_lateral[world, single].jacobian_b[second]
+            * pair_rows.single_lateral[world, single].response_b1[dof]
+        )
+    return coupling
+
+
+@func
+def relax_in_cone(
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32
+) -> real:
+    """Relax both friction rows of a contact at once; returns the sum of the changes of their velocities.
+
+    If friction is isotropic, the length of both changes is returned instead.
+    """
     impulses = pair_rows.single_impulse[world, single]
     before = Vector2(impulses[1], impulses[2])
     bound = impulses[3] * impulses[0]
     after = wanted_friction(scratch, pair_rows, world, single, before)
+    if settings.cone_friction == ISOTROPIC:
+        inverse_mass = pair_rows.single_lateral[world, single].inverse_mass
+        steps = equal_steps(inverse_mass[0], inverse_mass[1], lateral_coupling(pair_rows, world, single))
+        after = before + wp.cw_mul(after - before, steps)
     square = after[0] * after[0] + after[1] * after[1]
     if square >= bound * bound:
         scale = bound / wp.sqrt(square) if square > 0.0 else 0.0
@@ -191,6 +219,8 @@ def relax_in_cone(scratch: Scratch, pair_rows: PairRows, world: Int32, single: I
     pair_rows.single_impulse[world, single][1] = after[0]
     pair_rows.single_impulse[world, single][2] = after[1]
     velocity = wp.cw_mul(change, pair_rows.single_lateral[world, single].inverse_mass)
+    if settings.cone_friction == ISOTROPIC:
+        return wp.length(velocity)
     return velocity[0] + velocity[1]
 
 
@@ -200,7 +230,7 @@ def relax_single_friction(
 ) -> real:
     """Relax the friction rows of a single contact; returns the change of their velocities."""
     if settings.cone_friction != 0:
-        return relax_in_cone(scratch, pair_rows, world, single)
+        return relax_in_cone(settings, scratch, pair_rows, world, single)
     return relax_in_pyramid(scratch, pair_rows, world, single)
 
 

@@ -115,7 +115,7 @@ def relax_contact_friction(
         bound = friction_bound(pair_rows, world, row)
         in_circle = settings.cone_friction != 0 and kind != SPINNING_ROW
         if in_circle and (bound > 0.0 or kind == LATERAL_ROW):
-            change = relax_in_circle(scratch, pair_rows, world, row, bound)
+            change = relax_in_circle(settings, scratch, pair_rows, world, row, bound)
         elif not in_circle and bound > 0.0:
             last = row + 0 if kind == SPINNING_ROW else row + 1
             while row <= last:
