@@ -26,7 +26,7 @@ from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
 # Distance beyond the margin at which nodes of any speed have touches, as a share of the margin.
-_AHEAD = real(1.0)
+AHEAD = real(1.0)
 
 
 @func
@@ -100,9 +100,7 @@ def find_node_touches(
     for node in range(first, first + soft.soft[body].node_count):
         if soft.node_inverse_mass[node] > 0.0 and soft.node_anchored[node] == 0:
             point = state.node_position[world, node]
-            max_distance = (
-                margin * (1.0 + _AHEAD) + closing + wp.length(state.node_velocity[world, node]) * dt
-            )
+            max_distance = margin * (1.0 + AHEAD) + closing + wp.length(state.node_velocity[world, node]) * dt
             lower = pairs.shape_lower[world, shape]
             upper = pairs.shape_upper[world, shape]
             near = Int32(1)
@@ -170,7 +168,7 @@ def find_touches(
     for shape in range(settings.shape_count):
         tree = shapes.shape_tree[shape]
         closing = shape_speed(shapes, model, state, scratch, world, tree, shape) * dt
-        max_distance = margin * (1.0 + _AHEAD) + closing
+        max_distance = margin * (1.0 + AHEAD) + closing
         near = Int32(1)
         for axis in range(3):
             if (
