@@ -51,11 +51,19 @@ def face_lacking(
 @func
 def relax_face_friction(
     scratch: Scratch, pair_rows: PairRows, soft: SoftModel, state: State, work: SoftWork, world: Int32,
-    nodes: Index4, touch: Int32, mass: real, bound: real, h: real,
+    nodes: Index4, touch: Int32, mass: real, h: real,
 ):  # fmt: skip
-    """Stop the slip of a face on a shape, as far as an impulse within `bound` [N s] can."""
+    """Stop the slip of a face on a shape, as far as impulses within Coulomb's cone can.
+
+    The cone is that of all impulses in this substep. Links that are pressed together, which react to pushes
+    after the substep only, push a face in few of its small steps, but hold it in all of them.
+    """
     axes = tangents(work.touch_normal[world, touch])
     first, second = column(axes, 1), column(axes, 2)
+    total = work.touch_impulse[world, touch]
+    bound = wp.dot(total, work.touch_normal[world, touch]) * work.touch_friction[world, touch]
+    if bound <= 0.0:
+        return
     row = work.touch_row[world, touch]
     row1, row2 = other_row(row, 1), other_row(row, 2)
     weights = work.touch_weights[world, touch]
@@ -64,11 +72,14 @@ def relax_face_friction(
     slip = moved - work.touch_velocity[world, touch] * h
     slip1 = wp.dot(slip, first) - h * row_velocity(scratch, pair_rows, world, row1)
     slip2 = wp.dot(slip, second) - h * row_velocity(scratch, pair_rows, world, row2)
-    push1 = -slip1 / (h * (mass + row_mass(pair_rows, world, row1)))
-    push2 = -slip2 / (h * (mass + row_mass(pair_rows, world, row2)))
+    before1, before2 = wp.dot(total, first), wp.dot(total, second)
+    push1 = before1 - slip1 / (h * (mass + row_mass(pair_rows, world, row1)))
+    push2 = before2 - slip2 / (h * (mass + row_mass(pair_rows, world, row2)))
     size = wp.sqrt(push1 * push1 + push2 * push2)
     if size > bound:
         push1, push2 = push1 * bound / size, push2 * bound / size
+    push1 -= before1
+    push2 -= before2
     along = first * push1 + second * push2
     move_face(soft, state, world, nodes, weights, along, h)
     work.touch_impulse[world, touch] += along
@@ -81,15 +92,13 @@ def push_face(
     scratch: Scratch, pair_rows: PairRows, soft: SoftModel, state: State, work: SoftWork, world: Int32,
     nodes: Index4, touch: Int32, mass: real, push: real, h: real,
 ):  # fmt: skip
-    """Push a face off a shape with an impulse [N s], and apply friction within Coulomb's cone."""
+    """Push a face off a shape with an impulse [N s], unless that is negative, and apply friction."""
     if push > 0.0:
         along = work.touch_normal[world, touch] * push
         move_face(soft, state, world, nodes, work.touch_weights[world, touch], along, h)
         work.touch_impulse[world, touch] += along
         push_along(scratch, pair_rows, world, work.touch_row[world, touch], -push)
-        bound = push * work.touch_friction[world, touch]
-        if bound > 0.0:
-            relax_face_friction(scratch, pair_rows, soft, state, work, world, nodes, touch, mass, bound, h)
+    relax_face_friction(scratch, pair_rows, soft, state, work, world, nodes, touch, mass, h)
 
 
 @func

@@ -1,9 +1,9 @@
 """Touches of faces: faces of soft bodies near shapes, found once in each substep.
 
 A node touches a shape on its own. Between nodes, a corner, an edge or a thin shape meets a face: at the
-nearest points of the face's triangle and the shape, by GJK and EPA, as in Bullet. During the substep the shape
-is approximated by a plane, as for a node. The touching point of the face has fixed barycentric coordinates:
-the weights by which an impulse there is shared among the corners.
+nearest points of the face's triangle and the shape, by GJK and EPA, as in Bullet. During the substep the
+shape is approximated by a plane, as for a node. The touching point of the face has fixed barycentric
+coordinates: the weights by which an impulse there is shared among the corners.
 """
 
 import warp as wp
