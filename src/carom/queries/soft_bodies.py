@@ -1,15 +1,16 @@
-"""Collision queries of soft bodies: faces hit by rays, contacts of nodes, bounds."""
+"""Collision queries of soft bodies: faces hit by rays, contacts of nodes and faces, bounds."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.soft import TOUCHES_PER_NODE
+from carom.layouts.soft import TOUCHES_PER_FACE, TOUCHES_PER_NODE
 from carom.native.kernels import find_touches_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.products import dots, length
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
     from carom.model.soft_arrays import SoftRows
 
+# Point of the soft body [m], shape, gap beyond the margin [m], unit normal towards the soft body, force on it
+# [N].
+_Touch = tuple[np.ndarray, int, float, np.ndarray, np.ndarray]
 _NOTHING: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _BASE = -1
 # The collision group of rays, for the masks of shapes.
@@ -101,20 +105,23 @@ class SoftQueries:
     def contacts(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """The contacts of nodes with shapes or other soft bodies; for the arguments see `Queries.contacts`.
+        """The contacts of nodes and faces with shapes, and of nodes with other soft bodies.
 
-        Body a is the soft body that the node belongs to, unless the query names the other body as `body_a`.
-        The distance of a contact is the node's distance from the surface minus the margin, or minus the
-        thickness if the surface is that of a soft body. The forces are those of the last substep.
+        For the arguments see `Queries.contacts`. Body a is the soft body that the node or face belongs to,
+        unless the query names the other body as `body_a`. The distance of a contact is that from the surface
+        minus the margin, or minus the thickness if the surface is that of a soft body. The forces are those
+        of the last substep.
         """
+        before = self._work["touch_shape"][0].copy()
         with self._present_poses():
             self._find_touches()
+        same_shape = before == self._work["touch_shape"][0]
         rows: list[tuple[Any, ...]] = []
         for soft in self._soft.bodies:
             own = self._places[self._link_row(soft)][0]
-            for node, shape, distance, normal, force in self._touches(soft):
+            touches = chain(self._touches(soft), self._face_touches(soft, same_shape, time_step))
+            for place, shape, distance, normal, force in touches:
                 other, link = self._places[int(self._shapes["shape_link"][shape])]
-                place = self._state["node_position"][0, node]
                 on_b = place - (distance + soft.spec.margin) * normal
                 sides = _sides((own, _BASE), (other, link), body_a, link_a, body_b, link_b)
                 if sides is not None:
@@ -128,12 +135,8 @@ class SoftQueries:
                 rows.append(_row(sides, places[pair.node], pair.foot, pair.normal, pair.gap, force))
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
-    def _touches(self, soft: SoftRows) -> list[tuple[int, int, float, np.ndarray, np.ndarray]]:
-        """Contacts of the nodes of a soft body with shapes.
-
-        Returns:
-            Node, shape, gap beyond the margin [m], unit normal towards the node, force on the node [N].
-        """
+    def _touches(self, soft: SoftRows) -> list[_Touch]:
+        """Contacts of the nodes of a soft body with shapes."""
         work, found = self._work, []
         nodes = self._nodes(soft)
         touching = np.flatnonzero(work["node_touches"][0, nodes]) + nodes.start
@@ -150,7 +153,30 @@ class SoftQueries:
                 force = push if touch == strongest and along[strongest] > 0.0 else np.zeros(3)
                 if gap <= _GAP or force.any():
                     shape = int(work["touch_shape"][0, first + touch])
-                    found.append((node, shape, gap, normals[touch].copy(), force))
+                    place = self._state["node_position"][0, node]
+                    found.append((place, shape, gap, normals[touch].copy(), force))
+        return found
+
+    def _face_touches(self, soft: SoftRows, same_shape: np.ndarray, time_step: float) -> list[_Touch]:
+        """Contacts of the faces of a soft body with shapes.
+
+        `same_shape` tells of each touch whether it is with the same shape as in the last substep, whose
+        impulse is still there.
+        """
+        work, found = self._work, []
+        first = soft.first["face"]
+        counts = work["face_touches"][0, first : first + soft.count["face"]]
+        behind_nodes = TOUCHES_PER_NODE * work["node_touches"].shape[1]
+        for face in np.flatnonzero(counts).tolist():
+            start = behind_nodes + TOUCHES_PER_FACE * (first + face)
+            corners = self._state["node_position"][0, self._nodes(soft)][soft.spec.faces[face]]
+            for touch in range(start, start + int(counts[face])):
+                gap = float(work["touch_offset"][0, touch]) - soft.spec.margin
+                force = work["touch_impulse"][0, touch] * (same_shape[touch] / time_step)
+                if gap <= _GAP or force.any():
+                    place = (work["touch_weights"][0, touch][:, None] * corners).sum(axis=0)
+                    shape = int(work["touch_shape"][0, touch])
+                    found.append((place, shape, gap, work["touch_normal"][0, touch].copy(), force))
         return found
 
     # Bounds
