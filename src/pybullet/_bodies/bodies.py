@@ -119,6 +119,7 @@ def removeBody(bodyUniqueId: int, physicsClientId: int = 0) -> None:
         client.bodies.forget_all()
         client.world.remove(body.id)
         client.origins.pop(body.id, None)
+        client.forced_twice.discard(body.id)
 
 
 @exported

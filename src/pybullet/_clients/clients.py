@@ -43,6 +43,8 @@ class Client:
             added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
+        forced_twice: The ids of bodies on which external forces act twice, as in PyBullet's deformable world
+            on those made with `useMaximalCoordinates=True`.
         real_time: `useRealTimeSimulation` as the script set it.
         server: The server for other processes, if there is one.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all
@@ -69,6 +71,7 @@ class Client:
         self.logs = Logs()
         self.plugins = Plugins()
         self.origins: dict[int, Origin] = {}
+        self.forced_twice: set[int] = set()
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.server: Served | None = None

@@ -143,6 +143,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
             client.shapes = ShapeRegistry()
             client.states.clear()
             client.origins.clear()
+            client.forced_twice.clear()
             client.report_analytics = False
             client.deformable = deformable
             client.window.remove_drawings()

@@ -169,5 +169,6 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
         client.report_analytics = bool(client.world.parameters.report_solver_analytics)
         for body in bodies:
             client.origins.pop(body.id, None)
+            client.forced_twice.discard(body.id)
             body.update_link_poses()
         return tuple(body.id for body in bodies)

@@ -39,7 +39,8 @@ def loadSDF(
     Args:
         sdfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
+            deformable worlds it makes external forces act twice, as in PyBullet.
         globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet, it does not apply to
             radii of spheres and to joint limits.
         physicsClientId: The connection.
@@ -62,7 +63,7 @@ def loadSDF(
     if scaling > 0.0:
         moderate(scaling, _CANNOT_LOAD_SDF, "globalScaling")
     client = client_of(physicsClientId)
-    warn_of_coordinates("loadSDF", maximal)
+    warn_of_coordinates("loadSDF", maximal, client)
 
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.model.from_files import sdf_bodies
@@ -71,7 +72,7 @@ def loadSDF(
         return sdf_bodies(Path(name), search, scale=scale, words_are_true=False)
 
     load = FileLoad("loadSDF", {"globalScaling": scaling})
-    return _load(client, read, _CANNOT_LOAD_SDF, load)
+    return _load(client, read, _CANNOT_LOAD_SDF, load, maximal=maximal)
 
 
 @exported
@@ -90,7 +91,8 @@ def loadMJCF(
         mjcfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
         flags: `URDF_*` and `MJCF_COLORS_FROM_FILE`, added up; -1 for none.
-        useMultiBody: Bodies always have reduced coordinates in Carom; 0 logs a warning.
+        useMultiBody: Bodies always have reduced coordinates in Carom; 0 logs a warning. In deformable worlds
+            it makes external forces act twice, as in PyBullet.
         physicsClientId: The connection.
 
     Returns:
@@ -108,19 +110,25 @@ def loadMJCF(
     name = text(mjcfFileName, "mjcfFileName")
     bits = max(0, integer(flags, "flags"))
     client = client_of(physicsClientId)
-    if integer(useMultiBody, "useMultiBody") == 0:
-        logger.warning("loadMJCF: useMultiBody=0 has no effect; bodies have reduced coordinates.")
+    maximal = int(integer(useMultiBody, "useMultiBody") == 0)
+    warn_of_coordinates("loadMJCF", maximal, client, "useMultiBody=0")
 
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.model.from_files import mjcf_bodies
 
         return mjcf_bodies(Path(name), search, flags=bits, as_mujoco=False)
 
-    return _load(client, read, _CANNOT_LOAD_MJCF, FileLoad("loadMJCF", {"flags": bits}))
+    load = FileLoad("loadMJCF", {"flags": bits})
+    return _load(client, read, _CANNOT_LOAD_MJCF, load, maximal=maximal)
 
 
 def _load(
-    client: Client, read: Callable[[AssetSearch], list[PlacedBody]], problem: str, load: FileLoad
+    client: Client,
+    read: Callable[[AssetSearch], list[PlacedBody]],
+    problem: str,
+    load: FileLoad,
+    *,
+    maximal: int = 0,
 ) -> tuple[int, ...]:
     """Load all bodies of a file into the world of a client, or none if there is an error."""
     try:
@@ -129,4 +137,4 @@ def _load(
         fail(problem, str(error))
     if len(bodies) > _MOST_BODIES:
         fail(f"SDF exceeds body capacity: {len(bodies)} > {_MOST_BODIES}")
-    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)))
+    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)), maximal=maximal)

@@ -17,21 +17,34 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-def warn_of_coordinates(function: str, use_maximal: int) -> None:
+def warn_of_coordinates(
+    function: str, use_maximal: int, client: Client, argument: str = "useMaximalCoordinates=1"
+) -> None:
     """Log a warning if a script asks for maximal coordinates, which Carom does not support."""
-    if use_maximal > 0:
+    if use_maximal > 0 and client.deformable:
         logger.warning(
-            "%s: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.", function
+            "%s: %s only makes external forces act twice, as in PyBullet's deformable world; bodies have "
+            "reduced coordinates.",
+            function,
+            argument,
         )
+    elif use_maximal > 0:
+        logger.warning("%s: %s has no effect; bodies have reduced coordinates.", function, argument)
 
 
 def add_bodies(
-    client: Client, bodies: Sequence[tuple[BodySpec, Pose]], problem: str, load: FileLoad | None = None
+    client: Client,
+    bodies: Sequence[tuple[BodySpec, Pose]],
+    problem: str,
+    load: FileLoad | None = None,
+    *,
+    maximal: int = 0,
 ) -> tuple[int, ...]:
     """Add bodies to the world of a client, each with the pose of its base's link frame; returns their ids.
 
     `load` is the call that loads them from a file. If the file of a mesh cannot be used, `pybullet.error` is
-    raised, with `problem` first, and the world is unchanged.
+    raised, with `problem` first, and the world is unchanged. `maximal` is `useMaximalCoordinates`: see
+    `Client.forced_twice`.
     """
     try:
         with client.lock:
@@ -40,6 +53,9 @@ def add_bodies(
             def also(added: list[Body]) -> None:
                 for index, body in enumerate(added):
                     client.origins.pop(body.id, None)
+                    client.forced_twice.discard(body.id)
+                    if maximal > 0 and client.deformable:
+                        client.forced_twice.add(body.id)
                     if load is not None:
                         client.origins[body.id] = Origin(load, index)
                 _look_at_fresh_files(client, [spec for spec, _ in bodies])

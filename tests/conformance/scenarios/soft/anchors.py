@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..scenario import scenario
-from ..soft_meshes import mesh_file, square_text
+from ...scenario import scenario
+from ...soft_meshes import mesh_file, square_text
 
 
 def _cloth(p: Any, **options: Any) -> int:
@@ -25,7 +25,7 @@ def _nodes(p: Any, body: int) -> np.ndarray:
 
 @scenario(tolerance=0.005)
 def ball_pulls_on_a_corner_of_cloth(p: Any) -> dict[str, Any]:
-    """A ball of 0.1 kg, pulled by 1 N, with a corner of cloth anchored to it: its speed, and where both are."""
+    """A ball of 0.1 kg, pulled by 1 N, with a corner of cloth anchored to it: speed and places."""
     p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
     p.setGravity(0.0, 0.0, 0.0)
     cloth = _cloth(p, scale=2.0, mass=1.0, springElasticStiffness=40.0)

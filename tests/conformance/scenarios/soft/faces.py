@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..scenario import ASSETS, scenario
-from ..soft_meshes import mesh_file, square_text
+from ...scenario import ASSETS, scenario
+from ...soft_meshes import mesh_file, square_text
 
 _GRAVITY = 9.81
 _ROD = {"radius": 0.01, "height": 3.0}
