@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from carom.errors import CaromError
 from pybullet._calls.arguments import integer, moderate, real, text
 from pybullet._calls.builtin import exported
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.origins import FileLoad
 from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
