@@ -32,6 +32,10 @@ _BASE = -1
 _RAY_GROUP = 1
 # A node counts as touching up to this gap beyond its margin [m].
 _GAP = 1.0e-4
+# What belongs to the impulses of the last substep on faces.
+_OF_LAST_SUBSTEP = ("face_touches", "touch_shape", "touch_weights")
+# Forces up to this are rounding errors [N].
+_ROUNDING = 1.0e-9
 # Number of ray-face pairs handled at a time, to save memory.
 _CHUNK = 1 << 20
 _TINY = 1.0e-300
@@ -112,20 +116,24 @@ class SoftQueries:
         minus the margin, or minus the thickness if the surface is that of a soft body. The forces are those
         of the last substep.
         """
-        before = self._work["touch_shape"][0].copy()
+        pushes = self._pushes_on_nodes(time_step)
+        kept = {name: self._work[name][0].copy() for name in _OF_LAST_SUBSTEP}
         with self._present_poses():
             self._find_touches()
-        same_shape = before == self._work["touch_shape"][0]
+        same_shape = kept["touch_shape"] == self._work["touch_shape"][0]
         rows: list[tuple[Any, ...]] = []
         for soft in self._soft.bodies:
             own = self._places[self._link_row(soft)][0]
-            touches = chain(self._touches(soft), self._face_touches(soft, same_shape, time_step))
+            touches = chain(self._touches(soft, pushes), self._face_touches(soft, same_shape, time_step))
             for place, shape, distance, normal, force in touches:
                 other, link = self._places[int(self._shapes["shape_link"][shape])]
                 on_b = place - (distance + soft.spec.margin) * normal
                 sides = _sides((own, _BASE), (other, link), body_a, link_a, body_b, link_b)
                 if sides is not None:
                     rows.append(_row(sides, place, on_b, normal, distance, force))
+        # The next query needs them as well, to make out whose the impulses are.
+        for name, values in kept.items():
+            self._work[name][0] = values
         places = self._state["node_position"][0]
         for pair in touching_pairs(self._soft, places, self._work, _GAP):
             own, other = (self._places[self._link_row(soft)] for soft in (pair.own, pair.other))
@@ -135,7 +143,28 @@ class SoftQueries:
                 rows.append(_row(sides, places[pair.node], pair.foot, pair.normal, pair.gap, force))
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
-    def _touches(self, soft: SoftRows) -> list[_Touch]:
+    def _pushes_on_nodes(self, time_step: float) -> np.ndarray:
+        """(n, 3) forces on nodes by their own touches [N]: without their shares of those on faces.
+
+        The shares stay where the workspace of the last substep is not there: in scenes of `Worlds`.
+        """
+        work = self._work
+        pushes = self._state["node_push"][0].copy()
+        behind_nodes = TOUCHES_PER_NODE * work["node_touches"].shape[1]
+        for soft in self._soft.bodies:
+            first = soft.first["face"]
+            counts = work["face_touches"][0, first : first + soft.count["face"]]
+            for face in np.flatnonzero(counts).tolist():
+                start = behind_nodes + TOUCHES_PER_FACE * (first + face)
+                corners = soft.spec.faces[face] + soft.first["node"]
+                for touch in range(start, start + int(counts[face])):
+                    force = work["touch_impulse"][0, touch] / time_step
+                    pushes[corners] -= work["touch_weights"][0, touch][:, None] * force
+        # What is left of a force that was all on faces is rounding.
+        pushes[np.abs(pushes).max(axis=1) < _ROUNDING] = 0.0
+        return pushes
+
+    def _touches(self, soft: SoftRows, pushes: np.ndarray) -> list[_Touch]:
         """Contacts of the nodes of a soft body with shapes."""
         work, found = self._work, []
         nodes = self._nodes(soft)
@@ -145,7 +174,7 @@ class SoftQueries:
             rows = slice(first, first + int(work["node_touches"][0, node]))
             gaps = work["touch_offset"][0, rows] - soft.spec.margin
             normals = work["touch_normal"][0, rows]
-            push = self._state["node_push"][0, node]
+            push = pushes[node]
             along = dots(normals, push)
             # If a node touches several shapes, the one whose normal is closest to the force gets all of it.
             strongest = int(along.argmax())

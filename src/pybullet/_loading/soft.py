@@ -77,7 +77,8 @@ def loadSoftBody(
         baseOrientation: Orientation of the mesh (x, y, z, w).
         scale: Factor on all lengths; 1 when not greater than 0.
         mass: Total mass [kg], distributed equally over the nodes; 1 when not greater than 0.
-        collisionMargin: Distance at which nodes and faces rest on other surfaces [m]; 0.02 when not greater than 0.
+        collisionMargin: Distance at which nodes and faces rest on other surfaces [m]; 0.02 when not greater
+            than 0.
         useMassSpring: 1 for springs along all edges.
         useBendingSprings: 1 for bending springs between nodes with a common neighbour as well.
         useNeoHookean: 1 for elastic tetrahedra (neo-Hookean material).

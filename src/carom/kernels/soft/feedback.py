@@ -86,13 +86,17 @@ def report_face_pushes(
     world: Int32,
     body: Int32,
 ):
-    """Report the pushes of a substep on a body's faces to links with force-torque sensors."""
+    """As `report_pushes`, those of a body's faces: each node has its share of the forces on its faces."""
     first = soft.soft[body].first_face
     rows = TOUCHES_PER_NODE * work.node_touches.shape[1]
     for face in range(first, first + soft.soft[body].face_count):
+        nodes = soft.face_nodes[face]
         start = rows + TOUCHES_PER_FACE * face
         for touch in range(start, start + work.face_touches[world, face]):
             force = work.touch_impulse[world, touch] / settings.time_step
+            weights = work.touch_weights[world, touch]
+            for i in range(3):
+                state.node_push[world, nodes[i]] += force * weights[i]
             shape = work.touch_shape[world, touch]
             report_push(
                 model, state, scratch, world, shapes.shape_tree[shape], shapes.shape_link[shape],
