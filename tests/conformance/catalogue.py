@@ -12,8 +12,9 @@ from .scenario import REGISTRY, Scenario
 
 def all_scenarios() -> dict[str, Scenario]:
     """Every scenario by name, in the order of modules and then of definition."""
-    for module in sorted(pkgutil.iter_modules(scenarios.__path__), key=lambda module: module.name):
-        importlib.import_module(f"{scenarios.__name__}.{module.name}")
+    within = f"{scenarios.__name__}."
+    for name in sorted(module.name for module in pkgutil.walk_packages(scenarios.__path__, within)):
+        importlib.import_module(name)
     return dict(REGISTRY)
 
 

@@ -7,9 +7,17 @@ from typing import Any
 
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
-from carom.layouts.contacts import LIST_FILTER, NO_LIST, ROW_ENTRY_VIEWS, ROWS_PER_PAIR, PairRows, Pairs
+from carom.layouts.contacts import (
+    LIST_FILTER,
+    MOST_CORNERS,
+    NO_LIST,
+    ROW_ENTRY_VIEWS,
+    ROWS_PER_PAIR,
+    PairRows,
+    Pairs,
+)
 from carom.layouts.model import ENTRY_VIEWS, Scratch
-from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_NODE, SoftWork
+from carom.layouts.soft import BUCKETS, FACES_PER_NODE, TOUCHES_PER_FACE, TOUCHES_PER_NODE, SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
@@ -70,17 +78,22 @@ class Workspace:
         )
         if contact_arrays.soft.bodies:
             nodes = arrays.state.capacity["node"]
+            faces = contact_arrays.soft.table.capacity["face"]
             self.soft_work.reserve(
                 {
                     "node": nodes,
-                    "touch": TOUCHES_PER_NODE * nodes,
+                    "face": faces,
                     "near": FACES_PER_NODE * nodes,
                     "bucket": BUCKETS,
+                    "polytope": 2 * MOST_CORNERS,
                     "anchor": contact_arrays.soft.table.capacity["anchor"],
                     "dof": arrays.state.capacity["dof"],
                     "tree": arrays.model.capacity["tree"],
                 }
             )
+            # The rows of faces begin behind those of all nodes that there is room for.
+            room = self.soft_work.capacity["node"]
+            self.soft_work.reserve({"touch": TOUCHES_PER_NODE * room + TOUCHES_PER_FACE * faces})
 
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:
         """Number of rows that collision detection needs, by axis of `Pairs`, except its axis `pair`."""

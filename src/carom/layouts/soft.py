@@ -9,6 +9,7 @@ rows of each soft body are contiguous, and all worlds share the topology.
 from carom.layouts.types import (
     Array,
     Index4,
+    Index4Rows,
     Int32,
     IntRows,
     Ints,
@@ -17,6 +18,7 @@ from carom.layouts.types import (
     Reals,
     Vector3,
     Vector3Rows,
+    Vector4Rows,
     Vectors3,
     real,
     struct,
@@ -26,6 +28,8 @@ from carom.layouts.types import (
 BODIES, ANCHORS = 0, 1
 # Maximum number of shapes in contact with one node: the nearest ones are kept.
 TOUCHES_PER_NODE = 3
+# The same for one face.
+TOUCHES_PER_FACE = 3
 # Rows over a tree of a touch or an anchor: an impulse along each world axis.
 PUSH_ROWS = 3
 # Maximum number of faces of soft bodies stored for one node: the nearest ones.
@@ -109,8 +113,9 @@ class SoftModel:
 class SoftWork:
     """Intermediate results of a step of soft bodies.
 
-    A *touch* is a node near a shape. During a substep the shape is approximated by a plane through a point
-    that moves with the link. Each node has `TOUCHES_PER_NODE` contiguous rows for touches.
+    A *touch* is a node or a point of a face near a shape. During a substep the shape is approximated by a
+    plane through a point that moves with the link. Each node has `TOUCHES_PER_NODE` contiguous rows for
+    touches; behind those of all nodes, each face has `TOUCHES_PER_FACE`.
     """
 
     node_start_position: Vector3Rows  # at the start of the step
@@ -118,6 +123,7 @@ class SoftWork:
     node_start_push: Vector3Rows
     node_before: Vector3Rows  # position at the start of the smaller time step
     node_touches: IntRows  # number of touches
+    face_touches: IntRows  # number of touches
     node_body: IntRows
     node_faces: IntRows  # number of faces near it
     node_next: IntRows  # next node in the same bucket
@@ -130,13 +136,19 @@ class SoftWork:
     touch_shape: IntRows
     touch_point: Vector3Rows
     touch_velocity: Vector3Rows  # of the point at the start of the substep
-    touch_normal: Vector3Rows  # towards the node
-    touch_offset: RealRows  # distance of a resting node from the plane [m]
+    touch_normal: Vector3Rows  # towards the node or face
+    touch_offset: RealRows  # distance of a resting node or face from the plane [m]
+    touch_weights: Vector3Rows  # of a face's corners: barycentric coordinates of its touching point
     touch_friction: RealRows
-    touch_impulse: Vector3Rows  # on the node, in this substep [N s]
+    touch_impulse: Vector3Rows  # on the node or face, in this substep [N s]
     anchor_row: IntRows  # likewise
     anchor_point: Vector3Rows
     anchor_velocity: Vector3Rows
     anchor_impulse: Vector3Rows
     dof_start: RealRows  # velocity at the start of the substep
     tree_ready: IntRows  # 1: its inverse mass matrix has been computed
+    polytope_point: Vector3Rows  # workspace of EPA, as in `Pairs`
+    polytope_point_a: Vector3Rows
+    polytope_plane: Vector4Rows
+    polytope_face: Index4Rows
+    polytope_edge: Index4Rows

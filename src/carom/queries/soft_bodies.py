@@ -1,15 +1,16 @@
-"""Collision queries of soft bodies: faces hit by rays, contacts of nodes, bounds."""
+"""Collision queries of soft bodies: faces hit by rays, contacts of nodes and faces, bounds."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from functools import cached_property
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.soft import TOUCHES_PER_NODE
+from carom.layouts.soft import TOUCHES_PER_FACE, TOUCHES_PER_NODE
 from carom.native.kernels import find_touches_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.products import dots, length
@@ -22,12 +23,19 @@ if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
     from carom.model.soft_arrays import SoftRows
 
+# Point of the soft body [m], shape, gap beyond the margin [m], unit normal towards the soft body, force on it
+# [N].
+_Touch = tuple[np.ndarray, int, float, np.ndarray, np.ndarray]
 _NOTHING: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _BASE = -1
 # The collision group of rays, for the masks of shapes.
 _RAY_GROUP = 1
 # A node counts as touching up to this gap beyond its margin [m].
 _GAP = 1.0e-4
+# What belongs to the impulses of the last substep on faces.
+_OF_LAST_SUBSTEP = ("face_touches", "touch_shape", "touch_weights")
+# Forces up to this are rounding errors [N].
+_ROUNDING = 1.0e-9
 # Number of ray-face pairs handled at a time, to save memory.
 _CHUNK = 1 << 20
 _TINY = 1.0e-300
@@ -101,24 +109,31 @@ class SoftQueries:
     def contacts(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float
     ) -> ContactColumns:
-        """The contacts of nodes with shapes or other soft bodies; for the arguments see `Queries.contacts`.
+        """The contacts of nodes and faces with shapes, and of nodes with other soft bodies.
 
-        Body a is the soft body that the node belongs to, unless the query names the other body as `body_a`.
-        The distance of a contact is the node's distance from the surface minus the margin, or minus the
-        thickness if the surface is that of a soft body. The forces are those of the last substep.
+        For the arguments see `Queries.contacts`. Body a is the soft body that the node or face belongs to,
+        unless the query names the other body as `body_a`. The distance of a contact is that from the surface
+        minus the margin, or minus the thickness if the surface is that of a soft body. The forces are those
+        of the last substep.
         """
+        pushes = self._pushes_on_nodes(time_step)
+        kept = {name: self._work[name][0].copy() for name in _OF_LAST_SUBSTEP}
         with self._present_poses():
             self._find_touches()
+        same_shape = kept["touch_shape"] == self._work["touch_shape"][0]
         rows: list[tuple[Any, ...]] = []
         for soft in self._soft.bodies:
             own = self._places[self._link_row(soft)][0]
-            for node, shape, distance, normal, force in self._touches(soft):
+            touches = chain(self._touches(soft, pushes), self._face_touches(soft, same_shape, time_step))
+            for place, shape, distance, normal, force in touches:
                 other, link = self._places[int(self._shapes["shape_link"][shape])]
-                place = self._state["node_position"][0, node]
                 on_b = place - (distance + soft.spec.margin) * normal
                 sides = _sides((own, _BASE), (other, link), body_a, link_a, body_b, link_b)
                 if sides is not None:
                     rows.append(_row(sides, place, on_b, normal, distance, force))
+        # The next query needs them as well, to make out whose the impulses are.
+        for name, values in kept.items():
+            self._work[name][0] = values
         places = self._state["node_position"][0]
         for pair in touching_pairs(self._soft, places, self._work, _GAP):
             own, other = (self._places[self._link_row(soft)] for soft in (pair.own, pair.other))
@@ -128,12 +143,29 @@ class SoftQueries:
                 rows.append(_row(sides, places[pair.node], pair.foot, pair.normal, pair.gap, force))
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
-    def _touches(self, soft: SoftRows) -> list[tuple[int, int, float, np.ndarray, np.ndarray]]:
-        """Contacts of the nodes of a soft body with shapes.
+    def _pushes_on_nodes(self, time_step: float) -> np.ndarray:
+        """(n, 3) forces on nodes by their own touches [N]: without their shares of those on faces.
 
-        Returns:
-            Node, shape, gap beyond the margin [m], unit normal towards the node, force on the node [N].
+        The shares stay where the workspace of the last substep is not there: in scenes of `Worlds`.
         """
+        work = self._work
+        pushes = self._state["node_push"][0].copy()
+        behind_nodes = TOUCHES_PER_NODE * work["node_touches"].shape[1]
+        for soft in self._soft.bodies:
+            first = soft.first["face"]
+            counts = work["face_touches"][0, first : first + soft.count["face"]]
+            for face in np.flatnonzero(counts).tolist():
+                start = behind_nodes + TOUCHES_PER_FACE * (first + face)
+                corners = soft.spec.faces[face] + soft.first["node"]
+                for touch in range(start, start + int(counts[face])):
+                    force = work["touch_impulse"][0, touch] / time_step
+                    pushes[corners] -= work["touch_weights"][0, touch][:, None] * force
+        # What is left of a force that was all on faces is rounding.
+        pushes[np.abs(pushes).max(axis=1) < _ROUNDING] = 0.0
+        return pushes
+
+    def _touches(self, soft: SoftRows, pushes: np.ndarray) -> list[_Touch]:
+        """Contacts of the nodes of a soft body with shapes."""
         work, found = self._work, []
         nodes = self._nodes(soft)
         touching = np.flatnonzero(work["node_touches"][0, nodes]) + nodes.start
@@ -142,7 +174,7 @@ class SoftQueries:
             rows = slice(first, first + int(work["node_touches"][0, node]))
             gaps = work["touch_offset"][0, rows] - soft.spec.margin
             normals = work["touch_normal"][0, rows]
-            push = self._state["node_push"][0, node]
+            push = pushes[node]
             along = dots(normals, push)
             # If a node touches several shapes, the one whose normal is closest to the force gets all of it.
             strongest = int(along.argmax())
@@ -150,7 +182,30 @@ class SoftQueries:
                 force = push if touch == strongest and along[strongest] > 0.0 else np.zeros(3)
                 if gap <= _GAP or force.any():
                     shape = int(work["touch_shape"][0, first + touch])
-                    found.append((node, shape, gap, normals[touch].copy(), force))
+                    place = self._state["node_position"][0, node]
+                    found.append((place, shape, gap, normals[touch].copy(), force))
+        return found
+
+    def _face_touches(self, soft: SoftRows, same_shape: np.ndarray, time_step: float) -> list[_Touch]:
+        """Contacts of the faces of a soft body with shapes.
+
+        `same_shape` tells of each touch whether it is with the same shape as in the last substep, whose
+        impulse is still there.
+        """
+        work, found = self._work, []
+        first = soft.first["face"]
+        counts = work["face_touches"][0, first : first + soft.count["face"]]
+        behind_nodes = TOUCHES_PER_NODE * work["node_touches"].shape[1]
+        for face in np.flatnonzero(counts).tolist():
+            start = behind_nodes + TOUCHES_PER_FACE * (first + face)
+            corners = self._state["node_position"][0, self._nodes(soft)][soft.spec.faces[face]]
+            for touch in range(start, start + int(counts[face])):
+                gap = float(work["touch_offset"][0, touch]) - soft.spec.margin
+                force = work["touch_impulse"][0, touch] * (same_shape[touch] / time_step)
+                if gap <= _GAP or force.any():
+                    place = (work["touch_weights"][0, touch][:, None] * corners).sum(axis=0)
+                    shape = int(work["touch_shape"][0, touch])
+                    found.append((place, shape, gap, work["touch_normal"][0, touch].copy(), force))
         return found
 
     # Bounds

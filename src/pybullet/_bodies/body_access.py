@@ -81,6 +81,7 @@ class BodyAccess:
 
     Attributes:
         body: The body itself.
+        acts_twice: External forces act twice on it, as in PyBullet, see `Client.maximal`.
         joints: Access to its joints, by index.
         groups: Access to groups of its joints, by the tuple of their indices.
         record: The body's record for the native library; None if Python handles all calls.
@@ -88,6 +89,7 @@ class BodyAccess:
 
     def __init__(self, client: Client, body: Body) -> None:
         self.body = body
+        self.acts_twice: bool = client.deformable and body.id in client.maximal
         self._client = client
         self._positions = client.world.position_memory
         self._velocities = client.world.velocity_memory
@@ -201,6 +203,8 @@ class BodyAccess:
         at = (self.body.first_link + 1 + link) * _SPATIAL.size
         fx, fy, fz, tx, ty, tz = _read_spatial(wrenches, at)
         (x, y, z), (rx, ry, rz) = force, torque
+        if self.acts_twice:
+            x, y, z, rx, ry, rz = 2.0 * x, 2.0 * y, 2.0 * z, 2.0 * rx, 2.0 * ry, 2.0 * rz
         _write_spatial(wrenches, at, fx + x, fy + y, fz + z, tx + rx, ty + ry, tz + rz)
 
 

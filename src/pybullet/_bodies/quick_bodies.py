@@ -71,9 +71,12 @@ class QuickBodies:
     __del__ = close
 
     def show(self, access: BodyAccess) -> None:
-        """Give the record of a body to the native library, unless the body is soft or its id too high."""
+        """Give the record of a body to the native library, unless Python handles it.
+
+        It does if the body is soft, if external forces act twice on it, and if its id is too high.
+        """
         body = access.body
-        if body.spec.soft is not None or body.id >= _MOST_ROOM:
+        if body.spec.soft is not None or access.acts_twice or body.id >= _MOST_ROOM:
             return
         state = body.world.arrays.state.struct()
         row = body.first_link

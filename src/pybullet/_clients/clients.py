@@ -43,7 +43,8 @@ class Client:
             added or removed, because that moves the rows of the state arrays.
         time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
-        maximal: Ids of the bodies for which the script asked for maximal coordinates.
+        maximal: Ids of the bodies for which the script asked for maximal coordinates; external forces act
+            twice on them in a deformable world.
         real_time: `useRealTimeSimulation` as the script set it.
         server: The server for other processes, if there is one.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all

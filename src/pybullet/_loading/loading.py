@@ -89,7 +89,8 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         **keywords: The parameters below, by name.
         basePosition: Position of the link frame of the base [m]; its centre of mass may be elsewhere.
         baseOrientation: Orientation of that frame (x, y, z, w).
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
+            deformable worlds it makes external forces act twice, as in PyBullet.
         useFixedBase: 1 to fix the base in the world.
         flags: `URDF_*`, added up.
         globalScaling: Factor on all lengths; 1 when not greater than 0.
@@ -119,7 +120,7 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
     client = client_of(options["physicsClientId"])
     if not name:
         fail("Empty filename, method expects 1, 4 or 8 arguments.")
-    warn_of_coordinates("loadURDF", maximal)
+    warn_of_coordinates("loadURDF", maximal, client)
 
     from carom.formats.search import path_of
     from carom.soft.from_urdf import urdf_body

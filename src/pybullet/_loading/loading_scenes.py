@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from carom.errors import CaromError
 from pybullet._calls.arguments import integer, moderate, real, text
 from pybullet._calls.builtin import exported
-from pybullet._calls.errors import fail, logger
+from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.origins import FileLoad
 from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
@@ -39,7 +39,8 @@ def loadSDF(
     Args:
         sdfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
+            deformable worlds it makes external forces act twice, as in PyBullet.
         globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet, it does not apply to
             radii of spheres and to joint limits.
         physicsClientId: The connection.
@@ -62,7 +63,7 @@ def loadSDF(
     if scaling > 0.0:
         moderate(scaling, _CANNOT_LOAD_SDF, "globalScaling")
     client = client_of(physicsClientId)
-    warn_of_coordinates("loadSDF", maximal)
+    warn_of_coordinates("loadSDF", maximal, client)
 
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.model.from_files import sdf_bodies
@@ -90,7 +91,8 @@ def loadMJCF(
         mjcfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
         flags: `URDF_*` and `MJCF_COLORS_FROM_FILE`, added up; -1 for none.
-        useMultiBody: Bodies always have reduced coordinates in Carom; 0 logs a warning.
+        useMultiBody: Bodies always have reduced coordinates in Carom; 0 logs a warning. In deformable worlds
+            it makes external forces act twice, as in PyBullet.
         physicsClientId: The connection.
 
     Returns:
@@ -109,8 +111,7 @@ def loadMJCF(
     bits = max(0, integer(flags, "flags"))
     client = client_of(physicsClientId)
     maximal = integer(useMultiBody, "useMultiBody") == 0
-    if maximal:
-        logger.warning("loadMJCF: useMultiBody=0 has no effect; bodies have reduced coordinates.")
+    warn_of_coordinates("loadMJCF", int(maximal), client, "useMultiBody=0")
 
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.model.from_files import mjcf_bodies

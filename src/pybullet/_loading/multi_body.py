@@ -146,7 +146,8 @@ def createMultiBody(
         linkParentIndices: Its parent: 0 for the base, k for the k-th link of the lists.
         linkJointTypes: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_SPHERICAL` or `JOINT_FIXED`.
         linkJointAxis: Axis of its joint, in the joint frame.
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
+            deformable worlds it makes external forces act twice, as in PyBullet.
         flags: `URDF_*` for self-collision, link order, inertia and sleeping, added up.
         batchPositions: Makes a body at each of these positions instead of `basePosition`.
         physicsClientId: The connection.
@@ -192,7 +193,7 @@ def createMultiBody(
         robot = Robot("", tuple(links), tuple(_joints(lists)))
     else:
         robot = _alone(client, *base)
-    warn_of_coordinates("createMultiBody", maximal)
+    warn_of_coordinates("createMultiBody", maximal, client)
     spec = _assembled(robot, max(bits, 0))
     poses = [Pose(place, pose.orientation) for place in batch or [pose.position]]
     ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED, maximal=maximal > 0)

@@ -17,12 +17,19 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-def warn_of_coordinates(function: str, use_maximal: int) -> None:
+def warn_of_coordinates(
+    function: str, use_maximal: int, client: Client, argument: str = "useMaximalCoordinates=1"
+) -> None:
     """Log a warning if a script asks for maximal coordinates, which Carom does not support."""
-    if use_maximal > 0:
+    if use_maximal > 0 and client.deformable:
         logger.warning(
-            "%s: useMaximalCoordinates=1 has no effect; bodies have reduced coordinates.", function
+            "%s: %s only makes external forces act twice, as in PyBullet's deformable world; bodies have "
+            "reduced coordinates.",
+            function,
+            argument,
         )
+    elif use_maximal > 0:
+        logger.warning("%s: %s has no effect; bodies have reduced coordinates.", function, argument)
 
 
 def add_bodies(

@@ -77,7 +77,8 @@ def loadSoftBody(
         baseOrientation: Orientation of the mesh (x, y, z, w).
         scale: Factor on all lengths; 1 when not greater than 0.
         mass: Total mass [kg], distributed equally over the nodes; 1 when not greater than 0.
-        collisionMargin: Distance at which nodes rest on other surfaces [m]; 0.02 when not greater than 0.
+        collisionMargin: Distance at which nodes and faces rest on other surfaces [m]; 0.02 when not greater
+            than 0.
         useMassSpring: 1 for springs along all edges.
         useBendingSprings: 1 for bending springs between nodes with a common neighbour as well.
         useNeoHookean: 1 for elastic tetrahedra (neo-Hookean material).
@@ -89,7 +90,7 @@ def loadSoftBody(
         NeoHookeanLambda: [Pa]; for small strains Lamé's first parameter is this minus 5/8 of `NeoHookeanMu`.
         NeoHookeanDamping: Viscosity divided by these moduli [s].
         frictionCoeff: Coulomb coefficient, multiplied by that of the other body.
-        useFaceContact: No effect, as in PyBullet: only nodes collide, not faces.
+        useFaceContact: No effect, as in PyBullet: faces collide with rigid bodies, as nodes do, in any case.
         useSelfCollision: 1: its nodes collide with its own faces.
         repulsionStiffness: No effect: the force that keeps nodes off faces has no limit.
         simFileName: A separate mesh for the simulation; the mesh of `fileName` is then only drawn.

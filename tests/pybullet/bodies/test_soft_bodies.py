@@ -275,3 +275,29 @@ def test_what_bullets_examples_load() -> None:
         places = nodes(body)
         assert -2.0 <= places[:, 2].min() < -1.97
         assert np.ptp(places, axis=0).max() < 2.2
+
+
+def test_balls_pressed_on_a_face_from_both_sides_are_kept_apart_and_hold_it(tmp_path: Path) -> None:
+    """Two balls between the nodes of coarse cloth, each pressed by 3 N, bear it against its weight."""
+    p.setGravity(0, -5, 0)
+    sheet = p.loadSoftBody(
+        str(write_grid(tmp_path / "sheet.obj", 3, 0.4)),
+        mass=0.05,
+        frictionCoeff=2.0,
+        collisionMargin=0.01,
+        **SPRINGS,
+    )
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.02)
+    balls = [p.createMultiBody(0.1, shape, basePosition=[0.1, 0.05, z]) for z in (-0.031, 0.031)]
+    for ball in balls:
+        p.changeDynamics(ball, -1, lateralFriction=1.0, linearDamping=0.0)
+    for _ in range(60):
+        for ball, side in zip(balls, (1, -1), strict=True):
+            place = p.getBasePositionAndOrientation(ball)[0]
+            # 0.5 N along y bear the ball.
+            p.applyExternalForce(ball, -1, [0, 0.5, 3.0 * side], place, p.WORLD_FRAME)
+        p.stepSimulation()
+    below, above = (p.getBasePositionAndOrientation(ball)[0][2] for ball in balls)
+    assert above - below > 0.04
+    for ball in balls:
+        assert sum(contact[9] for contact in p.getContactPoints(ball, sheet)) == pytest.approx(3.0, rel=0.1)

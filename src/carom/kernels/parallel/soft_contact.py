@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.parallel.trees import note_first_fault
 from carom.kernels.parallel.workspace import is_called_off
+from carom.kernels.soft.face_touches import find_face_touches
 from carom.kernels.soft.neighbours import find_neighbours
 from carom.kernels.soft.stages import have_neighbours, start_soft_motion, write_rows
 from carom.kernels.soft.touches import find_touches
@@ -20,6 +21,7 @@ from carom.kernels.structs import (
     State,
 )
 from carom.kernels.types import kernel
+from carom.layouts.soft import BODIES
 
 
 @kernel
@@ -63,16 +65,20 @@ def soft_rows_kernel(
     state: State,
     scratch: Scratch,
     shapes: Shapes,
+    pairs: Pairs,
     pair_rows: PairRows,
     soft: SoftModel,
     soft_work: SoftWork,
 ):
-    """Write the rows of touches and anchors of each world, one after the other, from the start of the arrays.
+    """Find the shapes near the faces of each world, and write the rows of all touches and anchors.
 
-    The solver has not written its own yet.
+    They are written from the start of the arrays: the solver has not written its own yet. One thread handles
+    all bodies of a world, because they share the workspace for overlaps of faces.
     """
     world = wp.tid()
     if not is_called_off(state, world):
+        for body in range(soft.count_soft[BODIES]):
+            find_face_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
         write_rows(settings, model, state, scratch, shapes, pair_rows, soft, soft_work, world)
 
 

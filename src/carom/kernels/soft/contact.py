@@ -12,16 +12,16 @@ from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
 # Rate at which a position error from before the small step is removed [1/s]: as with an error reduction of
 # 0.2 in each of 240 steps per second.
-_RECOVERY = real(48.0)
+RECOVERY = real(48.0)
 # The same for a node between two shapes. The motors and contacts that press the shapes together react to
 # pushes only after the substep of the soft bodies. So the share of the error that is removed within a
 # substep determines how hard the shapes can press without meeting.
-_PINCHED_RECOVERY = real(200.0)
+PINCHED_RECOVERY = real(200.0)
 # Two touches face each other if the dot product of their normals is less than this.
 _FACING = real(-0.5)
 # Determinant of the inverse masses of two touches, relative to the product of the diagonal, up to which the
 # matrix counts as singular.
-_SINGULAR = real(1.0e-9)
+SINGULAR = real(1.0e-9)
 
 
 @func
@@ -89,7 +89,7 @@ def relax_touch(
     """Keep a node outside of a shape by the impulse that makes `lacking` zero."""
     mass = soft.node_inverse_mass[node]
     weight = mass + row_mass(pair_rows, world, work.touch_row[world, touch])
-    lack = lacking(scratch, pair_rows, state, work, world, node, touch, _RECOVERY, h)
+    lack = lacking(scratch, pair_rows, state, work, world, node, touch, RECOVERY, h)
     push_touch(scratch, pair_rows, state, work, world, node, touch, mass, lack / (h * weight), h)
 
 
@@ -116,13 +116,13 @@ def relax_pinched(
     weight_b = mass + row_mass(pair_rows, world, work.touch_row[world, b])
     cross = mass * wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
     determinant = weight_a * weight_b - cross * cross
-    if determinant <= _SINGULAR * weight_a * weight_b:
+    if determinant <= SINGULAR * weight_a * weight_b:
         # Neither shape can be moved.
         relax_touch(scratch, pair_rows, soft, state, work, world, node, a, h)
         relax_touch(scratch, pair_rows, soft, state, work, world, node, b, h)
     else:
-        lack_a = lacking(scratch, pair_rows, state, work, world, node, a, _PINCHED_RECOVERY, h)
-        lack_b = lacking(scratch, pair_rows, state, work, world, node, b, _PINCHED_RECOVERY, h)
+        lack_a = lacking(scratch, pair_rows, state, work, world, node, a, PINCHED_RECOVERY, h)
+        lack_b = lacking(scratch, pair_rows, state, work, world, node, b, PINCHED_RECOVERY, h)
         push_a = (lack_a * weight_b - lack_b * cross) / (h * determinant)
         push_b = (lack_b * weight_a - lack_a * cross) / (h * determinant)
         if push_a < 0.0:
@@ -243,7 +243,7 @@ def relax_anchors(
             gap = (
                 state.node_position[world, node][axis] - work.anchor_point[world, anchor][axis] - h * velocity
             )
-            wanted = before[axis] * (1.0 - minimum(_RECOVERY * h, 1.0))
+            wanted = before[axis] * (1.0 - minimum(RECOVERY * h, 1.0))
             weight = mass + row_mass(pair_rows, world, line)
             if weight > 0.0:
                 push = (wanted - gap) / (h * weight)

@@ -6,7 +6,7 @@ from carom.kernels.dynamics.feedback import add_link_force
 from carom.kernels.solver.activity import is_asleep
 from carom.kernels.structs import Model, Scratch, Settings, Shapes, SoftModel, SoftWork, State
 from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.soft import ANCHORS, BODIES, TOUCHES_PER_NODE
+from carom.layouts.soft import ANCHORS, BODIES, TOUCHES_PER_FACE, TOUCHES_PER_NODE
 
 
 @func
@@ -75,6 +75,36 @@ def report_push(
 
 
 @func
+def report_face_pushes(
+    settings: Settings,
+    shapes: Shapes,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    soft: SoftModel,
+    work: SoftWork,
+    world: Int32,
+    body: Int32,
+):
+    """As `report_pushes`, those of a body's faces: each node has its share of the forces on its faces."""
+    first = soft.soft[body].first_face
+    rows = TOUCHES_PER_NODE * work.node_touches.shape[1]
+    for face in range(first, first + soft.soft[body].face_count):
+        nodes = soft.face_nodes[face]
+        start = rows + TOUCHES_PER_FACE * face
+        for touch in range(start, start + work.face_touches[world, face]):
+            force = work.touch_impulse[world, touch] / settings.time_step
+            weights = work.touch_weights[world, touch]
+            for i in range(3):
+                state.node_push[world, nodes[i]] += force * weights[i]
+            shape = work.touch_shape[world, touch]
+            report_push(
+                model, state, scratch, world, shapes.shape_tree[shape], shapes.shape_link[shape],
+                work.touch_point[world, touch], -force,
+            )  # fmt: skip
+
+
+@func
 def report_pushes(
     settings: Settings,
     shapes: Shapes,
@@ -100,6 +130,7 @@ def report_pushes(
                     work.touch_point[world, touch], -force,
                 )  # fmt: skip
             state.node_push[world, node] = total
+        report_face_pushes(settings, shapes, model, state, scratch, soft, work, world, body)
     for anchor in range(soft.count_soft[ANCHORS]):
         report_push(
             model, state, scratch, world, soft.anchor[anchor].tree, soft.anchor[anchor].link,

@@ -7,6 +7,8 @@ from carom.kernels.maths.min_max import maximum
 from carom.kernels.soft.contact import move_anchors, move_touches, relax_anchors, relax_touches
 from carom.kernels.soft.damping import damp_springs, damp_tetras
 from carom.kernels.soft.elasticity import relax_springs, relax_tetras
+from carom.kernels.soft.face_contact import move_face_touches, relax_face_touches
+from carom.kernels.soft.face_touches import find_face_touches, write_face_touches
 from carom.kernels.soft.feedback import report_pushes, wake_held
 from carom.kernels.soft.frames import follow_nodes, report_nodes
 from carom.kernels.soft.neighbours import find_neighbours, relax_neighbours
@@ -110,9 +112,11 @@ def take_small_steps(
             if neighbours:
                 relax_neighbours(shapes, model, soft, state, soft_work, world, body, h)
             relax_touches(scratch, pair_rows, soft, state, soft_work, world, body, h)
+            relax_face_touches(scratch, pair_rows, soft, state, soft_work, world, body, h)
         move_anchors(scratch, pair_rows, soft, soft_work, world, h)
         for body in range(soft.count_soft[BODIES]):
             move_touches(scratch, pair_rows, soft, soft_work, world, body, h)
+            move_face_touches(scratch, pair_rows, soft, soft_work, world, body, h)
             take_velocities(soft, state, soft_work, world, body, h)
             damp_springs(soft, state, world, body, h)
             damp_tetras(soft, state, world, body, h)
@@ -183,6 +187,9 @@ def write_rows(
         row, block = write_touches(
             settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, row, block
         )
+        row, block = write_face_touches(
+            settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, row, block
+        )
     write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, row, block)
     wake_held(model, state, soft, world)
 
@@ -241,6 +248,7 @@ def soft_motion_kernel(
     start_soft_motion(settings, model, state, shapes, pairs, soft_work, world)
     for body in range(soft.count_soft[BODIES]):
         find_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
+        find_face_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
     write_rows(settings, model, state, scratch, shapes, pair_rows, soft, soft_work, world)
     if state.status_entry[world, STATUS] == WELL:
         neighbours = have_neighbours(soft)
@@ -265,10 +273,11 @@ def find_touches_kernel(
     soft_work: SoftWork,
     world: Int32,
 ):
-    """Find the nodes near each shape at their current positions; for queries between steps."""
+    """Find the nodes and faces near each shape at their current positions; for queries between steps."""
     place_shapes(shapes, state, settings, pairs, world)
     for body in range(soft.count_soft[BODIES]):
         find_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
+        find_face_touches(settings, shapes, model, state, scratch, pairs, soft, soft_work, world, body)
 
 
 @kernel

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import local_extents
 from carom.kernels.contact.filters import links_may_collide
-from carom.kernels.dynamics.kinematics import base_omega, base_velocity
+from carom.kernels.dynamics.kinematics import base_omega, base_velocity, three_numbers
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.min_max import lower_corner, upper_corner
 from carom.kernels.soft.feedback import wake_touched
@@ -26,7 +26,7 @@ from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 
 # Distance beyond the margin at which nodes of any speed have touches, as a share of the margin.
-_AHEAD = real(1.0)
+AHEAD = real(1.0)
 
 
 @func
@@ -45,6 +45,30 @@ def point_velocity(
         velocity += (scratch.dof[world, dof].linear + turn) * state.dof_velocity[world, dof]
         dof = model.dof[dof].parent
     return velocity
+
+
+@func
+def held_velocity(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    work: SoftWork,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+) -> Vector3:
+    """Velocity of a point of a link that can be pushed and to which a node is anchored [m/s].
+
+    No motor holds a single body, so it is assumed to move on under the forces on it. Links of other trees are
+    assumed to keep their velocity, as if touched.
+    """
+    if is_single_body(model, tree):
+        first = model.tree[tree].first_velocity
+        arm = point - wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+        omega = three_numbers(work.dof_start, world, first)
+        return three_numbers(work.dof_start, world, first + 3) + wp.cross(omega, arm)
+    return point_velocity(model, state, scratch, world, tree, link, point)
 
 
 @func
@@ -100,9 +124,7 @@ def find_node_touches(
     for node in range(first, first + soft.soft[body].node_count):
         if soft.node_inverse_mass[node] > 0.0 and soft.node_anchored[node] == 0:
             point = state.node_position[world, node]
-            max_distance = (
-                margin * (1.0 + _AHEAD) + closing + wp.length(state.node_velocity[world, node]) * dt
-            )
+            max_distance = margin * (1.0 + AHEAD) + closing + wp.length(state.node_velocity[world, node]) * dt
             lower = pairs.shape_lower[world, shape]
             upper = pairs.shape_upper[world, shape]
             near = Int32(1)
@@ -170,7 +192,7 @@ def find_touches(
     for shape in range(settings.shape_count):
         tree = shapes.shape_tree[shape]
         closing = shape_speed(shapes, model, state, scratch, world, tree, shape) * dt
-        max_distance = margin * (1.0 + _AHEAD) + closing
+        max_distance = margin * (1.0 + AHEAD) + closing
         near = Int32(1)
         for axis in range(3):
             if (
@@ -253,7 +275,7 @@ def write_anchors(
         work.anchor_row[world, anchor] = Int32(-1)
         if can_be_pushed(model, state, world, tree, link):
             make_ready(model, state, scratch, pair_rows, work, world, tree)
-            velocity = point_velocity(model, state, scratch, world, tree, link, point)
+            velocity = held_velocity(model, state, scratch, work, world, tree, link, point)
             work.anchor_velocity[world, anchor] = velocity
             work.anchor_row[world, anchor] = row
             row, block = add_push_rows(

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..scenario import ASSETS, Kind, scenario
-from ..soft_meshes import cuboid_text, mesh_file, square_text
+from ...scenario import ASSETS, Kind, scenario
+from ...soft_meshes import cuboid_text, mesh_file, square_text
 
 _GRAVITY = 10.0
 _CORNERS, _SIDE = (0, 8), 9
