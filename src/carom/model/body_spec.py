@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import field
 from pathlib import Path
+from struct import pack, unpack
 from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
@@ -17,6 +18,8 @@ from carom.model.soft_spec import SoftSpec
 from carom.record import record
 
 BASE = -1
+# Bullet's default [1/s], a float32 in its source.
+DEFAULT_LINK_DAMPING = unpack("f", pack("f", 0.04))[0]
 DEFAULT_CONTACT = ContactParameters()
 
 
@@ -107,6 +110,8 @@ class BodySpec(Reusable):
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
         soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
+        link_damping: Share of the velocity of the body's links that air takes away [1/s].
+        is_held: Motors hold all joints until they are commanded, as in PyBullet.
     """
 
     name: str
@@ -117,6 +122,8 @@ class BodySpec(Reusable):
     source: Path | None = None
     user_data: dict[str, str] = field(default_factory=dict)
     soft: SoftSpec | None = None
+    link_damping: float = DEFAULT_LINK_DAMPING
+    is_held: bool = True
 
     def link(self, index: int) -> LinkSpec:
         """A link by its index; -1 is the base."""

@@ -12,7 +12,15 @@ from carom.model.body_spec import BodySpec
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
+    from carom.formats.kinds import FileKind
     from carom.formats.search import AssetSearch
+    from carom.scene.joint_coupling import JointCoupling
+    from carom.world.robot_files import Choices
+    from carom.world.scene import Scene
+    from carom.world.world import World
+
+_ORIGIN = (0.0, 0.0, 0.0)
+_NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class BodyAdding(ABC):
@@ -28,6 +36,10 @@ class BodyAdding(ABC):
     ) -> list[Body]:
         """Add bodies at rest, all or none."""
 
+    @abstractmethod
+    def _as_world(self) -> World:
+        """This world."""
+
 
 class DescriptionLoading(BodyAdding):
     """Loading of robot files into a world; file readers are imported when needed."""
@@ -41,8 +53,18 @@ class DescriptionLoading(BodyAdding):
         fixed_base: bool = False,
         scale: float = 1.0,
         flags: int = 0,
+        as_pybullet: bool = False,
+        strict: bool = False,
+        package_paths: Sequence[str | Path] = (),
+        missing_meshes: str = "error",
+        default_mass: float | None = None,
     ) -> Body:
-        """Add the robot that a URDF file describes.
+        """Add the robot that a URDF file describes, as its author meant it.
+
+        So inertia is that of the file, links without `<inertial>` have no mass, joints have the damping and
+        the friction that it states and follow those that they `<mimic>`; no motor holds a joint, and no air
+        damps the body. A base without mass is fixed in the world if all links that are fixed to it are
+        without mass as well.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -51,21 +73,39 @@ class DescriptionLoading(BodyAdding):
             fixed_base: Fix the base in the world.
             scale: Factor on all lengths.
             flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
+            as_pybullet: Read it as PyBullet does: inertia from collision shapes, 1 kg for links without
+                `<inertial>`, motors that hold all joints, damping of 0.04 1/s. The next four arguments then
+                have no effect.
+            strict: Raise an error if something in the file would not be simulated.
+            package_paths: Directories of ROS packages, or that contain them, for `package://` and `model://`;
+                without them the directories above the file are searched.
+            missing_meshes: `"warn"` leaves out shapes whose mesh is missing or cannot be read; `"error"`
+                raises an error.
+            default_mass: Mass of links without `<inertial>` [kg], with as many kg m² about each axis.
 
         Raises:
-            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+            carom.errors.DescriptionError: The file cannot be used, or a joint moves only links without mass,
+                or it is strict and something is left out; the world is as before.
+            ValueError: An argument is out of range.
         """
-        from carom.soft.from_urdf import urdf_body
+        if as_pybullet:
+            from carom.soft.from_urdf import urdf_body
 
-        spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
-        return self._add(spec, position, orientation)
+            spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
+            return self._add(spec, position, orientation)
+        from carom.formats.kinds import FileKind
+        from carom.world.robot_files import Choices
 
-    def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
+        choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
+        return self._load_file(Path(path), position, orientation, choices, FileKind.URDF)[0]
+
+    def load_sdf(self, path: str | Path, *, scale: float = 1.0, strict: bool = False) -> list[Body]:
         """Add the models that an SDF file describes, at their poses in the file.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
             scale: Factor on lengths.
+            strict: Raise an error if something in the file would not be simulated.
 
         Returns:
             Their bodies, in the order of the file.
@@ -73,16 +113,19 @@ class DescriptionLoading(BodyAdding):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.model.from_files import sdf_bodies
+        from carom.formats.kinds import FileKind
+        from carom.world.robot_files import Choices
 
-        return self.load_all(sdf_bodies(Path(path), _search(), scale=scale))
+        choices = Choices(scale=scale, strict=strict)
+        return self._load_file(Path(path), _ORIGIN, _NO_TURN, choices, FileKind.SDF).bodies
 
-    def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
+    def load_mjcf(self, path: str | Path, *, flags: int = 0, strict: bool = False) -> list[Body]:
         """Add the bodies that an MJCF file describes, at their poses in the file.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
             flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
+            strict: Raise an error if something in the file would not be simulated.
 
         Returns:
             The bodies, in the order of the file.
@@ -90,9 +133,36 @@ class DescriptionLoading(BodyAdding):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.model.from_files import mjcf_bodies
+        from carom.formats.kinds import FileKind
+        from carom.world.robot_files import Choices
 
-        return self.load_all(mjcf_bodies(Path(path), _search(), flags=flags))
+        choices = Choices(flags=flags, strict=strict)
+        return self._load_file(Path(path), _ORIGIN, _NO_TURN, choices, FileKind.MJCF).bodies
+
+    def _load_file(
+        self,
+        path: Path,
+        position: Sequence[float],
+        orientation: Sequence[float],
+        choices: Choices,
+        kind: FileKind | None = None,
+    ) -> Scene:
+        """Add everything that a robot file describes; see `World.load`."""
+        from carom.checks import vector
+        from carom.world.robot_files import couple, placed, read_robot_file, report
+        from carom.world.scene import Scene
+
+        place = vector(position, 3, "position").tolist()
+        turn = vector(orientation, 4, "orientation").tolist()
+        source = read_robot_file(path, choices, kind)
+        report(source, strict=choices.strict)
+        couplings: list[JointCoupling] = []
+
+        def also(bodies: list[Body]) -> None:
+            couplings.extend(couple(bodies, source.path))
+
+        bodies = self.load_all(placed(source.bodies, place, turn), also)
+        return Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
 
     def load_all(
         self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None

@@ -95,7 +95,7 @@ def read_contact(context: MjcfContext, element: Element, defaults: Attributes) -
     As in PyBullet, lateral friction is that of the geom itself, but rolling and spinning friction are those
     of its defaults.
     """
-    attributes = {**defaults, **element.attributes}
+    attributes = layered(defaults, element.attributes)
     own = context.singles(element, "friction", attributes.get("friction", ""))
     inherited = context.singles(element, "friction", defaults.get("friction", ""))
     text = attributes.get("condim", _CONTACT_DIMENSIONS)
