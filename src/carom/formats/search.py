@@ -78,7 +78,7 @@ class AssetSearch:
         return None
 
     def find_in(self, directory: str, name: str, source: Path) -> Path | None:
-        """The file of a name in a directory that a robot file states, with or without its folders, or None."""
+        """The file of a name in a directory that a robot file states, with or without folders, or None."""
         name = _without_scheme(name)
         for path in (name, os.path.basename(name)):
             if found := self.find_referenced(os.path.join(directory, path), source):

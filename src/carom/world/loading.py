@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
@@ -43,6 +43,89 @@ class BodyAdding(ABC):
 
 class DescriptionLoading(BodyAdding):
     """Loading of robot files into a world; file readers are imported when needed."""
+
+    @overload
+    def load(
+        self, what: BodySpec, position: Sequence[float] = ..., orientation: Sequence[float] = ...
+    ) -> Body: ...
+    @overload
+    def load(
+        self,
+        what: str | Path,
+        position: Sequence[float] = ...,
+        orientation: Sequence[float] = ...,
+        *,
+        fixed_base: bool = ...,
+        scale: float = ...,
+        flags: int = ...,
+        strict: bool = ...,
+        package_paths: Sequence[str | Path] = ...,
+        missing_meshes: str = ...,
+        default_mass: float | None = ...,
+    ) -> Scene: ...
+    def load(
+        self,
+        what: BodySpec | str | Path,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+        *,
+        fixed_base: bool = False,
+        scale: float = 1.0,
+        flags: int = 0,
+        strict: bool = False,
+        package_paths: Sequence[str | Path] = (),
+        missing_meshes: str = "error",
+        default_mass: float | None = None,
+    ) -> Body | Scene:
+        """Add what a file describes: a robot or a scene (URDF, SDF, MJCF), or a world saved by `save`.
+
+        The format is found by the content of the file. A warning says how much of it is not simulated, and
+        `print(scene.ignored)` lists that. See `load_urdf` for how URDF files are read.
+
+        A world without bodies becomes a copy of a saved world, parameters and time included, and continues
+        exactly as that one did. In any other world, the saved bodies and their constraints are added to those
+        already there, with the poses they had.
+
+        Args:
+            what: Path of the file; or the specification of a body, which is added at rest.
+            position: Where the frame of the file, or the base's link frame, is in the world [m].
+            orientation: Its orientation, quaternion (x, y, z, w).
+            fixed_base: Fix the base of a URDF file in the world.
+            scale: Factor on all lengths of a URDF or SDF file.
+            flags: Loading flags of a URDF or MJCF file, see `carom.layouts.flags.LoadFlags`.
+            strict: Raise an error if something in the file would not be simulated.
+            package_paths: Directories of ROS packages, or that contain them; see `load_urdf`.
+            missing_meshes: `"warn"` leaves out shapes of URDF files whose mesh is missing or cannot be read;
+                `"error"` raises an error.
+            default_mass: Mass of links of URDF files without `<inertial>` [kg].
+
+        Returns:
+            The bodies of the file and everything else in it by name; of a specification the body's handle. A
+            body gets the number of the body that was removed last, if any.
+
+        Raises:
+            carom.errors.DescriptionError: The file, or that of a mesh, cannot be used; the world is as
+                before.
+            ValueError: An argument is out of range, or not for this format.
+        """
+        if isinstance(what, BodySpec):
+            return self._add(what, position, orientation)
+        from carom.formats.kinds import is_robot_file
+        from carom.world.robot_files import Choices
+
+        path = Path(what)
+        if is_robot_file(path):
+            choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
+            return self._load_file(path, position, orientation, choices)
+        from carom.formats.reading.ignored import IgnoredList
+        from carom.scene.joint_coupling import couplings_of
+        from carom.world.file_parts import PARTS
+        from carom.world.scene import Scene
+        from carom.world_files.world_file import load_world
+
+        world = self._as_world()
+        bodies = load_world(world, path, PARTS)
+        return Scene(world, path, "saved world", bodies, IgnoredList(), couplings_of(world, bodies))
 
     def load_urdf(
         self,

@@ -29,6 +29,7 @@ from carom.formats.mjcf.frames import read_pose
 from carom.formats.mjcf.geom import read_contact, read_geom
 from carom.formats.mjcf.joint import FREE, joint_position, read_joint
 from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS
 from carom.formats.xml_element import Element

@@ -28,6 +28,7 @@ from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.context import MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
+from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
 from carom.formats.xml_element import Element

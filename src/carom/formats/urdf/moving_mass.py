@@ -34,8 +34,8 @@ def refuse_motion_without_mass(context: FileContext, links: Sequence[Link], join
         raise context.error(
             list(context.root.all("joint"))[number],
             f"it moves only links without mass ({names}{more}), so nothing determines its acceleration; give "
-            "one of them an <inertial>, make the joint fixed, or load the file with default_mass, the mass in "
-            "kg of links that state none",
+            "one of them an <inertial>, make the joint fixed, or load the file with default_mass, the mass "
+            "in kg of links that state none",
         )
 
 
