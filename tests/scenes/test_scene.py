@@ -102,12 +102,12 @@ def test_what_is_ignored_has_file_line_consequence_and_reason(write):
             "robot/colour",
         }
         transmission = found["robot/transmission"]
-        assert (transmission.file, transmission.line, transmission.count) == (path, 15, 2)
+        assert (transmission.file, transmission.line, transmission.count) == (path, 14, 2)
         assert "no element of URDF that Carom knows" in found["robot/colour"].reason
         assert not found["joint/calibration"].matters
         lines = str(scene.ignored).splitlines()
         assert lines[0].split() == ["element", "attributes", "count", "where", "consequence", "reason"]
-        assert any("file.txt:15" in line and " 2 " in line for line in lines)
+        assert any("file.txt:14" in line and " 2 " in line for line in lines)
 
 
 def test_one_warning_counts_what_is_ignored(write, caplog):
@@ -123,7 +123,7 @@ def test_strict_refuses_what_would_be_ignored(write):
         with pytest.raises(DescriptionError, match="robot/transmission"):
             world.load(write(URDF), strict=True)
         assert not world.bodies
-        plain = URDF.replace("<safety_controller k_velocity=\"1\"/>", "").replace('<colour rgb="0"/>', "")
+        plain = URDF.replace('<safety_controller k_velocity="1"/>', "").replace('<colour rgb="0"/>', "")
         plain = plain.replace('<transmission name="a"/>', "").replace('<transmission name="b"/>', "")
         assert world.load(write(plain), strict=True)
 
@@ -139,7 +139,9 @@ def test_attributes_of_mjcf_are_followed_to_their_defaults(write):
 
 
 def test_elements_of_included_files_are_reported_there(write):
-    part = write('<mujoco><worldbody><body name="b"><geom size="1" priority="3"/></body></worldbody></mujoco>')
+    part = write(
+        '<mujoco><worldbody><body name="b"><geom size="1" priority="3"/></body></worldbody></mujoco>'
+    )
     with World() as world:
         scene = world.load(write('<mujoco><include file="file.txt"/></mujoco>', "main.xml"))
         assert [(one.element, one.attributes, one.file) for one in scene.ignored] == [

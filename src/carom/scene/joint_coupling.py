@@ -90,7 +90,7 @@ class JointCoupling:
         if not self.enabled:
             return 0.0
         impulse = world.user_constraints.impulses(self._tie, world.arrays.state)[0]
-        return float(impulse) / (world.parameters.time_step / world.parameters.substeps)
+        return float(impulse) / (world.parameters.time_step / max(1, world.parameters.substeps))
 
 
 def couplings_of(world: World, bodies: Sequence[Body]) -> list[JointCoupling]:

@@ -119,7 +119,8 @@ class ModelReader:
         first_joint: Pose | None = None
         content = _Content()
         for child, within in _without_frames(context, element, inner):
-            attributes_of = class_defaults(context, child, within.child_class)
+            has_defaults = child.tag in ("joint", "geom")
+            attributes_of = class_defaults(context, child, within.child_class) if has_defaults else {}
             if child.tag == "joint":
                 attributes_of = limits_left_out(context, child, within.child_class, attributes_of)
             attributes = layered(attributes_of, child.attributes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom.formats.mjcf.context import MjcfContext
-from carom.formats.reading.cursor import layered
+from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
@@ -44,7 +44,10 @@ def class_defaults(context: MjcfContext, element: Element, child_class: str | No
             raise context.error(element, problem)
         context.warn(element, f"{problem}; the main one is used")
         name = MAIN
-    return context.classes.get(name, {}).get(element.tag, {})
+    defaults = context.classes.get(name, {}).get(element.tag, {})
+    if isinstance(defaults, Recorded):
+        defaults.note_use()
+    return defaults
 
 
 def limits_left_out(

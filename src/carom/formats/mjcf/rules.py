@@ -75,7 +75,7 @@ MJCF_RULES: Rules = Rules(
         Rule("default/camera", "none: cameras are missing", _YET),
         Rule("default/tendon", "none: tendons are missing", _YET),
         Rule("default/equality", "none: equalities are missing", _YET),
-        Rule("default/*", "none: what it is for is missing, or there is none", _YET),
+        Rule("default/*", "none: no element that is read has these defaults", _YET),
         Rule("default@class", "none: no element uses it", "it is not needed"),
     ),
 )

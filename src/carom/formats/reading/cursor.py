@@ -22,14 +22,23 @@ class Recorded(dict[str, str]):
     Attributes:
         taken: Names that were looked up.
         origins: Where values came from that `layered` brought together, by name.
+        is_used: Whether an element has them as its defaults, see `note_use`.
     """
 
-    __slots__ = ("origins", "taken")
+    __slots__ = ("is_used", "layers", "origins", "taken")
 
     def __init__(self, values: Mapping[str, str]) -> None:
         super().__init__(values)
         self.taken: set[str] = set()
         self.origins: dict[str, Recorded] = {}
+        self.layers: tuple[Recorded, ...] = ()
+        self.is_used = False
+
+    def note_use(self) -> None:
+        """Note that an element has them as its defaults, also if it looks none of them up."""
+        self.is_used = True
+        for layer in self.layers:
+            layer.note_use()
 
     def take(self, name: str) -> None:
         """Note that a value was used, here and where it came from."""
@@ -60,9 +69,9 @@ def layered(lower: Mapping[str, str], upper: Mapping[str, str]) -> dict[str, str
     if not isinstance(lower, Recorded) and not isinstance(upper, Recorded):
         return {**lower, **upper}
     result = Recorded({**lower, **upper})
-    for source in (lower, upper):
-        if isinstance(source, Recorded):
-            result.origins.update(dict.fromkeys(source.keys(), source))
+    result.layers = tuple(source for source in (lower, upper) if isinstance(source, Recorded))
+    for source in result.layers:
+        result.origins.update(dict.fromkeys(source.keys(), source))
     return result
 
 
@@ -168,7 +177,8 @@ class Cursor:
 
 
 def _was_taken(element: TracedElement) -> bool:
-    if element.is_taken or (isinstance(element.attributes, Recorded) and element.attributes.taken):
+    attributes = element.attributes
+    if element.is_taken or (isinstance(attributes, Recorded) and (attributes.taken or attributes.is_used)):
         return True
     return any(isinstance(child, TracedElement) and _was_taken(child) for child in element.children)
 
