@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from carom.recording.recorder import Recorder
     from carom.scene.body import Body
     from carom.scene.joint import Joint
-    from carom.scene.joint_coupling import JointCoupling
     from carom.scene.link import Link
+    from carom.scene.named_constraints.joint_coupling import JointCoupling
     from carom.world.scene import Scene
     from carom.world.world import World
     from carom.worlds.worlds import Worlds
@@ -46,7 +46,7 @@ _HOME = {
     "Body": "carom.scene.body",
     "Camera": "carom.camera",
     "Joint": "carom.scene.joint",
-    "JointCoupling": "carom.scene.joint_coupling",
+    "JointCoupling": "carom.scene.named_constraints.joint_coupling",
     "Link": "carom.scene.link",
     "Recorder": "carom.recording.recorder",
     "Scene": "carom.world.scene",

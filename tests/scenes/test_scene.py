@@ -67,7 +67,7 @@ def test_a_saved_world_is_a_scene_too(write, tmp_path):
 def test_names_that_no_body_has_are_named(write):
     with World() as world:
         scene = world.load(write(URDF))
-        with pytest.raises(KeyError, match="no body has the name 'hand'.*'gripper'"):
+        with pytest.raises(KeyError, match=r"no body has the name 'hand'.*'gripper'"):
             scene["hand"]
 
 

@@ -258,7 +258,7 @@ def test_a_follower_of_a_fixed_joint_stays(load):
 
 def test_a_pin_that_cannot_follow_is_refused(load):
     with pytest.raises(
-        DescriptionError, match='<joint name="j"> > <mimic>: .*neither revolute nor prismatic'
+        DescriptionError, match=r'<joint name="j"> > <mimic>: .*neither revolute nor prismatic'
     ):
         load(link("a"), link("b"), link("c"), joint("k", "a", "c"),
              joint("j", "a", "b", "spherical", '<mimic joint="k"/>'))  # fmt: skip
@@ -270,7 +270,8 @@ def test_merged_links_move_as_before(load):
         '<link name="c"><inertial><origin xyz="0.1 0 0.2" rpy="0.5 0 0.4"/><mass value="0.7"/>'
         '<inertia ixx="0.3" ixy="0.02" ixz="0" iyy="0.2" iyz="0.01" izz="0.25"/></inertial></link>'
     )
-    parts = (link("a"), link("b"), part, link("d"), joint("j", "a", "b"), joint("k", "b", "c", "fixed", turned),
+    parts = (link("a"), link("b"), part, link("d"), joint("j", "a", "b"),
+             joint("k", "b", "c", "fixed", turned),
              joint("l", "c", "d", inside='<origin xyz="0 0.5 0" rpy="1 0 0"/>'))  # fmt: skip
     whole = load(*parts, fixed_base=True)[0]
     merged = load(*parts, fixed_base=True, flags=LoadFlags.MERGE_FIXED_LINKS)[0]
@@ -300,7 +301,7 @@ TRIANGLES = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 
 
 def test_a_missing_mesh_is_an_error_unless_it_may_be(load):
     part = link("a", inside=MESH.format("package://hand/palm.obj"))
-    with pytest.raises(DescriptionError, match="palm.obj' was found neither"):
+    with pytest.raises(DescriptionError, match=r"palm\.obj' was found neither"):
         load(part)
     scene = load(part, missing_meshes="warn")
     assert scene[0].spec.base.collisions == ()

@@ -14,7 +14,7 @@ from carom.scene.body import Body
 if TYPE_CHECKING:
     from carom.formats.kinds import FileKind
     from carom.formats.search import AssetSearch
-    from carom.scene.joint_coupling import JointCoupling
+    from carom.scene.named_constraints.joint_coupling import JointCoupling
     from carom.world.robot_files import Choices
     from carom.world.scene import Scene
     from carom.world.world import World
@@ -118,7 +118,7 @@ class DescriptionLoading(BodyAdding):
             choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
             return self._load_file(path, position, orientation, choices)
         from carom.formats.reading.ignored import IgnoredList
-        from carom.scene.joint_coupling import couplings_of
+        from carom.scene.named_constraints.joint_coupling import couplings_of
         from carom.world.file_parts import PARTS
         from carom.world.scene import Scene
         from carom.world_files.world_file import load_world

@@ -23,7 +23,7 @@ from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
-    from carom.scene.joint_coupling import JointCoupling
+    from carom.scene.named_constraints.joint_coupling import JointCoupling
 
 _log = Logger("carom.world")
 MISSING_MESHES = ("error", "warn")
@@ -160,7 +160,7 @@ def couple(bodies: Sequence[Body], source: Path) -> list[JointCoupling]:
     Raises:
         DescriptionError: There is no such other joint, it follows itself, or one of both has not one dof.
     """
-    from carom.scene.joint_coupling import JointCoupling, new_coupling
+    from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 
     made = []
     for body in bodies:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.scene.body import Body
-from carom.scene.joint_coupling import JointCoupling
+from carom.scene.named_constraints.joint_coupling import JointCoupling
 
 if TYPE_CHECKING:
     from carom.formats.reading.ignored import IgnoredList
