@@ -46,13 +46,13 @@ class LinkSpec:
         velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
         damping: Viscous joint damping [N m s/rad or N s/m].
-        friction: Joint friction the file states; not simulated.
+        friction: Dry friction of the joint [N m or N]; not simulated in a body with `is_held`.
         collisions: Collision shapes, with poses in the link frame.
         visuals: Visual shapes, with poses in the link frame.
         compound_margin: Distance by which the bounds of several shapes, or of one that is not in the
             inertial frame, are widened [m].
         contact: Contact parameters of the link.
-        mimic: The joint this one follows, as the file states it; not simulated.
+        mimic: The joint this one follows, as the file states it; not simulated in a body with `is_held`.
         user_data: Key and value pairs stated by the file for the link.
     """
 
@@ -111,7 +111,8 @@ class BodySpec(Reusable):
         user_data: Key and value pairs stated by the file for the model.
         soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
         link_damping: Share of the velocity of the body's links that air takes away [1/s].
-        is_held: Motors hold all joints until they are commanded, as in PyBullet.
+        is_held: As in PyBullet, motors hold all joints until they are commanded, and joints have no friction
+            and follow no others.
     """
 
     name: str

@@ -242,7 +242,7 @@ class DescriptionLoading(BodyAdding):
         couplings: list[JointCoupling] = []
 
         def also(bodies: list[Body]) -> None:
-            couplings.extend(couple(bodies, source.path))
+            couplings.extend(couple(bodies))
 
         bodies = self.load_all(placed(source.bodies, place, turn), also)
         return Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)

@@ -154,12 +154,8 @@ def placed(
     return [(spec, pose if own == IDENTITY else compose(pose, own)) for spec, own in bodies]
 
 
-def couple(bodies: Sequence[Body], source: Path) -> list[JointCoupling]:
-    """Couple the joints that mimic others; called while bodies are added.
-
-    Raises:
-        DescriptionError: There is no such other joint, it follows itself, or one of both has not one dof.
-    """
+def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
+    """Couple the joints that mimic others; called while bodies are added."""
     from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 
     made = []
@@ -167,21 +163,15 @@ def couple(bodies: Sequence[Body], source: Path) -> list[JointCoupling]:
         places = {link.joint_name: place for place, link in enumerate(body.spec.links)}
         for follower, link in enumerate(body.spec.links):
             mimic = link.mimic
-            if mimic is None or body.velocity_count[follower] == 0:
+            if mimic is None or body.spec.is_held or mimic.joint not in places:
                 continue
-            leader = places.get(mimic.joint)
-            element = f'<joint name="{link.joint_name}"> > <mimic>'
-            if leader is None or leader == follower:
-                problem = "it follows itself" if leader == follower else f"there is no joint {mimic.joint!r}"
-                raise DescriptionError(problem, file=source, element=element)
-            constant, factor = mimic.offset, mimic.multiplier
-            if body.velocity_count[leader] == 0:
+            leader: int | None = places[mimic.joint]
+            factor = mimic.multiplier
+            if body.velocity_count[places[mimic.joint]] == 0:
                 # The leader cannot move, so the follower is held where it wants it.
                 leader, factor = None, 0.0
-            try:
-                tie = new_coupling(body, follower, leader, (constant, factor, 0.0, 0.0, 0.0), link.joint_name)
-            except ValueError as problem:
-                raise DescriptionError(str(problem), file=source, element=element) from None
+            coefficients = (mimic.offset, factor, 0.0, 0.0, 0.0)
+            tie = new_coupling(body, follower, leader, coefficients, link.joint_name)
             body.world.user_constraints.put(tie)
             body.world.constraints.add_user(tie)
             made.append(JointCoupling(tie))

@@ -18,6 +18,7 @@ from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
 from carom.formats.urdf.extensions import read_extensions, refuse_xacro
+from carom.formats.urdf.following import checked_followers
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
@@ -118,6 +119,7 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
     root = find_root(context, links, joints, list(element.all("joint")))
     if context.written is not None:
         refuse_motion_without_mass(context, links, joints)
+        joints = checked_followers(context, joints)
     robot = Robot(
         name,
         tuple(_with_late_materials(context, link) for link in links),
