@@ -107,6 +107,6 @@ def test_planar_joints_have_no_extended_coordinates(tmp_path: Path) -> None:
         '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="planar">'
         '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>'
     )
-    body = World().load_urdf(file, default_mass=1.0)
+    body = World().load_urdf(file)
     with pytest.raises(ValueError, match="planar"):
         extended_mass_matrix(body, [0.0] * 10)

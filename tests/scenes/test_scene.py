@@ -156,7 +156,8 @@ def test_couplings_have_the_names_of_their_joints(write):
         assert (coupling.follower.name, coupling.leader.name) == ("two", "one")
         assert coupling.coefficients == (0.5, -2.0, 0.0, 0.0, 0.0)
         assert coupling.enabled
-        assert coupling.error == -0.5
+        assert coupling.error == 0.0
+        assert coupling.follower.position == 0.5
 
 
 @pytest.mark.parametrize(
@@ -165,7 +166,7 @@ def test_couplings_have_the_names_of_their_joints(write):
 def test_joints_that_cannot_be_followed_are_reported(write, joint, reason):
     with World() as world:
         scene = world.load(write(URDF.replace('mimic joint="one"', f'mimic joint="{joint}"')))
-        (one,) = [one for one in scene.ignored if one.element == "mimic"]
+        (one,) = [one for one in scene.ignored if one.element == "joint/mimic"]
         assert (one.consequence, one.reason, one.line) == ("the joint moves freely", reason, 13)
         assert not scene.constraints
 

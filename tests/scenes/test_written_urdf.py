@@ -87,9 +87,22 @@ def test_links_without_inertial_can_be_given_a_mass(load):
     assert (scene[0].links["b"].mass, scene[0].spec.links[0].inertia) == (0.25, (0.25, 0.25, 0.25))
 
 
-def test_a_joint_that_moves_nothing_with_mass_is_refused(load):
-    with pytest.raises(DescriptionError, match=r'robot.urdf:1: .*<joint name="j">.*\'b\'.*default_mass'):
-        load(link("a"), '<link name="b"/>', joint("j", "a", "b"))
+def test_a_joint_that_moves_nothing_with_mass_stays_and_is_reported(load):
+    swinging = (link("a"), link("b"), joint("j", "a", "b", inside='<origin rpy="1.57 0 0"/>'))
+    finger = ('<link name="tip"/>', joint("k", "b", "tip", inside='<origin xyz="0.3 0.2 0"/>'))
+    with_finger, without = load(*swinging, *finger, fixed_base=True), load(*swinging, fixed_base=True)
+    (one,) = with_finger.ignored
+    assert (one.element, one.consequence) == ("robot/joint", "no force or motor moves the joint")
+    assert "('tip')" in one.reason
+    for scene in (with_finger, without):
+        scene.world.gravity = (0, 0, -9.81)
+        scene[0].joints["j"].set_velocity_target(2.0, max_force=0.5)
+    with_finger[0].joints["k"].reset(0.7)
+    with_finger[0].joints["k"].set_velocity_target(1.0, max_force=10.0)
+    for scene in (with_finger, without):
+        scene.world.step(240)
+    assert with_finger[0].joints["j"].position == pytest.approx(without[0].joints["j"].position, rel=1e-12)
+    assert with_finger[0].joints["k"].position == 0.7
 
 
 def test_a_massless_link_between_others_is_fine(load):
@@ -207,6 +220,8 @@ def test_a_coupling_is_exact_within_a_step(load):
 def test_a_coupling_reduces_its_error_as_limits_do(load):
     scene = load(*two_wheels('<mimic joint="first" multiplier="2" offset="0.1"/>'), fixed_base=True)
     coupling = scene.constraints["second"]
+    assert scene[0].joints.positions.tolist() == [0.0, 0.1]
+    scene[0].joints.reset([0.0, 0.0])
     assert coupling.error == pytest.approx(-0.1)
     scene.world.step()
     assert coupling.error == pytest.approx(-0.1 * (1.0 - 0.2))
@@ -225,6 +240,19 @@ def test_a_coupling_can_be_switched_off_and_on(load):
     coupling.enabled = True
     scene.world.step(200)
     assert coupling.error == pytest.approx(0.0, abs=1e-12)
+
+
+def test_followers_are_placed_with_their_leaders(load):
+    third = (link("three"), joint("third", "base", "three", inside='<mimic joint="second" multiplier="3"/>'))
+    scene = load(*two_wheels('<mimic joint="first" multiplier="2" offset="0.1"/>'), *third)
+    body = scene[0]
+    assert body.joints.positions == pytest.approx([0.0, 0.1, 0.3])
+    body.joints["first"].reset(0.5, 1.0)
+    assert body.joints.positions == pytest.approx([0.5, 1.1, 3.3])
+    assert body.joints.velocities == pytest.approx([1.0, 2.0, 6.0])
+    scene.constraints["second"].enabled = False
+    body.joints["first"].reset(0.0)
+    assert body.joints.positions == pytest.approx([0.0, 1.1, 3.3])
 
 
 def test_couplings_in_a_chain_converge(load):
@@ -305,7 +333,7 @@ def test_a_missing_mesh_is_an_error_unless_it_may_be(load):
     scene = load(part, missing_meshes="warn")
     assert scene[0].spec.base.collisions == ()
     (one,) = scene.ignored
-    assert (one.element, one.consequence) == ("collision", "the link is without this shape")
+    assert (one.element, one.consequence) == ("link/collision", "the link is without this shape")
     assert "palm.obj" in one.reason
 
 

@@ -147,7 +147,8 @@ class DescriptionLoading(BodyAdding):
         So inertia is that of the file, links without `<inertial>` have no mass, joints have the damping and
         the friction that it states and follow those that they `<mimic>`; no motor holds a joint, and no air
         damps the body. A base without mass is fixed in the world if all links that are fixed to it are
-        without mass as well.
+        without mass as well. A joint that moves only links without mass stays where it is put: no force moves
+        it, which the warning about what is not simulated says.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -167,8 +168,8 @@ class DescriptionLoading(BodyAdding):
             default_mass: Mass of links without `<inertial>` [kg], with as many kg m² about each axis.
 
         Raises:
-            carom.errors.DescriptionError: The file cannot be used, or a joint moves only links without mass,
-                or it is strict and something is left out; the world is as before.
+            carom.errors.DescriptionError: The file cannot be used, or it is strict and something is left
+                out; the world is as before.
             ValueError: An argument is out of range.
         """
         if as_pybullet:

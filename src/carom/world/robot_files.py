@@ -155,8 +155,8 @@ def placed(
 
 
 def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
-    """Couple the joints that mimic others; called while bodies are added."""
-    from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
+    """Couple the joints that mimic others, and place them; called while bodies are added."""
+    from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling, place_followers
 
     made = []
     for body in bodies:
@@ -175,4 +175,9 @@ def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
             body.world.user_constraints.put(tie)
             body.world.constraints.add_user(tie)
             made.append(JointCoupling(tie))
+    for coupling in made:
+        # From the first leaders on: a follower may lead others.
+        if coupling.leader is None or not any(other.follower is coupling.leader for other in made):
+            coupling.place()
+        place_followers(coupling.follower.body, coupling.follower.index)
     return made

@@ -137,9 +137,9 @@ class Cursor:
     ) -> None:
         """Report something that a reader took and does not use, or uses in another way than stated."""
         file = element.file if isinstance(element, TracedElement) else self.roots[0].file
-        self._stated.append(
-            Ignored(element.tag, file, element.line, tuple(attributes), 1, consequence, reason)
-        )
+        path = next((found for root in self.roots if (found := root.path_to(element))), [element])
+        place = "/".join(step.tag for step in path[-2:])
+        self._stated.append(Ignored(place, file, element.line, tuple(attributes), 1, consequence, reason))
 
     def ignored(self) -> IgnoredList:
         """What was not taken, and what `leave_out` reported, equal entries together, by file and line."""

@@ -1,7 +1,9 @@
 """The rule for joints that move nothing with mass.
 
-Nothing determines the acceleration of such a joint: the mass matrix is singular. MuJoCo refuses these files
-as well. What would be a guess (a small mass, a fixed joint) is left to the author or to the caller.
+Nothing determines the acceleration of such a joint: its row of the mass matrix is zero. The solver leaves
+those joints at the rate they have, which is zero at first, and no force or motor moves them; everything else
+moves as if they were fixed. They can be placed, so kinematics is right. What would be a guess (a small mass)
+is left to the author of the file or to the caller.
 """
 
 from __future__ import annotations
@@ -12,17 +14,18 @@ from carom.description import Joint, JointType, Link
 from carom.formats.robot.context import FileContext, shown
 
 _MOST_NAMES = 4
+_CONSEQUENCE = "no force or motor moves the joint"
 
 
-def refuse_motion_without_mass(context: FileContext, links: Sequence[Link], joints: Sequence[Joint]) -> None:
-    """Raise `DescriptionError` if all links that a joint moves are without mass and moments of inertia.
+def report_motion_without_mass(context: FileContext, links: Sequence[Link], joints: Sequence[Joint]) -> None:
+    """Report each joint that moves only links without mass and moments of inertia.
 
     Moments alone are enough for a joint that turns.
     """
     children: list[list[Joint]] = [[] for _ in links]
     for joint in joints:
         children[joint.parent].append(joint)
-    for number, joint in enumerate(joints):
+    for joint, element in zip(joints, list(context.root.all("joint")), strict=True):
         if joint.type is JointType.FIXED:
             continue
         moved = _moved(joint, children)
@@ -31,12 +34,8 @@ def refuse_motion_without_mass(context: FileContext, links: Sequence[Link], join
             continue
         names = ", ".join(shown(links[index].name) for index in moved[:_MOST_NAMES])
         more = "" if len(moved) <= _MOST_NAMES else f" and {len(moved) - _MOST_NAMES} more"
-        raise context.error(
-            list(context.root.all("joint"))[number],
-            f"it moves only links without mass ({names}{more}), so nothing determines its acceleration; give "
-            "one of them an <inertial>, make the joint fixed, or load the file with default_mass, the mass "
-            "in kg of links that state none",
-        )
+        reason = f"it moves only links without mass ({names}{more}); give one mass, or load with default_mass"
+        context.leave_out(element, _CONSEQUENCE, reason)
 
 
 def _moved(joint: Joint, children: Sequence[Sequence[Joint]]) -> list[int]:

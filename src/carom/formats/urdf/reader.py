@@ -22,7 +22,7 @@ from carom.formats.urdf.following import checked_followers
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
-from carom.formats.urdf.moving_mass import refuse_motion_without_mass
+from carom.formats.urdf.moving_mass import report_motion_without_mass
 from carom.formats.urdf.rules import URDF_RULES
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
@@ -51,8 +51,8 @@ def read_written_urdf(
 ) -> tuple[Robot, IgnoredList]:
     """As `read_urdf`, but as the author of the file meant it; and what of it is not simulated.
 
-    Links without `<inertial>` have no mass, products of inertia count singly, an axis has no length, and a
-    joint that moves nothing with mass is an error.
+    Links without `<inertial>` have no mass, products of inertia count singly, and an axis has no length. A
+    joint that moves nothing with mass is reported, see `carom.formats.urdf.moving_mass`.
     """
     return _read(path, scale, search or AssetSearch(), written)
 
@@ -118,7 +118,7 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
     warn_of_assumed_masses(context)
     root = find_root(context, links, joints, list(element.all("joint")))
     if context.written is not None:
-        refuse_motion_without_mass(context, links, joints)
+        report_motion_without_mass(context, links, joints)
         joints = checked_followers(context, joints)
     robot = Robot(
         name,

@@ -23,8 +23,9 @@ _SINGLE_DOF = 1
 class JointCoupling:
     """Holds a joint, the follower, at a polynomial of the position of another one, its leader.
 
-    In each substep the solver makes the follower's rate the one that follows from the leader's, and corrects
-    the share `parameters.joint_erp` of the error. Both joints feel the force of the coupling.
+    A file's couplings hold from the start: followers are placed where they follow. In each substep the solver
+    makes the follower's rate the one that follows from the leader's, and corrects the share
+    `parameters.joint_erp` of the error. Both joints feel the force of the coupling.
     """
 
     __slots__ = ("_tie",)
@@ -71,14 +72,24 @@ class JointCoupling:
     @property
     def error(self) -> float:
         """Position of the follower minus where it should be [rad or m]."""
+        return float(self.follower.position) - self._wanted()[0]
+
+    def _wanted(self) -> tuple[float, float]:
+        """Where the follower should be, and the change of that per change of the leader's position."""
         constant, *factors = self.coefficients
         x = 0.0 if self.leader is None else float(self.leader.position)
-        wanted = constant
-        power = 1.0
-        for factor in factors:
+        wanted, slope, power = constant, 0.0, 1.0
+        for exponent, factor in enumerate(factors, start=1):
+            slope += exponent * factor * power
             power *= x
             wanted += factor * power
-        return float(self.follower.position) - wanted
+        return wanted, slope
+
+    def place(self) -> None:
+        """Set position and velocity of the follower to those that follow from the leader's."""
+        wanted, slope = self._wanted()
+        rate = 0.0 if self.leader is None else slope * float(self.leader.velocity)
+        self._tie.parent.set_joint_state(self._tie.parent_link, [wanted], [rate])
 
     @property
     def force(self) -> float:
@@ -101,6 +112,20 @@ def couplings_of(world: World, bodies: Sequence[Body]) -> list[JointCoupling]:
         for tie in ties
         if tie.kind == UserConstraintKind.COUPLING and any(tie.parent is body for body in bodies)
     ]
+
+
+def place_followers(body: Body, joint: int) -> None:
+    """Place the joints of a body that follow one of its joints, directly or through others."""
+    couplings = [coupling for coupling in couplings_of(body.world, [body]) if coupling.enabled]
+    placed, pending = {joint}, [joint]
+    while pending:
+        leader = pending.pop()
+        for coupling in couplings:
+            follower = coupling.follower.index
+            if coupling.leader is not None and coupling.leader.index == leader and follower not in placed:
+                coupling.place()
+                placed.add(follower)
+                pending.append(follower)
 
 
 def new_coupling(
