@@ -152,6 +152,7 @@ def test_elements_of_included_files_are_reported_there(write):
 def test_couplings_have_the_names_of_their_joints(write):
     with World() as world:
         coupling = world.load(write(URDF)).constraints["two"]
+        assert coupling.leader is not None
         assert isinstance(coupling, JointCoupling)
         assert (coupling.follower.name, coupling.leader.name) == ("two", "one")
         assert coupling.coefficients == (0.5, -2.0, 0.0, 0.0, 0.0)

@@ -41,12 +41,12 @@ def load(tmp_path: Path):
         world.__exit__()
 
 
-def two_wheels(inside: str = "", **second: float) -> tuple[str, ...]:
+def two_wheels(inside: str = "") -> tuple[str, ...]:
     """Two links that turn about parallel axes of a fixed base, independently of each other."""
     return (
         link("base"),
         link("one", moment=0.5),
-        link("two", **{"moment": 0.25, **second}),
+        link("two", moment=0.25),
         joint("first", "base", "one"),
         joint("second", "base", "two", inside=inside),
     )
