@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from carom.description import Joint, JointType
+from carom.description.joint import JOINT_CODE
 from carom.formats.robot.context import FileContext, shown
+from carom.layouts.codes import DOF_COUNT
 
-_ONE_DOF = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 _FREE = "the joint moves freely"
 
 
@@ -38,6 +39,6 @@ def _problem(follower: Joint, leader: Joint | None) -> str | None:
     if leader is follower:
         return "it follows itself"
     for joint in (follower, leader):
-        if joint.type not in (*_ONE_DOF, JointType.FIXED):
+        if DOF_COUNT[JOINT_CODE[joint.type]] > 1:
             return f"{shown(joint.name)} is neither revolute nor prismatic"
     return "a fixed joint cannot follow" if follower.type is JointType.FIXED else None

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from carom.description import Joint, JointType, Link
+from carom.description.joint import SLIDES
 from carom.formats.robot.context import FileContext, shown
 
 _MOST_NAMES = 4
@@ -29,7 +30,7 @@ def report_motion_without_mass(context: FileContext, links: Sequence[Link], join
         if joint.type is JointType.FIXED:
             continue
         moved = _moved(joint, children)
-        turns = joint.type is not JointType.PRISMATIC
+        turns = joint.type not in SLIDES
         if any(_resists(links[index], turns=turns) for index in moved):
             continue
         names = ", ".join(shown(links[index].name) for index in moved[:_MOST_NAMES])
