@@ -24,7 +24,7 @@ class Rule(NamedTuple):
 
 
 class Rules:
-    """The rules of a format; of several that fit, the longest counts, and of equally long ones the first.
+    """The rules of a format; of several that fit, the longest counts; of equally long ones that with fewer `*`.
 
     Args:
         format_name: Name of the format.
@@ -34,7 +34,9 @@ class Rules:
     def __init__(self, format_name: str, rules: Iterable[Rule]) -> None:
         self.format_name = format_name
         self._by_length = sorted(
-            [(_parts(rule.place), rule) for rule in rules], key=lambda it: len(it[0][0]), reverse=True
+            [(_parts(rule.place), rule) for rule in rules],
+            key=lambda it: (len(it[0][0]), -it[0][0].count("*") - (it[0][1] == "*")),
+            reverse=True,
         )
 
     def of(self, path: tuple[str, ...], attribute: str | None, *, taken: bool) -> tuple[str, str] | None:
