@@ -68,13 +68,14 @@ def is_robot_file(path: Path) -> bool:
     That is so for XML and USD, for suffixes of robot files, and for files that do not exist but as files of
     `pybullet_data`, which are found by their names.
     """
-    if path.suffix.lower() in (*_ROBOT_SUFFIXES, *_USD_SUFFIXES):
-        return True
+    by_suffix = path.suffix.lower() in (*_ROBOT_SUFFIXES, *_USD_SUFFIXES)
     try:
         with open(path, "rb") as stream:
             start = stream.read(_START)
     except (OSError, ValueError):
-        return False
+        return by_suffix
+    if by_suffix or start.startswith(_SAVED):
+        return not start.startswith(_SAVED)
     return start.startswith(_USD) or start.lstrip(b"\xef\xbb\xbf \t\r\n\0").startswith(b"<")
 
 

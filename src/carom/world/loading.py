@@ -119,13 +119,21 @@ class DescriptionLoading(BodyAdding):
             return self._load_file(path, position, orientation, choices)
         from carom.formats.reading.ignored import IgnoredList
         from carom.scene.named_constraints.joint_coupling import couplings_of
-        from carom.world.file_parts import PARTS
         from carom.world.scene import Scene
+
+        world, bodies = self._as_world(), self.load_saved(path)
+        return Scene(world, path, "saved world", bodies, IgnoredList(), couplings_of(world, bodies))
+
+    def load_saved(self, path: str | Path) -> list[Body]:
+        """Add all bodies of a world that was saved by `save`; see `load`, which takes other files as well.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.world.file_parts import PARTS
         from carom.world_files.world_file import load_world
 
-        world = self._as_world()
-        bodies = load_world(world, path, PARTS)
-        return Scene(world, path, "saved world", bodies, IgnoredList(), couplings_of(world, bodies))
+        return load_world(self._as_world(), Path(path), PARTS)
 
     def load_urdf(
         self,

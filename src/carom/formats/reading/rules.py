@@ -24,7 +24,7 @@ class Rule(NamedTuple):
 
 
 class Rules:
-    """The rules of a format; of several that fit, the longest counts; of equally long ones that with fewer `*`.
+    """The rules of a format; the longest that fits counts, and of equally long ones that with fewer `*`.
 
     Args:
         format_name: Name of the format.
