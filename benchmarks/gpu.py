@@ -39,7 +39,7 @@ def ant() -> World:
     """A world with the robot of `AntBulletEnv` on a floor, its motors off."""
     world = World()
     world.gravity = (0.0, 0.0, -9.81)
-    world.load_urdf(PLANE)
+    world.load_urdf(PLANE, as_pybullet=True)
     (robot,) = world.load_mjcf(ANT)
     robot.joints.disable_motors()
     world.step(ALONE_STEPS)

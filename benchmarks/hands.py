@@ -116,9 +116,9 @@ def record_boxes(file: Path) -> None:
     data = Path(pybullet_data.getDataPath())
     world = World()
     world.gravity = (0, 0, -9.81)
-    world.load_urdf(data / "plane.urdf")
+    world.load_urdf(data / "plane.urdf", as_pybullet=True)
     for n in range(BODIES):
         place = (0.12 * (n % 5), 0.12 * (n // 5 % 5), 0.2 + 0.15 * (n // 25))
-        world.load_urdf(data / "cube_small.urdf", place)
+        world.load_urdf(data / "cube_small.urdf", place, as_pybullet=True)
     with world.record(file):
         world.step(2400)

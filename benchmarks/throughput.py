@@ -38,7 +38,7 @@ def panda() -> World:
     """A world with the arm, held by position motors."""
     world = World()
     world.gravity = (0.0, 0.0, -9.81)
-    arm = world.load_urdf(PANDA, fixed_base=True)
+    arm = world.load_urdf(PANDA, fixed_base=True, as_pybullet=True)
     arm.joints.reset(HOME)
     arm.joints.set_position_targets(HOME, max_forces=87.0)
     return world

@@ -44,7 +44,8 @@ def squeezed_cube(duration):
         (0.2, 0.2, 0.2), (4, 4, 4), (0, 0, 0.105), youngs_modulus=1e4, poissons_ratio=0.3, damping=0.05
     )
     start = float(cube.nodes[:, 2].max())
-    box = world.load_urdf("cube.urdf", (0, 0, 0.32), scale=0.2)
+    # The file states the inertia of a larger cube; as in PyBullet, that of the shape is used instead.
+    box = world.load_urdf("cube.urdf", (0, 0, 0.32), scale=0.2, as_pybullet=True)
     box.change_dynamics(-1, mass=2.0)
     world.step(round(duration / TIME_STEP))
     return {"height": start - float(cube.nodes[:, 2].max())}

@@ -14,7 +14,8 @@ HOME = np.array([0.0, 0.3, 0.0, -2.1, 0.0, 2.4, 0.785, 0.04, 0.04])
 def main(count=1000, duration=1.0):
     world = World(time_step=1 / 240)
     world.gravity = (0, 0, -9.81)
-    panda = world.load_urdf(PANDA, fixed_base=True)
+    # All links have the same inertia in it, a placeholder; as in PyBullet, that of the shapes is used.
+    panda = world.load_urdf(PANDA, fixed_base=True, as_pybullet=True)
 
     worlds = Worlds(world, count)
     arms = worlds[panda]

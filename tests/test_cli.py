@@ -56,17 +56,17 @@ def test_info_prints_what_connects_the_links(robot_file, capsys):
 
 
 def test_info_prints_masses_inertias_and_poses(robot_file, capsys):
-    main(["info", str(robot_file), "--inertia-from-file"])
+    main(["info", str(robot_file)])
     output = capsys.readouterr().out
     assert row(output, "mast") == "-1 mast 10 1 2 3 0 0 0 0 0 0 0 0 0 1 0"
     assert row(output, "jib") == "0 jib 2 0.1 0.2 0.3 0.5 0 0 0 0 3 0 0 0 1 1"
     assert "0 1 3" in row(output, "plate")
 
 
-def test_info_takes_inertia_from_the_collision_shapes_unless_told_otherwise(robot_file, capsys):
-    main(["info", str(robot_file)])
+def test_info_takes_inertia_from_the_collision_shapes_if_it_reads_as_pybullet_does(robot_file, capsys):
+    main(["info", str(robot_file), "--as-pybullet"])
     shape = row(capsys.readouterr().out, "jib")
-    main(["info", str(robot_file), "--inertia-from-file"])
+    main(["info", str(robot_file), "--as-pybullet", "--inertia-from-file"])
     assert shape != row(capsys.readouterr().out, "jib")
 
 
@@ -76,6 +76,34 @@ def test_info_scales_and_fixes_and_merges(robot_file, capsys):
     assert "fixed base" in output
     assert "plate" not in output
     assert "0 0 6" in row(output, "jib")
+
+
+def test_info_reads_mjcf_and_sdf_as_well(capsys):
+    assert main(["info", "mjcf/ant.xml"]) == 0
+    assert "hip_1" in capsys.readouterr().out
+    assert main(["info", "kuka_iiwa/model.sdf"]) == 0
+    assert "lbr_iiwa_joint_7" in capsys.readouterr().out
+
+
+def test_check_lists_what_is_not_simulated(robot_file, tmp_path, capsys):
+    robot_file.write_text(ROBOT.replace('<robot name="crane">', '<robot name="crane"><transmission/>'))
+    assert main(["check", str(robot_file), "cube_small.urdf"]) == 0
+    output = capsys.readouterr().out
+    assert f"{robot_file}: URDF, 1 body, 1 movable joint" in output
+    assert "robot/transmission" in output
+    assert "crane.urdf:1" in output
+    assert "Nothing is ignored." in output
+    assert main(["check", "--strict", str(robot_file)]) == 1
+    assert main(["check", "--strict", "cube_small.urdf"]) == 0
+
+
+def test_check_goes_on_after_a_file_that_cannot_be_used(tmp_path, capsys):
+    (tmp_path / "page.xml").write_text("<html/>")
+    assert main(["check", str(tmp_path / "page.xml"), "nowhere.urdf", "cube_small.urdf"]) == 1
+    output, errors = capsys.readouterr()
+    assert "cube_small.urdf: URDF" in output
+    assert "its first element is <html>" in errors
+    assert "no such file: nowhere.urdf" in errors
 
 
 def test_info_finds_the_files_we_ship(capsys):

@@ -24,7 +24,7 @@ ROBOT = """<robot name="robot">
 </robot>"""
 LINK = """<link name="{name}">
   <inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
-    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.01"/></inertial>
+    <inertia ixx="{across}" ixy="0" ixz="0" iyy="{across}" iyz="0" izz="{along}"/></inertial>
   <collision><origin xyz="0 0 -0.5"/><geometry><box size="0.1 0.1 1"/></geometry></collision>
 </link>"""
 JOINT = """<joint name="{name}" type="{type}">
@@ -40,7 +40,10 @@ def robot(tmp_path: Path, *joints: dict) -> Path:
     for parent, joint in zip(parents, joints, strict=False):
         defaults = {"type": "revolute", "lower": -3, "upper": 3, "effort": 60, "at": "0 0 0"}
         texts.append(JOINT.format(**{"parent": parent, "child": joint["name"] + "_rod", **defaults, **joint}))
-    links = "".join(LINK.format(name=joint["name"] + "_rod") for joint in joints)
+    links = "".join(
+        LINK.format(name=joint["name"] + "_rod", across=2 * 1.01 / 12, along=2 * 0.02 / 12)
+        for joint in joints
+    )
     path = tmp_path / "robot.urdf"
     path.write_text(ROBOT.format(links=links, joints="".join(texts)))
     return path

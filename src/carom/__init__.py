@@ -20,20 +20,36 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.scene.joint import Joint
     from carom.scene.link import Link
+    from carom.scene.named_constraints.joint_coupling import JointCoupling
+    from carom.world.scene import Scene
     from carom.world.world import World
     from carom.worlds.worlds import Worlds
 
 _check_conflicts()
 _suggest_names()
 
-__all__ = ["Body", "Camera", "Joint", "Link", "Recorder", "World", "Worlds", "__version__", "control"]
+__all__ = [
+    "Body",
+    "Camera",
+    "Joint",
+    "JointCoupling",
+    "Link",
+    "Recorder",
+    "Scene",
+    "World",
+    "Worlds",
+    "__version__",
+    "control",
+]
 
 _HOME = {
     "Body": "carom.scene.body",
     "Camera": "carom.camera",
     "Joint": "carom.scene.joint",
+    "JointCoupling": "carom.scene.named_constraints.joint_coupling",
     "Link": "carom.scene.link",
     "Recorder": "carom.recording.recorder",
+    "Scene": "carom.world.scene",
     "World": "carom.world.world",
     "Worlds": "carom.worlds.worlds",
 }

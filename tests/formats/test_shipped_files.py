@@ -26,7 +26,7 @@ LOADERS = {".urdf": "loadURDF", ".sdf": "loadSDF", ".xml": "loadMJCF"}
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(DATA)))
 def test_as_urdf_it_is_the_same_robot(file: Path, tmp_path: Path) -> None:
-    for placed in read_robots(file):
+    for placed in read_robots(file)[1]:
         target = tmp_path / "robot.urdf"
         try:
             target.write_text(urdf_text(placed.robot, tmp_path), encoding="utf-8")

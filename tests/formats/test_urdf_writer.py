@@ -129,8 +129,9 @@ def test_the_command_converts(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert "there is no robot 'nobody'" in capsys.readouterr().err
     assert main(["convert", str(DATA / "mjcf" / "walker.xml"), str(target), "--model", "torso"]) == 0
     assert main(["convert", "nowhere.sdf", str(target)]) == 1
-    assert main(["convert", "robot.step", str(target)]) == 1
-    assert "'.step' are not known" in capsys.readouterr().err
+    (tmp_path / "robot.step").write_text("ISO-10303-21;")
+    assert main(["convert", str(tmp_path / "robot.step"), str(target)]) == 1
+    assert "a robot file begins with <robot>" in capsys.readouterr().err
 
 
 def test_links_of_mjcf_files_keep_the_moments_of_their_geoms(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The command line `python -m carom`: info, view, record, convert, serve, stand-in and warmup."""
+"""The command line `python -m carom`: info, check, view, record, convert, serve, stand-in and warmup."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from carom.model.body_spec import BASE, BodySpec
 from carom.native.library import library
 from carom.soft.from_urdf import urdf_body
 from carom.version import __version__
+from carom.world.robot_files import Choices, read_robot_file
 
 OK, FAILED = 0, 1
 
@@ -35,16 +36,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         wrong command line argparse ends the process with status 2.
     """
     options = _parser().parse_args(arguments)
+    failed = False
     try:
-        options.command(options)
+        failed = options.command(options)
         sys.stdout.flush()
     except BrokenPipeError:
         # The reader has closed the pipe, as `head` does; keep Python from writing the rest at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (CaromError, OSError) as problem:
+    except (CaromError, OSError, ValueError) as problem:
         print(f"carom: {problem}", file=sys.stderr)
         return FAILED
-    return OK
+    return FAILED if failed else OK
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -55,18 +57,46 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
     info = commands.add_parser("info", help="print the joint and link tables of a robot file")
-    info.add_argument("file", type=Path, help="URDF file; files of pybullet_data are found by name")
+    info.add_argument(
+        "file", type=Path, help="URDF, SDF or MJCF file; files of pybullet_data are found by name"
+    )
     info.add_argument("--scale", type=_positive, default=1.0, help="factor on all lengths (default 1)")
     info.add_argument("--fixed-base", action="store_true", help="fix the base in the world")
     info.add_argument(
-        "--inertia-from-file", action="store_true", help="use <inertia>, not the collision shapes"
+        "--as-pybullet", action="store_true", help="read URDF as PyBullet does, not as its author meant it"
+    )
+    info.add_argument(
+        "--inertia-from-file",
+        action="store_true",
+        help="with --as-pybullet: use <inertia>, not the collision shapes",
     )
     info.add_argument("--merge-fixed-links", action="store_true", help="merge links that cannot move")
     info.set_defaults(command=_info)
 
+    check = commands.add_parser("check", help="list what in robot files is not simulated")
+    check.add_argument(
+        "files",
+        type=Path,
+        nargs="+",
+        metavar="FILE",
+        help="URDF, SDF or MJCF file; files of pybullet_data are found by name",
+    )
+    check.add_argument("--strict", action="store_true", help="exit status 1 if anything is not simulated")
+    check.add_argument(
+        "--package-path",
+        action="append",
+        default=[],
+        metavar="FOLDER",
+        help="folder of ROS packages, or that is one; can be given several times",
+    )
+    check.add_argument(
+        "--without-meshes", action="store_true", help="leave out shapes whose mesh is missing, and list them"
+    )
+    check.set_defaults(command=_check)
+
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
     view.add_argument(
-        "file", type=Path, help="URDF, SDF or MJCF (.xml) file; files of pybullet_data are found by name"
+        "file", type=Path, help="URDF, SDF or MJCF file; files of pybullet_data are found by name"
     )
     view.add_argument("--host", default="127.0.0.1", help="address to serve the page at (default 127.0.0.1)")
     view.add_argument(
@@ -83,7 +113,7 @@ def _parser() -> argparse.ArgumentParser:
     record.set_defaults(command=_record)
 
     convert = commands.add_parser("convert", help="write a robot of an SDF, MJCF or URDF file as URDF")
-    convert.add_argument("input", type=Path, help="SDF, MJCF (.xml) or URDF file")
+    convert.add_argument("input", type=Path, help="SDF, MJCF or URDF file")
     convert.add_argument("output", type=Path, help="URDF file to write")
     convert.add_argument("--model", help="robot to convert if the file has several: name or number from 0")
     convert.set_defaults(command=_convert)
@@ -138,12 +168,26 @@ def _info(options: argparse.Namespace) -> None:
         flags |= LoadFlags.USE_INERTIA_FROM_FILE
     if options.merge_fixed_links:
         flags |= LoadFlags.MERGE_FIXED_LINKS
-    search = AssetSearch(Path(pybullet_data.getDataPath()))
-    print(
-        describe(
+    if options.as_pybullet:
+        search = AssetSearch(Path(pybullet_data.getDataPath()))
+        specs = [
             urdf_body(options.file, search, scale=options.scale, flags=flags, fixed_base=options.fixed_base)
-        )
+        ]
+    else:
+        choices = Choices(options.fixed_base, options.scale, int(flags))
+        specs = [spec for spec, _ in read_robot_file(options.file, choices).bodies]
+    print("\n\n\n".join(map(describe, specs)))
+
+
+def _check(options: argparse.Namespace) -> bool:
+    from carom.cli.check import check
+
+    choices = Choices(
+        strict=options.strict,
+        package_paths=options.package_path,
+        missing_meshes="warn" if options.without_meshes else "error",
     )
+    return not check(options.files, choices)
 
 
 def _view(options: argparse.Namespace) -> None:

@@ -8,7 +8,8 @@ from pathlib import Path
 from carom.description import Robot
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.formats.any_file import MJCF_SUFFIXES, read_robots
+from carom.formats.any_file import read_robots
+from carom.formats.kinds import FileKind
 from carom.formats.placed import PlacedRobot
 from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
@@ -27,7 +28,7 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
     shapes. Meshes are not copied.
 
     Args:
-        source: SDF, MJCF (`.xml` or `.mjcf`) or URDF file; files of `pybullet_data` are found by name.
+        source: SDF, MJCF or URDF file; files of `pybullet_data` are found by name.
         target: The file to write.
         model: Name of the robot, name of its root link, or its number from 0; required if the file has
             several robots.
@@ -36,10 +37,8 @@ def convert(source: Path, target: Path, model: str | None = None) -> None:
         DescriptionError: The source cannot be used, has no such robot, or cannot be expressed in URDF.
         OSError: The target cannot be written.
     """
-    robot = _with_moments(
-        _chosen(source, read_robots(source, search=AssetSearch(shipped_folder())), model),
-        is_mjcf=source.suffix.lower() in MJCF_SUFFIXES,
-    )
+    kind, robots = read_robots(source, search=AssetSearch(shipped_folder()))
+    robot = _with_moments(_chosen(source, robots, model), is_mjcf=kind is FileKind.MJCF)
     write_text(target, urdf_text(robot, target.absolute().parent))
 
 

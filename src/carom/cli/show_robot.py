@@ -45,7 +45,7 @@ class RobotView:
                 placed.pose.position,
                 placed.pose.orientation,
             )
-            for placed in read_robots(file, search=search)
+            for placed in read_robots(file, search=search)[1]
         ]
         if not bodies:
             raise DescriptionError("it holds no robot", file=file)

@@ -89,7 +89,7 @@ class Joint:
         axis: Unit axis in the joint frame.
         axis_length: Length the axis has in the file; PyBullet reports it unnormalised.
         damping: Viscous damping [N m s/rad or N s/m].
-        friction: Static friction as the file states it [N m or N]; not simulated.
+        friction: Dry friction as the file states it [N m or N]; PyBullet's API does not simulate it.
     """
 
     name: str

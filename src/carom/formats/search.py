@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from functools import lru_cache
 from pathlib import Path
 
@@ -13,6 +14,8 @@ from carom.record import record
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")
 _SCHEMES = ("package://", "model://")
 _CACHED = 1024
+_PACKAGE_NAME = re.compile(r"<name>([^<]*)</name>")
+_PACKAGE_BYTES = 1 << 16
 
 
 @record(hot=True)
@@ -22,10 +25,14 @@ class AssetSearch:
     Attributes:
         additional: A directory searched after the working directory, as set by the user.
         folders: Directories searched after that.
+        packages: Directories of packages, or directories that contain them, for `package://` and `model://`;
+            with them (also if there are none) the folders above a robot file are searched for packages. None
+            to search as PyBullet does.
     """
 
     additional: Path | None = None
     folders: tuple[Path, ...] = ()
+    packages: tuple[Path, ...] | None = None
 
     @property
     def places(self) -> tuple[Path | None, ...]:
@@ -51,6 +58,9 @@ class AssetSearch:
         robot file, each directory above that, and the two directories above the working directory are tried.
         The additional directory is not: it is for scripts only.
         """
+        package, _, rest = _without_scheme(name).partition("/") if name.startswith(_SCHEMES) else ("", "", "")
+        if package and rest and self.packages and (found := _in_packages(self.packages, package, rest)):
+            return found
         name = _without_scheme(name)
         if _is_file(name):
             return path_of(name)
@@ -63,6 +73,16 @@ class AssetSearch:
         for prefix in ("../", "../../"):
             if _is_file(prefix + relative):
                 return path_of(prefix + relative)
+        if package and rest and self.packages is not None:
+            return _in_package_above(package, rest, source)
+        return None
+
+    def find_in(self, directory: str, name: str, source: Path) -> Path | None:
+        """The file of a name in a directory that a robot file states, with or without folders, or None."""
+        name = _without_scheme(name)
+        for path in (name, os.path.basename(name)):
+            if found := self.find_referenced(os.path.join(directory, path), source):
+                return found
         return None
 
     def find_included(self, name: str, source: Path) -> Path | None:
@@ -79,6 +99,43 @@ def path_of(text: str) -> Path:
 @lru_cache(_CACHED)
 def _folders_above(file: Path) -> tuple[str, ...]:
     return tuple(map(str, file.parents))
+
+
+def _in_packages(packages: tuple[Path, ...], package: str, rest: str) -> Path | None:
+    """A file of a package in one of some directories, or in one that is the package itself."""
+    for folder in packages:
+        inside = [os.path.join(folder, package, rest)]
+        if folder.name == package or _package_name(str(folder)) == package:
+            inside.append(os.path.join(folder, rest))
+        for candidate in inside:
+            if _is_file(candidate):
+                return path_of(candidate)
+    return None
+
+
+def _in_package_above(package: str, rest: str, source: Path) -> Path | None:
+    """A file of a package that is a folder above a robot file; its `package.xml` may state another name.
+
+    Without such a folder, the file of that path below any of them.
+    """
+    above = _folders_above(source)
+    named = [folder for folder in above if _package_name(folder) == package]
+    for folder in (*named, *above[:-1]):
+        candidate = os.path.join(folder, rest)
+        if _is_file(candidate):
+            return path_of(candidate)
+    return None
+
+
+@lru_cache(_CACHED)
+def _package_name(folder: str) -> str | None:
+    """The name of the ROS package in a folder, or None if there is none."""
+    try:
+        with open(os.path.join(folder, "package.xml"), encoding="utf-8", errors="replace") as stream:
+            match = _PACKAGE_NAME.search(stream.read(_PACKAGE_BYTES))
+    except (OSError, ValueError):
+        return None
+    return match.group(1).strip() if match else None
 
 
 def _nearby(candidate: str) -> Path | None:

@@ -48,6 +48,9 @@ class Element:
         """Every child of that name, in order."""
         return (child for child in self.children if child.tag == tag)
 
+    def note(self) -> None:
+        """Note that a reader has used it, which only elements of a `carom.formats.reading.Cursor` keep."""
+
     def path_to(self, target: Element) -> list[Element]:
         """The elements from this one down to `target`, both included; empty where it is not inside."""
         if target is self:

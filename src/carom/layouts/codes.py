@@ -23,15 +23,17 @@ class ConstraintKind(IntEnum):
     SPHERICAL_MOTOR = 2
     SPHERICAL_LIMIT = 3
     USER = 4
+    FRICTION = 5
 
 
 class UserConstraintKind(IntEnum):
-    """Kinds of user constraint between links; the values are PyBullet's."""
+    """Kinds of user constraint between links; the values are PyBullet's, which has no coupling."""
 
     PRISMATIC = 1
     FIXED = 4
     POINT_TO_POINT = 5
     GEAR = 6
+    COUPLING = 7
 
 
 class Activity(IntEnum):
@@ -94,6 +96,9 @@ LIMIT_KIND: dict[int, ConstraintKind] = {
     JointCode.SPHERICAL: ConstraintKind.SPHERICAL_LIMIT,
 }
 
+# Joints that can have friction.
+WITH_FRICTION = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+
 BASE_POSITIONS = 7
 BASE_VELOCITIES = 6
 
@@ -112,8 +117,8 @@ NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
 # Kernels read codes as Warp constants.
 REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = map(int, JointCode)
-MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER = map(int, ConstraintKind)
-USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR = map(int, UserConstraintKind)
+MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER, FRICTION = map(int, ConstraintKind)
+USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(int, UserConstraintKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
 ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)

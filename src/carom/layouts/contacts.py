@@ -295,6 +295,7 @@ class UserConstraints:
     user_gear_ratio: Reals
     user_gear_auxiliary: Ints  # link row of a joint whose motion is subtracted, -1 for none
     user_relative_target: Reals
+    user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`
     user_erp: Reals
     user_enabled: IntRows  # 0: no effect
 

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from carom.description import Joint, JointType, Link, Robot
+from collections.abc import Callable
+
+from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
 from carom.description.joint import JOINT_CODE, NEEDS_LIMIT
+from carom.description.pose import Vector3
 from carom.layouts.codes import LIMIT_KIND, ConstraintKind
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
-from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.model.body_spec import BASE, DEFAULT_LINK_DAMPING, BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
 from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
+from carom.model.written_inertia import has_massless_base, merge_rigidly, written_inertia
 
 _log = Logger(__name__)
 
@@ -23,6 +27,7 @@ def assemble(
     flags: LoadFlags = LoadFlags.NONE,
     fixed_base: bool = False,
     compound_margin: float = MARGIN,
+    as_written: bool = False,
 ) -> BodySpec:
     """Convert a robot to a body for the engine.
 
@@ -30,16 +35,24 @@ def assemble(
     order of the file, except that a link never comes before its parent. The base is fixed exactly when its
     mass is zero, to which `fixed_base` sets it; `compound_margin` is that of every link [m].
 
+    With `as_written` the body is as the author of the file meant it: inertia from the file, no damping by
+    air, no motors that hold joints, links merged with their frames. A base is then also fixed if it has no
+    mass and no link that is fixed to it has any.
+
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.
     """
     root = make_tree(robot)
+    if as_written:
+        flags |= LoadFlags.USE_INERTIA_FROM_FILE
+        fixed_base = fixed_base or has_massless_base(root)
     if flags & LoadFlags.MERGE_FIXED_LINKS:
-        merge_fixed_links(root, fixed_base=fixed_base)
+        (merge_rigidly if as_written else merge_fixed_links)(root, fixed_base=fixed_base)
     order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
-    base = _link_spec(root.link, flags, compound_margin, is_massless=fixed_base)
+    read_inertia = written_inertia if as_written else inertia_from_file
+    base = _link_spec(root.link, flags, compound_margin, read_inertia, is_massless=fixed_base)
     index_of = {id(node): index for index, node in enumerate(order, start=BASE)}
-    links = [_link_spec(node.link, flags, compound_margin) for node in order[1:]]
+    links = [_link_spec(node.link, flags, compound_margin, read_inertia) for node in order[1:]]
     for node in order:
         for child in node.children:
             _attach(links[index_of[id(child)]], child, index_of[id(node)])
@@ -47,10 +60,12 @@ def assemble(
         robot.name,
         base,
         links,
-        fixed_base=base.mass == 0.0,
+        fixed_base=fixed_base if as_written else base.mass == 0.0,
         flags=int(flags),
         source=robot.source,
         user_data=dict(robot.user_data),
+        link_damping=0.0 if as_written else DEFAULT_LINK_DAMPING,
+        is_held=not as_written,
     )
     if flags & LoadFlags.PRINT_URDF_INFO:
         _log.info("%s", outline(body))
@@ -58,7 +73,12 @@ def assemble(
 
 
 def _link_spec(
-    link: Link, flags: LoadFlags, compound_margin: float, *, is_massless: bool = False
+    link: Link,
+    flags: LoadFlags,
+    compound_margin: float,
+    read_inertia: Callable[[Inertial, str], tuple[Vector3, Pose]],
+    *,
+    is_massless: bool = False,
 ) -> LinkSpec:
     spec = LinkSpec(
         link.name,
@@ -71,7 +91,7 @@ def _link_spec(
         user_data=dict(link.user_data),
     )
     if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:
-        spec.inertia, spec.inertial_frame = inertia_from_file(link.inertial, link.name)
+        spec.inertia, spec.inertial_frame = read_inertia(link.inertial, link.name)
     elif spec.mass != 0.0:
         implicit = bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         spec.inertia = inertia_from_shapes(spec, implicit_cylinder=implicit)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import field
 from pathlib import Path
+from struct import pack, unpack
 from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
@@ -17,6 +18,8 @@ from carom.model.soft_spec import SoftSpec
 from carom.record import record
 
 BASE = -1
+# Bullet's default [1/s], a float32 in its source.
+DEFAULT_LINK_DAMPING = unpack("f", pack("f", 0.04))[0]
 DEFAULT_CONTACT = ContactParameters()
 
 
@@ -43,13 +46,13 @@ class LinkSpec:
         velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
         damping: Viscous joint damping [N m s/rad or N s/m].
-        friction: Joint friction the file states; not simulated.
+        friction: Dry friction of the joint [N m or N]; not simulated in a body with `is_held`.
         collisions: Collision shapes, with poses in the link frame.
         visuals: Visual shapes, with poses in the link frame.
         compound_margin: Distance by which the bounds of several shapes, or of one that is not in the
             inertial frame, are widened [m].
         contact: Contact parameters of the link.
-        mimic: The joint this one follows, as the file states it; not simulated.
+        mimic: The joint this one follows, as the file states it; not simulated in a body with `is_held`.
         user_data: Key and value pairs stated by the file for the link.
     """
 
@@ -107,6 +110,9 @@ class BodySpec(Reusable):
         source: The file it came from, if any.
         user_data: Key and value pairs stated by the file for the model.
         soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
+        link_damping: Share of the velocity of the body's links that air takes away [1/s].
+        is_held: As in PyBullet, motors hold all joints until they are commanded, and joints have no friction
+            and follow no others.
     """
 
     name: str
@@ -117,6 +123,8 @@ class BodySpec(Reusable):
     source: Path | None = None
     user_data: dict[str, str] = field(default_factory=dict)
     soft: SoftSpec | None = None
+    link_damping: float = DEFAULT_LINK_DAMPING
+    is_held: bool = True
 
     def link(self, index: int) -> LinkSpec:
         """A link by its index; -1 is the base."""

@@ -37,8 +37,6 @@ from carom.record import record
 if TYPE_CHECKING:
     from carom.model.body_rows import BodyRows
 
-# Bullet's default, a float32 in its source.
-DEFAULT_LINK_DAMPING = float(np.float32(0.04))
 DEFAULT_MAX_VELOCITY = 100.0
 DEFAULT_SLEEP_THRESHOLD = 0.05
 DEFAULT_MOTOR_IMPULSE = 1.0
@@ -140,7 +138,7 @@ class WorldArrays:
         }
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
-        self._write_tree(rows, spec.flags)
+        self._write_tree(rows, spec)
         self._write_links(rows, spec, codes)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
@@ -166,7 +164,7 @@ class WorldArrays:
         used.update(needed)
         return rows
 
-    def _write_tree(self, rows: TreeRows, flags: int) -> None:
+    def _write_tree(self, rows: TreeRows, spec: BodySpec) -> None:
         model = self.model.numpy
         tree, first = rows.tree, rows.first
         model["tree_first_link"][tree] = first["link"]
@@ -179,10 +177,10 @@ class WorldArrays:
         model["tree_sensor_count"][tree] = 0
         model["tree_constraint_count"][tree] = 0
         model["tree_batch"][tree] = tree
-        model["tree_linear_damping"][:, tree] = DEFAULT_LINK_DAMPING
-        model["tree_angular_damping"][:, tree] = DEFAULT_LINK_DAMPING
+        model["tree_linear_damping"][:, tree] = spec.link_damping
+        model["tree_angular_damping"][:, tree] = spec.link_damping
         model["tree_max_velocity"][:, tree] = DEFAULT_MAX_VELOCITY
-        model["tree_can_sleep"][tree] = bool(flags & LoadFlags.ENABLE_SLEEPING)
+        model["tree_can_sleep"][tree] = bool(spec.flags & LoadFlags.ENABLE_SLEEPING)
         model["tree_can_wake"][tree] = True
         model["tree_sleep_threshold"][tree] = DEFAULT_SLEEP_THRESHOLD
 
@@ -214,7 +212,7 @@ class WorldArrays:
                 model["dof_parent"][dof] = last_dof[j]
                 model["dof_damping"][:, dof] = link.damping
                 last_dof[j] = dof
-                self._reset_motor(dof, code)
+                self._reset_motor(dof, code, held=spec.is_held)
                 dof += 1
             if code == JointCode.SPHERICAL:
                 self._reset_spherical(row, position)
@@ -280,14 +278,17 @@ class WorldArrays:
             model["link_planar_axis1"][row] = axis1
             model["link_planar_axis2"][row] = np.cross(axis1, normal)
 
-    def _reset_motor(self, dof: int, code: JointCode) -> None:
-        """Write the initial motor of a dof: its target velocity is zero."""
+    def _reset_motor(self, dof: int, code: JointCode, *, held: bool) -> None:
+        """Write the initial motor of a dof: its target velocity is zero, and without `held` its force too."""
         spherical = code == JointCode.SPHERICAL
         motor = self.state.numpy["dof_motor"][:, dof]
         motor[:] = 0.0
         motor[:, MOTOR_KP] = DEFAULT_SPHERICAL_MOTOR_GAIN if spherical else 0.0
         motor[:, MOTOR_KD] = 1.0
-        motor[:, MOTOR_MAX_IMPULSE] = DEFAULT_SPHERICAL_MOTOR_IMPULSE if spherical else DEFAULT_MOTOR_IMPULSE
+        if held:
+            motor[:, MOTOR_MAX_IMPULSE] = (
+                DEFAULT_SPHERICAL_MOTOR_IMPULSE if spherical else DEFAULT_MOTOR_IMPULSE
+            )
         motor[:, MOTOR_VELOCITY_CLAMP] = np.inf
         motor[:, MOTOR_DAMPING] = 1.0
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from carom.description.pose import Pose
+from carom.formats.reading.cursor import Cursor
 from carom.formats.search import AssetSearch
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
@@ -24,23 +25,36 @@ PlacedBody = tuple[BodySpec, Pose]
 
 
 def sdf_bodies(
-    path: Path, search: AssetSearch, *, scale: float, words_are_true: bool = True
+    path: Path,
+    search: AssetSearch,
+    *,
+    scale: float,
+    words_are_true: bool = True,
+    cursor: Cursor | None = None,
 ) -> list[PlacedBody]:
     """The bodies of an SDF file, in the order of the file; raises `DescriptionError`.
 
-    With `words_are_true`, `<static>true</static>` makes a model static; in PyBullet it does not.
+    With `words_are_true`, `<static>true</static>` makes a model static; in PyBullet it does not. A `cursor`
+    records what is taken of the file.
     """
     from carom.formats.sdf import read_sdf
 
-    robots = read_sdf(path, scale=scale, words_are_true=words_are_true, search=search)
+    robots = read_sdf(path, scale=scale, words_are_true=words_are_true, search=search, cursor=cursor)
     return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
 
 
-def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool = True) -> list[PlacedBody]:
+def mjcf_bodies(
+    path: Path,
+    search: AssetSearch,
+    *,
+    flags: int,
+    as_mujoco: bool = True,
+    cursor: Cursor | None = None,
+) -> list[PlacedBody]:
     """The bodies of an MJCF file, in the order of the file; raises `DescriptionError`.
 
     `flags` are `carom.layouts.flags.LoadFlags`. With `as_mujoco`, `axisangle` turns bodies, and named classes
-    limit joints; in PyBullet they do not.
+    limit joints; in PyBullet they do not. A `cursor` records what is taken of the file.
     """
     from carom.formats.mjcf import read_mjcf
 
@@ -50,6 +64,7 @@ def mjcf_bodies(path: Path, search: AssetSearch, *, flags: int, as_mujoco: bool 
         implicit=bool(flags & LoadFlags.USE_IMPLICIT_CYLINDER),
         as_mujoco=as_mujoco,
         search=search,
+        cursor=cursor,
     )
     loading = LoadFlags(flags & ~_NOT_FOR_MJCF | _ALWAYS_FOR_MJCF)
     bodies = []

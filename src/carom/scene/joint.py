@@ -127,6 +127,8 @@ class Joint:
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
+        Joints that are coupled to it, as by `<mimic>`, are placed where they follow it.
+
         Args:
             position: All position coordinates, as in `coordinates`; a quaternion is normalised.
             velocity: All velocity coordinates, as in `rates`, or one number for all.
@@ -135,6 +137,10 @@ class Joint:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
         self.body.set_joint_state(self.index, *self.checked_state(position, velocity))
+        if len(self.body.world.user_constraints):
+            from carom.scene.named_constraints.joint_coupling import place_followers
+
+            place_followers(self.body, self.index)
 
     def checked_state(
         self, position: ArrayLike, velocity: ArrayLike = 0.0
@@ -359,6 +365,8 @@ class Joints(Named[Joint]):
 
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
+
+        Those that are coupled to others get the positions given here, too.
 
         Args:
             positions: All position coordinates, as in `positions`.

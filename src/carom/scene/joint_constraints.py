@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, cast
 
-from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, JointCode
+from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
 from carom.record import record
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 @record(frozen=False, eq=False, hot=True)
 class JointConstraint:
-    """A motor or a limit of one joint, or a user constraint.
+    """A motor, a limit or the friction of one joint, or a user constraint.
 
     Attributes:
         body: The body it acts on.
         joint: Index of the joint.
         kind: The type of the constraint.
         lower: Lower limit; swing range about x of a spherical joint [rad or m].
-        upper: Upper limit; swing range about y of a spherical joint [rad or m].
+        upper: Upper limit; swing range about y of a spherical joint [rad or m]; greatest force of friction.
         twist: Twist range of a spherical joint [rad].
         user: The user constraint, if it is one.
         max_impulse: Maximum impulse of a limit per substep.
@@ -63,7 +63,10 @@ class JointConstraints:
         self.rows: ConstraintRows = ConstraintRows()
 
     def add_body(self, body: Body) -> None:
-        """Append the limits, then the motors, of a new body."""
+        """Append the limits, then the motors, then the friction, of a new body.
+
+        A body that is read as PyBullet reads it has no friction.
+        """
         self.tags.add(body.id, moving_links(body))
         for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
             if LIMIT_KIND.get(code) == ConstraintKind.SPHERICAL_LIMIT:
@@ -84,6 +87,11 @@ class JointConstraints:
         for joint, code in enumerate(body.joint_types):
             if code in MOTOR_KIND:
                 self.all.append(JointConstraint(body, joint, MOTOR_KIND[code]))
+        if not body.spec.is_held:
+            for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
+                if code in WITH_FRICTION and link.friction > 0.0:
+                    friction = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=link.friction)
+                    self.all.append(friction)
 
     def way_back(self) -> Callable[[], None]:
         """A function that removes everything that is added from now on."""

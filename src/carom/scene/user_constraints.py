@@ -23,6 +23,7 @@ ROWS = {
     UserConstraintKind.FIXED: 6,
     UserConstraintKind.PRISMATIC: 5,
     UserConstraintKind.GEAR: 1,
+    UserConstraintKind.COUPLING: 1,
 }
 _MOST_ROWS = 6
 _ROW_BYTES = 8 * _MOST_ROWS
@@ -37,6 +38,7 @@ _FIELDS = (
     "user_gear_ratio",
     "user_gear_auxiliary",
     "user_relative_target",
+    "user_polynomial",
     "user_erp",
     "user_pivot_a",
     "user_pivot_b",
@@ -66,9 +68,13 @@ class UserConstraint:
         max_force: Maximum force as last set by users [N or N m].
         gear_ratio: The joint velocity of the parent is minus this times that of the child; 0 stands for 1.
         gear_auxiliary_link: Link of the parent whose joint's motion is subtracted; -1 for none.
-        relative_position_target: Target of the sum of the gear's joint positions [rad].
+        relative_position_target: Target of the sum of the gear's joint positions [rad]; of a coupling, the
+            position of the parent's joint if that of the child's is 0.
+        polynomial: Of a coupling: factors of the position of the child's joint, its square, cube and fourth
+            power, in the position of the parent's joint.
         erp: Share of a gear's position error corrected per substep; 0 corrects velocities only.
         enabled: Whether it is active.
+        name: Name in the file it comes from.
     """
 
     id: int
@@ -87,6 +93,8 @@ class UserConstraint:
     relative_position_target: float = 0.0
     erp: float = 0.0
     enabled: bool = True
+    polynomial: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    name: str = ""
 
     def terms(self) -> tuple[Any, ...]:
         """The values of its row in the engine's arrays: of `_FIELDS`, and whether it is enabled."""
@@ -101,6 +109,7 @@ class UserConstraint:
             self.gear_ratio or 1.0,
             parent.first_link + 1 + auxiliary if auxiliary >= 0 else -1,
             self.relative_position_target,
+            self.polynomial,
             self.erp,
             self.parent_frame.position,
             self.child_frame.position,

@@ -19,6 +19,8 @@ from carom.model.body_spec import BodySpec
 
 if TYPE_CHECKING:
     from carom.description.deformable import Deformable
+    from carom.formats.reading.ignored import IgnoredList
+    from carom.formats.reading.written import Written
     from carom.soft.materials import NeoHookean, Springs
 
 Meshes = dict[Path, list[MeshPart]]
@@ -44,6 +46,18 @@ def urdf_body(
     return _bodies.of(robot, flags, fixed_base)
 
 
+def written_urdf_body(
+    path: Path, search: AssetSearch, written: Written, *, scale: float, flags: int, fixed_base: bool
+) -> tuple[BodySpec, IgnoredList]:
+    """As `urdf_body`, but as the author of the file meant it; and what of it is not simulated."""
+    from carom.formats.urdf.reader import read_written_urdf
+
+    robot, ignored = read_written_urdf(path, written, scale=scale, search=search)
+    if robot.deformable is not None:
+        return robot_body(robot, scale=scale, flags=flags, fixed_base=fixed_base), ignored
+    return _bodies.of(robot, flags, fixed_base, as_written=True), ignored
+
+
 def rigid_body(robot: Robot, *, flags: int, compound_margin: float) -> BodySpec:
     """The rigid body of a description, once made for the same object; raises `DescriptionError`."""
     return _bodies.of(robot, flags, False, compound_margin)
@@ -58,9 +72,17 @@ class _Bodies:
     def __init__(self) -> None:
         self._kept: OrderedDict[tuple[object, ...], tuple[Robot, Meshes, BodySpec]] = OrderedDict()
 
-    def of(self, robot: Robot, flags: int, fixed_base: bool, compound_margin: float = MARGIN) -> BodySpec:
+    def of(
+        self,
+        robot: Robot,
+        flags: int,
+        fixed_base: bool,
+        compound_margin: float = MARGIN,
+        *,
+        as_written: bool = False,
+    ) -> BodySpec:
         """The body of a robot."""
-        key = id(robot), flags, fixed_base, compound_margin
+        key = id(robot), flags, fixed_base, compound_margin, as_written
         # Taken out meanwhile: another thread may do the same.
         kept = self._kept.pop(key, None)
         if kept is not None and kept[0] is robot and _are_unchanged(kept[1]):
@@ -70,7 +92,13 @@ class _Bodies:
         # Read first: a mesh that changes while the body is made is then found to have changed.
         meshes = _meshes(robot, flags)
         said = Logger.count
-        spec = assemble(robot, flags=LoadFlags(flags), fixed_base=fixed_base, compound_margin=compound_margin)
+        spec = assemble(
+            robot,
+            flags=LoadFlags(flags),
+            fixed_base=fixed_base,
+            compound_margin=compound_margin,
+            as_written=as_written,
+        )
         # What the log was told must be told again for the next body.
         if meshes is not None and Logger.count == said and not flags & LoadFlags.PRINT_URDF_INFO:
             self._kept[key] = robot, meshes, spec

@@ -61,9 +61,9 @@ class PandaTask(WorldsEnv):
         world = World(time_step=_TIME_STEP)
         world.gravity = _GRAVITY
         assets = Path(pybullet_data.getDataPath())
-        world.load_urdf(assets / "plane.urdf")
-        panda = world.load_urdf(assets / "franka_panda" / "panda.urdf", fixed_base=True)
-        cube = world.load_urdf(assets / "cube_small.urdf") if self._has_cube else None
+        world.load_urdf(assets / "plane.urdf", as_pybullet=True)
+        panda = world.load_urdf(assets / "franka_panda" / "panda.urdf", fixed_base=True, as_pybullet=True)
+        cube = world.load_urdf(assets / "cube_small.urdf", as_pybullet=True) if self._has_cube else None
         numbers = 2 * _ARM + 1 + 9 + (9 if self._has_cube else 0)
         action = np.ones(_ARM + self._uses_fingers, np.float32)
         endless = np.full(numbers, np.inf, np.float32)

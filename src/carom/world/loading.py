@@ -5,14 +5,22 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
+    from carom.formats.kinds import FileKind
     from carom.formats.search import AssetSearch
+    from carom.scene.named_constraints.joint_coupling import JointCoupling
+    from carom.world.robot_files import Choices
+    from carom.world.scene import Scene
+    from carom.world.world import World
+
+_ORIGIN = (0.0, 0.0, 0.0)
+_NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 
 class BodyAdding(ABC):
@@ -28,9 +36,104 @@ class BodyAdding(ABC):
     ) -> list[Body]:
         """Add bodies at rest, all or none."""
 
+    @abstractmethod
+    def _as_world(self) -> World:
+        """This world."""
+
 
 class DescriptionLoading(BodyAdding):
     """Loading of robot files into a world; file readers are imported when needed."""
+
+    @overload
+    def load(
+        self, what: BodySpec, position: Sequence[float] = ..., orientation: Sequence[float] = ...
+    ) -> Body: ...
+    @overload
+    def load(
+        self,
+        what: str | Path,
+        position: Sequence[float] = ...,
+        orientation: Sequence[float] = ...,
+        *,
+        fixed_base: bool = ...,
+        scale: float = ...,
+        flags: int = ...,
+        strict: bool = ...,
+        package_paths: Sequence[str | Path] = ...,
+        missing_meshes: str = ...,
+        default_mass: float | None = ...,
+    ) -> Scene: ...
+    def load(
+        self,
+        what: BodySpec | str | Path,
+        position: Sequence[float] = (0.0, 0.0, 0.0),
+        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+        *,
+        fixed_base: bool = False,
+        scale: float = 1.0,
+        flags: int = 0,
+        strict: bool = False,
+        package_paths: Sequence[str | Path] = (),
+        missing_meshes: str = "error",
+        default_mass: float | None = None,
+    ) -> Body | Scene:
+        """Add what a file describes: a robot or a scene (URDF, SDF, MJCF), or a world saved by `save`.
+
+        The format is found by the content of the file. A warning says how much of it is not simulated, and
+        `print(scene.ignored)` lists that. See `load_urdf` for how URDF files are read.
+
+        A world without bodies becomes a copy of a saved world, parameters and time included, and continues
+        exactly as that one did. In any other world, the saved bodies and their constraints are added to those
+        already there, with the poses they had.
+
+        Args:
+            what: Path of the file; or the specification of a body, which is added at rest.
+            position: Where the frame of the file, or the base's link frame, is in the world [m].
+            orientation: Its orientation, quaternion (x, y, z, w).
+            fixed_base: Fix the base of a URDF file in the world.
+            scale: Factor on all lengths of a URDF or SDF file.
+            flags: Loading flags of a URDF or MJCF file, see `carom.layouts.flags.LoadFlags`.
+            strict: Raise an error if something in the file would not be simulated.
+            package_paths: Directories of ROS packages, or that contain them; see `load_urdf`.
+            missing_meshes: `"warn"` leaves out shapes of URDF files whose mesh is missing or cannot be read;
+                `"error"` raises an error.
+            default_mass: Mass of links of URDF files without `<inertial>` [kg].
+
+        Returns:
+            The bodies of the file and everything else in it by name; of a specification the body's handle. A
+            body gets the number of the body that was removed last, if any.
+
+        Raises:
+            carom.errors.DescriptionError: The file, or that of a mesh, cannot be used; the world is as
+                before.
+            ValueError: An argument is out of range, or not for this format.
+        """
+        if isinstance(what, BodySpec):
+            return self._add(what, position, orientation)
+        from carom.formats.kinds import is_robot_file
+        from carom.world.robot_files import Choices
+
+        path = Path(what)
+        if is_robot_file(path):
+            choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
+            return self._load_file(path, position, orientation, choices)
+        from carom.formats.reading.ignored import IgnoredList
+        from carom.scene.named_constraints.joint_coupling import couplings_of
+        from carom.world.scene import Scene
+
+        world, bodies = self._as_world(), self.load_saved(path)
+        return Scene(world, path, "saved world", bodies, IgnoredList(), couplings_of(world, bodies))
+
+    def load_saved(self, path: str | Path) -> list[Body]:
+        """Add all bodies of a world that was saved by `save`; see `load`, which takes other files as well.
+
+        Raises:
+            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+        """
+        from carom.world.file_parts import PARTS
+        from carom.world_files.world_file import load_world
+
+        return load_world(self._as_world(), Path(path), PARTS)
 
     def load_urdf(
         self,
@@ -41,8 +144,19 @@ class DescriptionLoading(BodyAdding):
         fixed_base: bool = False,
         scale: float = 1.0,
         flags: int = 0,
+        as_pybullet: bool = False,
+        strict: bool = False,
+        package_paths: Sequence[str | Path] = (),
+        missing_meshes: str = "error",
+        default_mass: float | None = None,
     ) -> Body:
-        """Add the robot that a URDF file describes.
+        """Add the robot that a URDF file describes, as its author meant it.
+
+        So inertia is that of the file, links without `<inertial>` have no mass, joints have the damping and
+        the friction that it states and follow those that they `<mimic>`; no motor holds a joint, and no air
+        damps the body. A base without mass is fixed in the world if all links that are fixed to it are
+        without mass as well. A joint that moves only links without mass stays where it is put: no force moves
+        it, which the warning about what is not simulated says.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -51,21 +165,39 @@ class DescriptionLoading(BodyAdding):
             fixed_base: Fix the base in the world.
             scale: Factor on all lengths.
             flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
+            as_pybullet: Read it as PyBullet does: inertia from collision shapes, 1 kg for links without
+                `<inertial>`, motors that hold all joints, damping of 0.04 1/s. The next four arguments then
+                have no effect.
+            strict: Raise an error if something in the file would not be simulated.
+            package_paths: Directories of ROS packages, or that contain them, for `package://` and `model://`;
+                without them the directories above the file are searched.
+            missing_meshes: `"warn"` leaves out shapes whose mesh is missing or cannot be read; `"error"`
+                raises an error.
+            default_mass: Mass of links without `<inertial>` [kg], with as many kg m² about each axis.
 
         Raises:
-            carom.errors.DescriptionError: The file cannot be used; the world is as before.
+            carom.errors.DescriptionError: The file cannot be used, or it is strict and something is left
+                out; the world is as before.
+            ValueError: An argument is out of range.
         """
-        from carom.soft.from_urdf import urdf_body
+        if as_pybullet:
+            from carom.soft.from_urdf import urdf_body
 
-        spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
-        return self._add(spec, position, orientation)
+            spec = urdf_body(Path(path), _search(), scale=scale, flags=flags, fixed_base=fixed_base)
+            return self._add(spec, position, orientation)
+        from carom.formats.kinds import FileKind
+        from carom.world.robot_files import Choices
 
-    def load_sdf(self, path: str | Path, *, scale: float = 1.0) -> list[Body]:
+        choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
+        return self._load_file(Path(path), position, orientation, choices, FileKind.URDF)[0]
+
+    def load_sdf(self, path: str | Path, *, scale: float = 1.0, strict: bool = False) -> list[Body]:
         """Add the models that an SDF file describes, at their poses in the file.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
             scale: Factor on lengths.
+            strict: Raise an error if something in the file would not be simulated.
 
         Returns:
             Their bodies, in the order of the file.
@@ -73,16 +205,19 @@ class DescriptionLoading(BodyAdding):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.model.from_files import sdf_bodies
+        from carom.formats.kinds import FileKind
+        from carom.world.robot_files import Choices
 
-        return self.load_all(sdf_bodies(Path(path), _search(), scale=scale))
+        choices = Choices(scale=scale, strict=strict)
+        return self._load_file(Path(path), _ORIGIN, _NO_TURN, choices, FileKind.SDF).bodies
 
-    def load_mjcf(self, path: str | Path, *, flags: int = 0) -> list[Body]:
+    def load_mjcf(self, path: str | Path, *, flags: int = 0, strict: bool = False) -> list[Body]:
         """Add the bodies that an MJCF file describes, at their poses in the file.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
             flags: Loading flags, see `carom.layouts.flags.LoadFlags`.
+            strict: Raise an error if something in the file would not be simulated.
 
         Returns:
             The bodies, in the order of the file.
@@ -90,9 +225,36 @@ class DescriptionLoading(BodyAdding):
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
         """
-        from carom.model.from_files import mjcf_bodies
+        from carom.formats.kinds import FileKind
+        from carom.world.robot_files import Choices
 
-        return self.load_all(mjcf_bodies(Path(path), _search(), flags=flags))
+        choices = Choices(flags=flags, strict=strict)
+        return self._load_file(Path(path), _ORIGIN, _NO_TURN, choices, FileKind.MJCF).bodies
+
+    def _load_file(
+        self,
+        path: Path,
+        position: Sequence[float],
+        orientation: Sequence[float],
+        choices: Choices,
+        kind: FileKind | None = None,
+    ) -> Scene:
+        """Add everything that a robot file describes; see `World.load`."""
+        from carom.checks import vector
+        from carom.world.robot_files import couple, placed, read_robot_file, report
+        from carom.world.scene import Scene
+
+        place = vector(position, 3, "position").tolist()
+        turn = vector(orientation, 4, "orientation").tolist()
+        source = read_robot_file(path, choices, kind)
+        report(source, strict=choices.strict)
+        couplings: list[JointCoupling] = []
+
+        def also(bodies: list[Body]) -> None:
+            couplings.extend(couple(bodies))
+
+        bodies = self.load_all(placed(source.bodies, place, turn), also)
+        return Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
 
     def load_all(
         self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None

@@ -26,7 +26,7 @@ def unpacked_world(kind: type[World], content: bytes) -> World:
     with TemporaryDirectory() as folder:
         path = Path(folder) / _NAME
         path.write_bytes(content)
-        world.load(path)
+        world.load_saved(path)
     return world
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from ctypes import c_double
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -119,43 +119,8 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
 
     # Bodies
 
-    @overload
-    def load(
-        self, what: BodySpec, position: Sequence[float] = ..., orientation: Sequence[float] = ...
-    ) -> Body: ...
-    @overload
-    def load(self, what: str | Path) -> list[Body]: ...
-    def load(
-        self,
-        what: BodySpec | str | Path,
-        position: Sequence[float] = (0.0, 0.0, 0.0),
-        orientation: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
-    ) -> Body | list[Body]:
-        """Add a body at rest, or all bodies of a world that was saved by `save`.
-
-        A world without bodies becomes a copy of the saved world, parameters and time included, and continues
-        exactly as that one did. In any other world, the saved bodies and their constraints are added to those
-        already there.
-
-        Args:
-            what: Specification of the body, or path of the file.
-            position: Of the base's link frame [m]; bodies of a file keep their poses.
-            orientation: Of the base's link frame, quaternion (x, y, z, w).
-
-        Returns:
-            The body's handle, or those of the file's bodies. A body gets the number of the body that was
-            removed last, if any.
-
-        Raises:
-            carom.errors.DescriptionError: The file, or that of a mesh, cannot be used; the world is as
-                before.
-        """
-        if not isinstance(what, BodySpec):
-            from carom.world.file_parts import PARTS
-            from carom.world_files.world_file import load_world
-
-            return load_world(self, Path(what), PARTS)
-        return self._add(what, position, orientation)
+    def _as_world(self) -> World:
+        return self
 
     def save(self, path: str | Path) -> None:
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.

@@ -17,7 +17,7 @@ from carom.engine.parameters import EngineParameters
 from carom.errors import DescriptionError
 from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
-from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, ConstraintKind, UserConstraintKind
+from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
 from carom.scene.changes import append, note_additions
@@ -119,6 +119,8 @@ class SavedTie:
     relative_position_target: float
     erp: float
     enabled: bool = True
+    polynomial: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    name: str = ""
 
 
 @dataclass(slots=True)
@@ -464,7 +466,8 @@ def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bo
         kind_and_place = (ConstraintKind.USER, tie.parent, tie.parent_link)
         return (record.kind, body, record.joint) == kind_and_place
     joint = body.joint_types[_index(record.joint, body.spec.links)]
-    return record.kind in (MOTOR_KIND.get(joint), LIMIT_KIND.get(joint))
+    friction = ConstraintKind.FRICTION if joint in WITH_FRICTION else None
+    return record.kind in (MOTOR_KIND.get(joint), LIMIT_KIND.get(joint), friction)
 
 
 def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> None:

@@ -166,7 +166,7 @@ def loadBullet(bulletFileName: str, physicsClientId: int = 0) -> tuple[int, ...]
     with client.lock:
         client.bodies.forget_all()
         try:
-            bodies = client.world.load(path)
+            bodies = client.world.load_saved(path)
         except CaromError as problem:
             fail(_CANNOT_LOAD, f"{problem}.")
         client.time_step = client.world.parameters.time_step

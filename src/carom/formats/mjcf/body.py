@@ -29,6 +29,7 @@ from carom.formats.mjcf.frames import read_pose
 from carom.formats.mjcf.geom import read_contact, read_geom
 from carom.formats.mjcf.joint import FREE, joint_position, read_joint
 from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS
 from carom.formats.xml_element import Element
@@ -94,7 +95,7 @@ class ModelReader:
         """The robot made from a `<geom>` of the world itself."""
         context = self.context
         defaults = class_defaults(context, element, scope.child_class)
-        geom = read_geom(context, element, {**defaults, **element.attributes}, scope.into)
+        geom = read_geom(context, element, layered(defaults, element.attributes), scope.into)
         name = element.attributes.get("name", _UNNAMED_GEOM)
         link = Link(name, MASSLESS, contact=read_contact(context, element, defaults))
         if geom is not None:
@@ -110,7 +111,7 @@ class ModelReader:
             context.next_number()
         child_class = element.attributes.get("childclass", scope.child_class)
         defaults = class_defaults(context, element, scope.child_class)
-        pose = read_pose(context, element, self._placing({**defaults, **element.attributes}, element))
+        pose = read_pose(context, element, self._placing(layered(defaults, element.attributes), element))
         # Poses of its contents are given in the body's frame, or in the world frame if all poses are.
         inner = Scope(child_class, inverse(pose) if context.compiler.global_frames else IDENTITY)
         own = compose(scope.into, pose)
@@ -118,10 +119,11 @@ class ModelReader:
         first_joint: Pose | None = None
         content = _Content()
         for child, within in _without_frames(context, element, inner):
-            attributes_of = class_defaults(context, child, within.child_class)
+            has_defaults = child.tag in ("joint", "geom")
+            attributes_of = class_defaults(context, child, within.child_class) if has_defaults else {}
             if child.tag == "joint":
                 attributes_of = limits_left_out(context, child, within.child_class, attributes_of)
-            attributes = {**attributes_of, **child.attributes}
+            attributes = layered(attributes_of, child.attributes)
             if child.tag == "joint":
                 kind = attributes.get("type")
                 if kind == FREE and parent is None and carrier is None:
@@ -193,7 +195,7 @@ class ModelReader:
 
     def _add_geom(self, element: Element, defaults: Attributes, scope: Scope, content: _Content) -> None:
         content.contact = _with_earlier(read_contact(self.context, element, defaults), content.contact)
-        geom = read_geom(self.context, element, {**defaults, **element.attributes}, scope.into)
+        geom = read_geom(self.context, element, layered(defaults, element.attributes), scope.into)
         # The last geom determines the centre of mass, unless an `<inertial>` came before it.
         if content.mass is None:
             middle = (0.0, 0.0, 0.0) if geom is None or geom.middle is None else geom.middle

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from carom.formats.mjcf.context import MjcfContext
+from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
@@ -20,13 +21,13 @@ def read_defaults(context: MjcfContext, element: Element, parent: str | None = N
     if not name:
         raise context.error(element, "attribute 'class' is missing")
     inherited = context.classes.get(parent or MAIN, {})
-    own = {kind: dict(attributes) for kind, attributes in inherited.items()}
+    own = {kind: layered(attributes, {}) for kind, attributes in inherited.items()}
     context.classes[name] = own
     if parent is None:
         context.classes[MAIN] = own
     for child in element.children:
         if child.tag != "default":
-            own.setdefault(child.tag, {}).update(child.attributes)
+            own[child.tag] = layered(own.get(child.tag, {}), child.attributes)
     for child in element.all("default"):
         read_defaults(context, child, name)
 
@@ -43,7 +44,10 @@ def class_defaults(context: MjcfContext, element: Element, child_class: str | No
             raise context.error(element, problem)
         context.warn(element, f"{problem}; the main one is used")
         name = MAIN
-    return context.classes.get(name, {}).get(element.tag, {})
+    defaults = context.classes.get(name, {}).get(element.tag, {})
+    if isinstance(defaults, Recorded):
+        defaults.note_use()
+    return defaults
 
 
 def limits_left_out(

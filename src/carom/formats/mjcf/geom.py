@@ -28,6 +28,7 @@ from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.context import MjcfContext, single
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
+from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.robot.geometry import MESH_SUFFIXES, check_suffix
 from carom.formats.xml_element import Element
@@ -95,7 +96,7 @@ def read_contact(context: MjcfContext, element: Element, defaults: Attributes) -
     As in PyBullet, lateral friction is that of the geom itself, but rolling and spinning friction are those
     of its defaults.
     """
-    attributes = {**defaults, **element.attributes}
+    attributes = layered(defaults, element.attributes)
     own = context.singles(element, "friction", attributes.get("friction", ""))
     inherited = context.singles(element, "friction", defaults.get("friction", ""))
     text = attributes.get("condim", _CONTACT_DIMENSIONS)

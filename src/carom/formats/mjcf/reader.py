@@ -9,6 +9,7 @@ from carom.formats.mjcf.body import ModelReader, world_elements
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import Cursor, TracedElement
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import MAX_FILE_BYTES, Includes, locate
 from carom.formats.search import AssetSearch
@@ -30,6 +31,7 @@ def read_mjcf(
     implicit: bool = False,
     as_mujoco: bool = True,
     search: AssetSearch | None = None,
+    cursor: Cursor | None = None,
 ) -> list[PlacedRobot]:
     """Reads and checks an MJCF file, looked up with `AssetSearch.find`: bodies and geoms in its order.
 
@@ -37,19 +39,19 @@ def read_mjcf(
     for every geom, massless links for joints. Others have MuJoCo's meaning: classes of defaults for all
     attributes, ball joints, ellipsoids, all kinds of orientations, `<frame>`, `<include>`, global
     coordinates. Actuators, sensors, tendons, damping, armature and the like are ignored. The flags are those
-    of `MjcfContext`.
+    of `MjcfContext`. A `cursor` records what is taken.
 
     Raises:
         DescriptionError: The file is missing or broken.
     """
     search = search or AssetSearch()
     file = locate(path, search)
-    root = _read_root(file)
+    root = _read_root(file, cursor)
     context = MjcfContext(file, root, search)
     context.colours = colours
     context.implicit = implicit
     context.as_mujoco = as_mujoco
-    _Inclusion(context).expand(root, file, (file,))
+    _Inclusion(context, cursor).expand(root, file, (file,))
     for element in root.all("default"):
         read_defaults(context, element)
     for element in root.all("compiler"):
@@ -71,16 +73,18 @@ def read_mjcf(
     return robots
 
 
-def _read_root(file: Path) -> Element:
+def _read_root(file: Path, cursor: Cursor | None) -> Element:
     data, _ = read_bounded(file, MAX_FILE_BYTES)
-    return parse_root(data, file, *_ROOTS)
+    root = parse_root(data, file, *_ROOTS)
+    return root if cursor is None else cursor.trace(root, file)
 
 
 class _Inclusion:
     """Replaces `<include>` elements by the content of the files they include."""
 
-    def __init__(self, context: MjcfContext) -> None:
+    def __init__(self, context: MjcfContext, cursor: Cursor | None) -> None:
         self.context = context
+        self.cursor = cursor
         self.includes = Includes()
         self.elements = 0
 
@@ -93,7 +97,7 @@ class _Inclusion:
                 children.append(child)
                 continue
             other = self._file(child, file, including)
-            root = _read_root(other)
+            root = _read_root(other, self.cursor)
             self.expand(root, other, (*including, other))
             for element in root.children:
                 self.context.origins.setdefault(id(element), other)
@@ -101,6 +105,9 @@ class _Inclusion:
             if self.elements > MAX_ELEMENTS:
                 raise self.context.error(child, f"all includes have more than {MAX_ELEMENTS} elements")
             children += root.children
+            if isinstance(root, TracedElement):
+                # From now on they are reported below the element that includes them.
+                root.children = []
         parent.children = children
 
     def _file(self, element: Element, file: Path, including: tuple[Path, ...]) -> Path:

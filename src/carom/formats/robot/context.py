@@ -11,6 +11,8 @@ from carom.description import Material, Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
+from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.written import Written
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 from carom.logger import Logger
@@ -34,6 +36,10 @@ MAX_MAGNITUDE = 1e30
 """Numbers beyond this are refused: products of a few of them would overflow."""
 
 
+class MissingFile(DescriptionError):
+    """A file that a robot file refers to is missing, or of a kind that cannot be read."""
+
+
 class FileContext:
     """State of one reading, for formats that keep values in the attributes of elements.
 
@@ -45,6 +51,9 @@ class FileContext:
         references: The path that each file name in the file was resolved to; None if there is no such file.
         links_without_inertial: Names of links that got the default mass.
         materials: The materials of a URDF file read so far, by name.
+        written: How to read the file as its author meant it; None to read it as PyBullet does.
+        cursor: What the reader has taken, if that is reported.
+        mesh_directory: Where meshes are that are not found by the name in the file; empty for nowhere.
     """
 
     def __init__(self, file: Path, root: Element, scale: float, search: AssetSearch) -> None:
@@ -55,6 +64,9 @@ class FileContext:
         self.references: dict[str, Path | None] = {}
         self.links_without_inertial: list[str] = []
         self.materials: dict[str, Material] = {}
+        self.written: Written | None = None
+        self.cursor: Cursor | None = None
+        self.mesh_directory = ""
 
     def error(self, element: Element, reason: str) -> DescriptionError:
         """An error at an element, with its line and its path in the document."""
@@ -75,7 +87,10 @@ class FileContext:
     def find_file(self, name: str) -> Path | None:
         """The file that a name in this file refers to; the result is kept in `references`."""
         if name not in self.references:
-            self.references[name] = self.search.find_referenced(name, self.file)
+            found = self.search.find_referenced(name, self.file)
+            if found is None and self.mesh_directory:
+                found = self.search.find_in(self.mesh_directory, name, self.file)
+            self.references[name] = found
         return self.references[name]
 
     def states(self, element: Element, key: str) -> bool:
@@ -244,11 +259,19 @@ class FileContext:
             raise self.error(element, f"the name {shown(name)} is taken already, on line {lines[name]}")
         lines[name] = element.line
 
-    def not_found(self, element: Element, name: str) -> DescriptionError:
+    def leave_out(self, element: Element, consequence: str, reason: str, *attributes: str) -> None:
+        """Report something that is read and not simulated; without a cursor, as a warning."""
+        if self.cursor is not None:
+            self.cursor.leave_out(element, consequence, reason, attributes=attributes)
+        else:
+            self.warn(element, f"{consequence}: {reason}")
+
+    def not_found(self, element: Element, name: str) -> MissingFile:
         """The error for a file that was not found."""
-        return self.error(
+        problem = self.error(
             element, f"{shown(name)} was found neither beside the file nor in a directory above it"
         )
+        return MissingFile(problem.reason, file=problem.file, line=problem.line, element=problem.element)
 
     def user_data(self, owner: Element) -> dict[str, str]:
         """Key and value pairs in `<bullet><user-data key="...">` below an element; the last one counts."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from carom.description import Plane
 from carom.description.pose import Vector3
-from carom.formats.robot.context import FileContext, shown
+from carom.formats.robot.context import FileContext, MissingFile, shown
 from carom.formats.xml_element import Element
 
 MESH_SUFFIXES = (".obj", ".stl", ".dae")
@@ -55,4 +55,5 @@ def check_suffix(
 ) -> None:
     """Raise `DescriptionError` unless a file name has one of these suffixes."""
     if not name.lower().endswith(suffixes):
-        raise context.error(shape, f"{key}={shown(name)} must end in {' or '.join(suffixes)}")
+        problem = context.error(shape, f"{key}={shown(name)} must end in {' or '.join(suffixes)}")
+        raise MissingFile(problem.reason, file=problem.file, line=problem.line, element=problem.element)

@@ -69,6 +69,8 @@ def read_dynamics(context: FileContext, owner: Element) -> tuple[float, float]:
     element = owner.first("dynamics")
     if element is None:
         return 0.0, 0.0
-    if not (context.states(element, "damping") or context.states(element, "friction")):
+    if context.written is None and not (
+        context.states(element, "damping") or context.states(element, "friction")
+    ):
         raise context.error(element, "it states neither damping nor friction")
     return context.value(element, "damping", 0.0), context.value(element, "friction", 0.0)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
 from carom.description import Collision, ContactParameters, Geometry, Inertial, Link, Material, Mesh, Visual
-from carom.formats.robot.context import FileContext
+from carom.formats.robot.context import FileContext, MissingFile
 from carom.formats.xml_element import Element
 
 Context = TypeVar("Context", bound=FileContext)
@@ -43,22 +43,35 @@ def read_link(
         name,
         inertial=_read_inertial(context, element, name),
         collisions=tuple(
-            _read_collision(context, child, read_geometry(context, child))
-            for child in element.all("collision")
+            _read_collision(context, child, geometry)
+            for child, geometry in _shapes(context, element, "collision", read_geometry)
         ),
         visuals=tuple(
             Visual(
-                read_geometry(context, child),
+                geometry,
                 frame=context.pose(child),
                 name=child.attributes.get("name", ""),
                 material=read_material(context, child),
                 user_data=context.user_data(child),
             )
-            for child in element.all("visual")
+            for child, geometry in _shapes(context, element, "visual", read_geometry)
         ),
         contact=_read_contact(context, element.first("contact")),
         user_data=context.user_data(element),
     )
+
+
+def _shapes(
+    context: Context, link: Element, tag: str, read_geometry: Callable[[Context, Element], Geometry]
+) -> Iterator[tuple[Element, Geometry]]:
+    """The shapes of a link and their elements, without those whose files may be missing."""
+    for child in link.all(tag):
+        try:
+            yield child, read_geometry(context, child)
+        except MissingFile as problem:
+            if context.written is None or not context.written.missing_meshes:
+                raise
+            context.leave_out(child, "the link is without this shape", problem.reason)
 
 
 def _read_inertial(context: FileContext, link: Element, name: str) -> Inertial:
@@ -67,6 +80,8 @@ def _read_inertial(context: FileContext, link: Element, name: str) -> Inertial:
     if element is None:
         if name == "world":
             return MASSLESS
+        if context.written is not None:
+            return context.written.without_inertial()
         context.links_without_inertial.append(name)
         return _NO_INERTIAL
     mass = context.non_negative(*context.place(element, "mass"))
@@ -75,8 +90,10 @@ def _read_inertial(context: FileContext, link: Element, name: str) -> Inertial:
         raise context.error(element, "<inertia> is missing")
     ixx, iyy, izz = (context.value(inertia, key) for key in ("ixx", "iyy", "izz"))
     products = ("ixy", "ixz", "iyz")
-    # Products of inertia count only when all three are given.
-    if all(context.states(inertia, key) for key in products):
+    # In PyBullet, products of inertia count only when all three are given.
+    if context.written is not None:
+        ixy, ixz, iyz = (context.value(inertia, key, 0.0) for key in products)
+    elif all(context.states(inertia, key) for key in products):
         ixy, ixz, iyz = (context.value(inertia, key) for key in products)
     else:
         ixy = ixz = iyz = 0.0

@@ -8,6 +8,7 @@ from pathlib import Path
 from carom.description.transform import compose
 from carom.formats.files import read_bounded
 from carom.formats.placed import PlacedRobot
+from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import MAX_FILE_BYTES, Includes, check_scale, locate, warn_of_assumed_masses
 from carom.formats.sdf.context import SdfContext
@@ -20,14 +21,19 @@ _MODEL_FILE = "model.sdf"
 
 
 def read_sdf(
-    path: Path, *, scale: float = 1.0, words_are_true: bool = True, search: AssetSearch | None = None
+    path: Path,
+    *,
+    scale: float = 1.0,
+    words_are_true: bool = True,
+    search: AssetSearch | None = None,
+    cursor: Cursor | None = None,
 ) -> list[PlacedRobot]:
     """Reads and checks an SDF file, looked up with `AssetSearch.find`; models are in the order of the file.
 
     Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
     and plugins are ignored. `scale` is a factor on lengths: positions, boxes, cylinders, capsules and meshes,
     but as in PyBullet neither spheres nor limits. Without `words_are_true`, `<static>true</static>` means 0,
-    as in PyBullet.
+    as in PyBullet. A `cursor` records what is taken.
 
     Raises:
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.
@@ -35,22 +41,28 @@ def read_sdf(
     """
     check_scale(scale)
     search = search or AssetSearch()
-    return _Reading(scale, words_are_true, search).read(locate(path, search), ())
+    return _Reading(scale, words_are_true, search, cursor).read(locate(path, search), ())
 
 
 class _Reading:
     """The reading of one file and of all files that it includes."""
 
-    def __init__(self, scale: float, words_are_true: bool, search: AssetSearch) -> None:
+    def __init__(
+        self, scale: float, words_are_true: bool, search: AssetSearch, cursor: Cursor | None
+    ) -> None:
         self.scale = scale
         self.words_are_true = words_are_true
         self.search = search
+        self.cursor = cursor
         self.includes = Includes()
 
     def read(self, file: Path, including: tuple[Path, ...]) -> list[PlacedRobot]:
         """The robots of a file; `including` are the files by which it is included, outermost first."""
         data, _ = read_bounded(file, MAX_FILE_BYTES)
         root = parse_root(data, file, "sdf")
+        if self.cursor is not None:
+            root = self.cursor.trace(root, file)
+            root.attributes.get("version")
         context = SdfContext(file, root, self.scale, self.search)
         context.words_are_true = self.words_are_true
         robots: list[PlacedRobot] = []

@@ -33,7 +33,12 @@ def read_joint(context: FileContext, element: Element, link_indices: dict[str, i
     """
     name = context.required(element, "name")
     kind = read_joint_type(context, element, _TYPES)
+    if kind is JointType.FLOATING and context.written is not None:
+        context.leave_out(element, "it is fixed", "floating joints inside a tree are not supported", "type")
+        kind = JointType.FIXED
     axis, axis_length = _read_axis(context, element, kind)
+    if context.written is not None:
+        axis_length = 1.0
     damping, friction = read_dynamics(context, element)
     scale = context.scale if kind in SLIDES else 1.0
     return Joint(
@@ -97,5 +102,5 @@ def _if_valid(
     try:
         return None if element is None else read(context, element, scale)
     except DescriptionError as error:
-        context.warn(element or context.root, f"ignored: {error.reason}")
+        context.leave_out(element or context.root, "ignored", error.reason)
         return None

@@ -9,14 +9,21 @@ from typing import TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
+from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.ignored import IgnoredList
+from carom.formats.reading.written import Written
 from carom.formats.robot.context import FileContext
 from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
+from carom.formats.urdf.extensions import read_extensions, refuse_xacro
+from carom.formats.urdf.following import checked_followers
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
+from carom.formats.urdf.moving_mass import report_motion_without_mass
+from carom.formats.urdf.rules import URDF_RULES
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
@@ -36,30 +43,65 @@ def read_urdf(path: Path, *, scale: float = 1.0, search: AssetSearch | None = No
         DescriptionError: The file is missing, broken, or does not describe one tree of links.
         ValueError: `scale` is not a positive number of sensible size.
     """
+    return _read(path, scale, search or AssetSearch(), None)[0]
+
+
+def read_written_urdf(
+    path: Path, written: Written, *, scale: float = 1.0, search: AssetSearch | None = None
+) -> tuple[Robot, IgnoredList]:
+    """As `read_urdf`, but as the author of the file meant it; and what of it is not simulated.
+
+    Links without `<inertial>` have no mass, products of inertia count singly, and an axis has no length. A
+    joint that moves nothing with mass is reported, see `carom.formats.urdf.moving_mass`.
+    """
+    return _read(path, scale, search or AssetSearch(), written)
+
+
+def _read(
+    path: Path, scale: float, search: AssetSearch, written: Written | None
+) -> tuple[Robot, IgnoredList]:
     check_scale(scale)
-    search = search or AssetSearch()
     file = path
     # The search begins at an absolute path itself, so an unchanged file there is the one it would find.
-    cached = _cache.get((file, scale, search), file) if path.is_absolute() else None
+    cached = _cache.get((file, scale, search, written), file) if path.is_absolute() else None
     if cached is None:
         file = locate(path, search)
-        cached = _cache.get((file, scale, search), file)
+        cached = _cache.get((file, scale, search, written), file)
     if cached is not None:
-        robot, references = cached
+        robot, references, ignored = cached
         if [search.find_referenced(name, file) for name in references] == list(references.values()):
-            return robot
+            return robot, ignored
     data, stamp = read_bounded(file, MAX_FILE_BYTES)
-    robot, references = parse_urdf(data, file, scale=scale, search=search)
-    _cache.put((file, scale, search), stamp, (robot, references))
-    return robot
+    context = _context(data, file, scale, search, written)
+    robot, references = _parse(context)
+    ignored = IgnoredList() if context.cursor is None else context.cursor.ignored()
+    _cache.put((file, scale, search, written), stamp, (robot, references, ignored))
+    return robot, ignored
 
 
 def parse_urdf(
     data: bytes, file: Path, *, scale: float, search: AssetSearch
 ) -> tuple[Robot, dict[str, Path | None]]:
     """A robot from the content of a file, and the path that each file name in it was resolved to."""
+    return _parse(_context(data, file, scale, search, None))
+
+
+def _context(
+    data: bytes, file: Path, scale: float, search: AssetSearch, written: Written | None
+) -> FileContext:
     element = parse_root(data, file, "robot")
-    context = FileContext(file, element, scale, search)
+    if written is None:
+        return FileContext(file, element, scale, search)
+    refuse_xacro(element, file)
+    cursor = Cursor(URDF_RULES)
+    context = FileContext(file, cursor.trace(element, file), scale, search)
+    context.written, context.cursor = written, cursor
+    read_extensions(context)
+    return context
+
+
+def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
+    element = context.root
     name = context.required(element, "name")
     for tag in _SOFT:
         soft = element.first(tag)
@@ -74,13 +116,17 @@ def parse_urdf(
     link_indices = {link.name: index for index, link in enumerate(links)}
     joints = _read_all(context, "joint", lambda it: read_joint(context, it, link_indices))
     warn_of_assumed_masses(context)
+    root = find_root(context, links, joints, list(element.all("joint")))
+    if context.written is not None:
+        report_motion_without_mass(context, links, joints)
+        joints = checked_followers(context, joints)
     robot = Robot(
         name,
         tuple(_with_late_materials(context, link) for link in links),
         tuple(joints),
-        root=find_root(context, links, joints, list(element.all("joint"))),
+        root=root,
         materials=tuple(context.materials.values()),
-        source=file,
+        source=context.file,
         user_data=context.user_data(element),
     )
     return robot, context.references
@@ -125,4 +171,6 @@ def _with_late_material(context: FileContext, visual: Visual) -> Visual:
     return replace(visual, material=context.materials.get(material.name, material))
 
 
-_cache: FileCache[tuple[Path, float, AssetSearch], tuple[Robot, dict[str, Path | None]]] = FileCache(64)
+_cache: FileCache[
+    tuple[Path, float, AssetSearch, Written | None], tuple[Robot, dict[str, Path | None], IgnoredList]
+] = FileCache(64)

@@ -7,6 +7,7 @@ squared change of a row's velocity is at most the residual threshold, or after t
 import warp as wp
 
 from carom.kernels.dynamics.feedback import gather_constraint_forces
+from carom.kernels.dynamics.friction import friction_row
 from carom.kernels.dynamics.limits import limit_rows, spherical_limit_rows
 from carom.kernels.dynamics.motors import motor_row, spherical_motor_rows
 from carom.kernels.dynamics.quarantine import report_fault
@@ -14,7 +15,7 @@ from carom.kernels.dynamics.rows import row_dof
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import ConstraintRows, Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector4, Vector4Rows, func, real
-from carom.layouts.codes import LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
+from carom.layouts.codes import FRICTION, LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
 
 
 @func
@@ -51,7 +52,7 @@ def joint_constraint_rows(
     constraint: Int32,
     row: Int32,
 ) -> Int32:
-    """Write the rows of a motor or a limit, if it is active; returns the next free row."""
+    """Write the rows of a motor, a limit or friction, if it is active; returns the next free row."""
     kind = model.constraint[constraint].kind
     if kind == MOTOR:
         row = motor_row(model, settings, state, scratch, world, constraint, row)
@@ -61,6 +62,8 @@ def joint_constraint_rows(
         row = spherical_motor_rows(model, settings, state, scratch, world, constraint, row)
     elif kind == SPHERICAL_LIMIT:
         row = spherical_limit_rows(model, settings, state, scratch, world, constraint, row)
+    elif kind == FRICTION:
+        row = friction_row(model, settings, state, scratch, world, constraint, row)
     return row
 
 

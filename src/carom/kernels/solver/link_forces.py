@@ -12,6 +12,7 @@ from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import can_move, is_asleep, pushed_tree
 from carom.kernels.solver.contact_terms import impulse_on_a
 from carom.kernels.solver.user_constraints import (
+    coupled_position,
     held_directions,
     held_points,
     pose_row,
@@ -20,8 +21,8 @@ from carom.kernels.solver.user_constraints import (
     world_frame,
 )
 from carom.kernels.structs import Contacts, Model, Scratch, Settings, Shapes, State, UserConstraints
-from carom.kernels.types import Int32, Vector3, func
-from carom.layouts.codes import USER_GEAR
+from carom.kernels.types import Int32, Vector3, func, real
+from carom.layouts.codes import USER_COUPLING, USER_GEAR
 from carom.layouts.contacts import THERE
 
 
@@ -98,6 +99,14 @@ def gather_user_forces(
         pushed = ends[2]
     if not can_move(model, pushed) or is_asleep(state, world, pushed):
         return
+    if users.user_kind[user] == USER_COUPLING:
+        size = state.user_impulse[world, user][0] / settings.time_step
+        _target, slope = coupled_position(state, model, users, world, user)
+        if ends[0] == tree:
+            add_joint_force(model, scratch, world, ends[1], size)
+        if ends[2] == tree:
+            add_joint_force(model, scratch, world, ends[3], -slope * size)
+        return
     force, torque = user_wrench(settings, model, state, scratch, users, world, user)
     point_a, point_b = held_points(state, users, world, user)
     if users.user_kind[user] == USER_GEAR:
@@ -110,6 +119,21 @@ def gather_user_forces(
     if ends[2] == tree:
         add_link_force(state, scratch, world, ends[3], point_b, -force)
         scratch.link[world, ends[3]].constraint_torque -= torque
+
+
+@func
+def add_joint_force(model: Model, scratch: Scratch, world: Int32, link: Int32, size: real):
+    """Add the force or torque of a joint of one dof to its link, and the opposite to the parent."""
+    dof = model.link[link].first_dof
+    parent = model.link[link].parent
+    angular = scratch.dof[world, dof].angular * size
+    linear = Vector3(0.0, 0.0, 0.0)
+    if wp.dot(angular, angular) == 0.0:
+        linear = scratch.dof[world, dof].linear * size
+    scratch.link[world, link].constraint_torque += angular
+    scratch.link[world, link].constraint_force += linear
+    scratch.link[world, parent].constraint_torque -= angular
+    scratch.link[world, parent].constraint_force -= linear
 
 
 @func

@@ -1,14 +1,14 @@
-"""Rows of user constraints: point to point, fixed, prismatic, gear."""
+"""Rows of user constraints: point to point, fixed, prismatic, gear, coupling."""
 
 import warp as wp
 
 from carom.kernels.dynamics.motors import euler_xyz
-from carom.kernels.maths.blocks import fill_zero, write_multiple
+from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, write_multiple
 from carom.kernels.maths.rotation import column, rotation_matrix
-from carom.kernels.solver.pair_rows import place_row, write_pair_jacobian, write_row
+from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
-from carom.layouts.codes import USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
+from carom.layouts.codes import USER_COUPLING, USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
 
 _PARALLEL = real(1e-6)
 
@@ -28,7 +28,7 @@ def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Qua
 @func
 def user_row_count(kind: Int32) -> Int32:
     """Number of rows of a user constraint."""
-    if kind == USER_GEAR:
+    if kind == USER_GEAR or kind == USER_COUPLING:
         return Int32(1)
     if kind == USER_POINT_TO_POINT:
         return Int32(3)
@@ -118,6 +118,11 @@ def add_user_rows(
     pair_rows.user_first_row[world, user] = row
     if users.user_kind[user] == USER_GEAR:
         row, block = add_gear_row(settings, model, state, scratch, users, pair_rows, world, user, row, block)
+        return row, block
+    if users.user_kind[user] == USER_COUPLING:
+        row, block = add_coupling_row(
+            settings, model, state, scratch, users, pair_rows, world, user, row, block
+        )
         return row, block
     ends = user_ends(users, user)
     point_a, point_b = held_points(state, users, world, user)
@@ -213,6 +218,71 @@ def add_gear_row(
     change = auxiliary_rate - (rate_a + rate_b) - error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]
     write_row(pair_rows, world, row, inverse_mass_a + inverse_mass_b, change, 0.0, -bound, bound, 0.0)
+    return row + 1, after
+
+
+@func
+def coupled_position(state: State, model: Model, users: UserConstraints, world: Int32, user: Int32):
+    """Where a coupling wants its follower, and the change of that per change of the leader's position."""
+    target, slope = real(0.0), real(0.0)
+    if users.user_tree_b[user] >= 0:
+        x = joint_position(model, state, world, users.user_link_b[user])
+        c = users.user_polynomial[user]
+        target = x * (c[0] + x * (c[1] + x * (c[2] + x * c[3])))
+        slope = c[0] + x * (2.0 * c[1] + x * (3.0 * c[2] + x * 4.0 * c[3]))
+    return users.user_relative_target[user] + target, slope
+
+
+@func
+def add_coupling_row(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+    user: Int32,
+    row: Int32,
+    block: Int32,
+):
+    """Add a coupling's row: position of joint a = polynomial of that of joint b.
+
+    Joints of one tree share one Jacobian, so that its inverse mass has the terms across both.
+    """
+    tree_a, tree_b = users.user_tree_a[user], users.user_tree_b[user]
+    target, slope = coupled_position(state, model, users, world, user)
+    error = joint_position(model, state, world, users.user_link_a[user]) - target
+    dof_a = model.link[users.user_link_a[user]].first_dof
+    one_tree = tree_b < 0 or tree_b == tree_a
+    after = place_row(model, pair_rows, world, row, tree_a, Int32(-1) if one_tree else tree_b, block)
+    inverse_mass, rate = write_dof_jacobian(
+        model, state, scratch, pair_rows, world, tree_a, dof_a, 1.0, block
+    )
+    if tree_b >= 0:
+        dof_b = model.link[users.user_link_b[user]].first_dof
+        if one_tree:
+            blocks = tree_blocks(model, tree_a)
+            column_b = dof_b - model.tree[tree_a].first_dof
+            add_multiple(
+                pair_rows.jacobian_response, block, -slope, scratch.block_inverse_mass,
+                model.tree[tree_a].first_block + column_b * blocks, world, blocks,
+            )  # fmt: skip
+            pair_rows.entry_row[world, 4 * block + column_b] = -slope
+            inverse_mass = dot_product(
+                pair_rows.jacobian_row, block, pair_rows.jacobian_response, block, world, blocks
+            )
+            rate -= slope * state.dof_velocity[world, dof_b]
+        else:
+            inverse_mass_b, rate_b = write_dof_jacobian(
+                model, state, scratch, pair_rows, world, tree_b, dof_b, -slope,
+                block + pair_rows.row_place[world, row][1],
+            )  # fmt: skip
+            inverse_mass += inverse_mass_b
+            rate += rate_b
+    change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
+    bound = users.user_max_impulse[user]
+    write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
     return row + 1, after
 
 

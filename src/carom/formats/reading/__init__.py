@@ -1,0 +1,1 @@
+"""What readers of robot files take from them, and the report of what they leave out."""

@@ -1,0 +1,101 @@
+"""Reports of what a file says and the simulation lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from carom.record import record
+
+_HEADER = ("element", "attributes", "count", "where", "consequence", "reason")
+_MOST_NAMES = 4
+
+
+@record
+class Ignored:
+    """Something in a file that is not simulated.
+
+    Attributes:
+        element: Name of the element, with that of the one around it, as in `joint/mimic`.
+        file: The file that contains it.
+        line: Line of the first one there, counted from 1.
+        attributes: The attributes concerned; none if it is the whole element, with all inside it.
+        count: How many there are in this file.
+        consequence: What the simulation lacks.
+        reason: Why.
+    """
+
+    element: str
+    file: Path
+    line: int
+    attributes: tuple[str, ...]
+    count: int
+    consequence: str
+    reason: str
+
+    @property
+    def matters(self) -> bool:
+        """Whether the simulation lacks something; the consequence of other entries begins with `none`."""
+        return not self.consequence.startswith("none")
+
+    def __str__(self) -> str:
+        attributes = f" {', '.join(self.attributes)}" if self.attributes else ""
+        times = f" ({self.count} times)" if self.count > 1 else ""
+        return (
+            f"{self.file}:{self.line}: {self.element}{attributes}{times}: {self.consequence} ({self.reason})"
+        )
+
+
+class IgnoredList(list[Ignored]):
+    """What of a file is not simulated, by file and line; prints as a table."""
+
+    @classmethod
+    def of(cls, found: Iterable[Ignored]) -> IgnoredList:
+        """A list in which entries of one file that differ only in their lines are one, with their count."""
+        first: dict[tuple[object, ...], Ignored] = {}
+        counts: dict[tuple[object, ...], int] = {}
+        for one in sorted(found, key=lambda it: (str(it.file), it.line)):
+            key = (one.element, one.file, one.attributes, one.consequence, one.reason)
+            first.setdefault(key, one)
+            counts[key] = counts.get(key, 0) + one.count
+        return cls(
+            Ignored(one.element, one.file, one.line, one.attributes, counts[key], one.consequence, one.reason)
+            for key, one in first.items()
+        )
+
+    @property
+    def total(self) -> int:
+        """Number of elements in files that are concerned."""
+        return sum(one.count for one in self)
+
+    @property
+    def that_matter(self) -> IgnoredList:
+        """Those that a simulation lacks."""
+        return IgnoredList(one for one in self if one.matters)
+
+    def summary(self) -> str:
+        """Counts by element, the most frequent first, as in `3 joint/mimic, 1 robot/gazebo`."""
+        counts: dict[str, int] = {}
+        for one in self:
+            counts[one.element] = counts.get(one.element, 0) + one.count
+        names = sorted(counts, key=lambda name: -counts[name])
+        listed = [f"{counts[name]} {name}" for name in names[:_MOST_NAMES]]
+        if len(names) > _MOST_NAMES:
+            listed.append(f"{sum(counts[name] for name in names[_MOST_NAMES:])} others")
+        return ", ".join(listed)
+
+    def __str__(self) -> str:
+        if not self:
+            return "Nothing is ignored."
+        rows = [_HEADER, *map(_cells, self)]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        rows.insert(1, tuple("-" * width for width in widths))
+        return "\n".join(
+            "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+            for row in rows
+        )
+
+
+def _cells(one: Ignored) -> tuple[str, ...]:
+    where = f"{one.file.name}:{one.line}"
+    return (one.element, " ".join(one.attributes), str(one.count), where, one.consequence, one.reason)

@@ -1,0 +1,160 @@
+"""Joint couplings: a joint whose position is a function of that of another, as `<mimic>` in URDF."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from carom.description.pose import IDENTITY
+from carom.layouts.codes import UserConstraintKind
+from carom.scene.user_constraints import UserConstraint
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.joint import Joint
+    from carom.world.world import World
+
+UNBOUNDED = 1e30
+"""Greatest impulse of a coupling per substep [N m s or N s]; no solver gets there."""
+
+_SINGLE_DOF = 1
+
+
+class JointCoupling:
+    """Holds a joint, the follower, at a polynomial of the position of another one, its leader.
+
+    A file's couplings hold from the start: followers are placed where they follow. In each substep the solver
+    makes the follower's rate the one that follows from the leader's, and corrects the share
+    `parameters.joint_erp` of the error. Both joints feel the force of the coupling.
+    """
+
+    __slots__ = ("_tie",)
+
+    def __init__(self, tie: UserConstraint) -> None:
+        self._tie = tie
+
+    def __repr__(self) -> str:
+        leader = "" if self.leader is None else f" of {self.leader.name!r}"
+        state = "" if self.enabled else ", disabled"
+        return f"<JointCoupling {self.name!r}: {self.follower.name!r} = {self.coefficients}{leader}{state}>"
+
+    @property
+    def name(self) -> str:
+        """Name: in URDF files that of the joint with the `<mimic>`."""
+        return self._tie.name
+
+    @property
+    def follower(self) -> Joint:
+        """The joint that follows."""
+        return self._tie.parent.joints[self._tie.parent_link]
+
+    @property
+    def leader(self) -> Joint | None:
+        """The joint that it follows; None if it is held at a constant."""
+        return None if self._tie.child is None else self._tie.child.joints[self._tie.child_link]
+
+    @property
+    def coefficients(self) -> tuple[float, float, float, float, float]:
+        """Of the polynomial, from the constant to the fourth power; of `<mimic>` offset and multiplier."""
+        return (self._tie.relative_position_target, *self._tie.polynomial)
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it holds; settable. Where it is switched on again, it pulls the follower back."""
+        return self._tie.enabled
+
+    @enabled.setter
+    def enabled(self, value: bool) -> None:
+        if self._tie.enabled != bool(value):
+            self._tie.enabled = bool(value)
+            self._tie.parent.world.constraints_changed()
+
+    @property
+    def error(self) -> float:
+        """Position of the follower minus where it should be [rad or m]."""
+        return float(self.follower.position) - self._wanted()[0]
+
+    def _wanted(self) -> tuple[float, float]:
+        """Where the follower should be, and the change of that per change of the leader's position."""
+        constant, *factors = self.coefficients
+        x = 0.0 if self.leader is None else float(self.leader.position)
+        wanted, slope, power = constant, 0.0, 1.0
+        for exponent, factor in enumerate(factors, start=1):
+            slope += exponent * factor * power
+            power *= x
+            wanted += factor * power
+        return wanted, slope
+
+    def place(self) -> None:
+        """Set position and velocity of the follower to those that follow from the leader's."""
+        wanted, slope = self._wanted()
+        rate = 0.0 if self.leader is None else slope * float(self.leader.velocity)
+        self._tie.parent.set_joint_state(self._tie.parent_link, [wanted], [rate])
+
+    @property
+    def force(self) -> float:
+        """Force or torque on the follower in the last substep [N or N m]; 0 while it is disabled.
+
+        The leader feels this times minus the slope of the polynomial.
+        """
+        world = self._tie.parent.world
+        if not self.enabled:
+            return 0.0
+        impulse = world.user_constraints.impulses(self._tie, world.arrays.state)[0]
+        return float(impulse) / (world.parameters.time_step / max(1, world.parameters.substeps))
+
+
+def couplings_of(world: World, bodies: Sequence[Body]) -> list[JointCoupling]:
+    """The couplings of some bodies of a world."""
+    ties = [] if len(world.user_constraints) == 0 else world.user_constraints.all
+    return [
+        JointCoupling(tie)
+        for tie in ties
+        if tie.kind == UserConstraintKind.COUPLING and any(tie.parent is body for body in bodies)
+    ]
+
+
+def place_followers(body: Body, joint: int) -> None:
+    """Place the joints of a body that follow one of its joints, directly or through others."""
+    couplings = [coupling for coupling in couplings_of(body.world, [body]) if coupling.enabled]
+    placed, pending = {joint}, [joint]
+    while pending:
+        leader = pending.pop()
+        for coupling in couplings:
+            follower = coupling.follower.index
+            if coupling.leader is not None and coupling.leader.index == leader and follower not in placed:
+                coupling.place()
+                placed.add(follower)
+                pending.append(follower)
+
+
+def new_coupling(
+    body: Body,
+    follower: int,
+    leader: int | None,
+    coefficients: tuple[float, float, float, float, float],
+    name: str,
+) -> UserConstraint:
+    """The constraint between two joints of a body, to be put into its world; None for no leader.
+
+    Raises:
+        ValueError: One of them is not revolute or prismatic.
+    """
+    for joint in (follower, leader):
+        if joint is not None and body.velocity_count[joint] != _SINGLE_DOF:
+            raise ValueError(f"joint {body.spec.links[joint].joint_name!r} is neither revolute nor prismatic")
+    constant, first, second, third, fourth = coefficients
+    tie = body.world.user_constraints.new(
+        UserConstraintKind.COUPLING,
+        body,
+        follower,
+        None if leader is None else body,
+        -1 if leader is None else leader,
+        (0.0, 0.0, 0.0),
+        IDENTITY,
+        IDENTITY,
+    )
+    tie.relative_position_target, tie.polynomial = constant, (first, second, third, fourth)
+    tie.erp, tie.name = 1.0, name
+    tie.max_impulse = tie.max_force = UNBOUNDED
+    return tie

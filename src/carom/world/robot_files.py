@@ -1,0 +1,183 @@
+"""Robot files, read as their authors meant them: bodies, constraints, and what is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from carom.description.pose import IDENTITY, Pose
+from carom.description.transform import compose
+from carom.errors import DescriptionError
+from carom.formats.kinds import FileKind, kind_of, refuse_usd
+from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.ignored import IgnoredList
+from carom.formats.reading.written import Written
+from carom.formats.robot.file import locate
+from carom.formats.search import AssetSearch
+from carom.formats.shipped import shipped_folder
+from carom.logger import Logger
+from carom.model.body_spec import BodySpec
+from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.named_constraints.joint_coupling import JointCoupling
+
+_log = Logger("carom.world")
+MISSING_MESHES = ("error", "warn")
+
+
+@record(frozen=False)
+class Choices:
+    """How a robot file is loaded; see `World.load`."""
+
+    fixed_base: bool = False
+    scale: float = 1.0
+    flags: int = 0
+    strict: bool = False
+    package_paths: Sequence[str | Path] = ()
+    missing_meshes: str = "error"
+    default_mass: float | None = None
+
+    def written(self) -> Written:
+        """The choices of a reading; raises `ValueError` if one is not known."""
+        if self.missing_meshes not in MISSING_MESHES:
+            raise ValueError(f"missing_meshes is {self.missing_meshes!r}; expected one of {MISSING_MESHES}")
+        if self.default_mass is not None and not 0.0 < self.default_mass < float("inf"):
+            raise ValueError(f"default_mass is {self.default_mass}; expected a positive number or None")
+        return Written(self.missing_meshes == "warn", self.default_mass)
+
+    def search(self) -> AssetSearch:
+        """The search for the file and its meshes."""
+        packages = tuple(Path(path).absolute() for path in self.package_paths)
+        return AssetSearch(shipped_folder(), packages=packages)
+
+
+@record(frozen=False, eq=False)
+class RobotFile:
+    """What a file describes, before it is in a world.
+
+    Attributes:
+        path: The file.
+        kind: Its format.
+        bodies: Bodies, and world poses of the link frames of their bases.
+        ignored: What it says and the simulation lacks.
+    """
+
+    path: Path
+    kind: FileKind
+    bodies: list[tuple[BodySpec, Pose]] = field(default_factory=list)
+    ignored: IgnoredList = field(default_factory=IgnoredList)
+
+
+def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) -> RobotFile:
+    """Read a robot file; without `kind`, its format is found by its content.
+
+    Raises:
+        DescriptionError: The file cannot be used, or, if the choice is strict, something in it would be left
+            out.
+        ValueError: A choice is not known, or not for this format.
+    """
+    written, search = choices.written(), choices.search()
+    file = locate(path, search)
+    kind = kind or kind_of(file)
+    if kind is FileKind.USD:
+        raise refuse_usd(file)
+    if kind is FileKind.SAVED_WORLD:
+        raise DescriptionError("it is a saved world, and no robot file", file=file)
+    if kind is not FileKind.URDF and choices.fixed_base:
+        raise ValueError(f"fixed_base is for URDF; in {kind.value} files, models state it themselves")
+    if kind is FileKind.MJCF and choices.scale != 1.0:
+        raise ValueError("scale is for URDF and SDF files")
+    result = RobotFile(file, kind)
+    if kind is FileKind.URDF:
+        from carom.soft.from_urdf import written_urdf_body
+
+        spec, result.ignored = written_urdf_body(
+            file, search, written, scale=choices.scale, flags=choices.flags, fixed_base=choices.fixed_base
+        )
+        result.bodies = [(spec, IDENTITY)]
+    else:
+        result.bodies, result.ignored = _read_scene(file, kind, choices, search)
+    return result
+
+
+def _read_scene(
+    file: Path, kind: FileKind, choices: Choices, search: AssetSearch
+) -> tuple[list[tuple[BodySpec, Pose]], IgnoredList]:
+    if kind is FileKind.SDF:
+        from carom.formats.sdf.rules import SDF_RULES
+        from carom.model.from_files import sdf_bodies
+
+        cursor = Cursor(SDF_RULES)
+        bodies = sdf_bodies(file, search, scale=choices.scale, cursor=cursor)
+    else:
+        from carom.formats.mjcf.rules import MJCF_RULES
+        from carom.model.from_files import mjcf_bodies
+
+        cursor = Cursor(MJCF_RULES)
+        bodies = mjcf_bodies(file, search, flags=choices.flags, cursor=cursor)
+    return bodies, cursor.ignored()
+
+
+def report(source: RobotFile, *, strict: bool) -> None:
+    """One warning that says how much of a file is left out, if anything is; an error if that is strict.
+
+    Raises:
+        DescriptionError: It is strict, and something is left out; the message has the table.
+    """
+    lost = source.ignored.that_matter
+    if not lost:
+        return
+    if strict:
+        raise DescriptionError(f"{lost.total} things in it are not simulated:\n{lost}", file=source.path)
+    _log.warning(
+        "%s: %d things in it are not simulated (%s); print(scene.ignored) of World.load, or "
+        "`python -m carom check`, lists them",
+        source.path,
+        lost.total,
+        lost.summary(),
+    )
+
+
+def placed(
+    bodies: Sequence[tuple[BodySpec, Pose]], position: Sequence[float], orientation: Sequence[float]
+) -> list[tuple[BodySpec, Pose]]:
+    """The bodies with the frame of the file at a pose of the world."""
+    px, py, pz = position
+    qx, qy, qz, qw = orientation
+    pose = Pose((px, py, pz), (qx, qy, qz, qw))
+    if pose == IDENTITY:
+        return list(bodies)
+    return [(spec, pose if own == IDENTITY else compose(pose, own)) for spec, own in bodies]
+
+
+def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
+    """Couple the joints that mimic others, and place them; called while bodies are added."""
+    from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling, place_followers
+
+    made = []
+    for body in bodies:
+        places = {link.joint_name: place for place, link in enumerate(body.spec.links)}
+        for follower, link in enumerate(body.spec.links):
+            mimic = link.mimic
+            if mimic is None or body.spec.is_held or mimic.joint not in places:
+                continue
+            leader: int | None = places[mimic.joint]
+            factor = mimic.multiplier
+            if body.velocity_count[places[mimic.joint]] == 0:
+                # The leader cannot move, so the follower is held where it wants it.
+                leader, factor = None, 0.0
+            coefficients = (mimic.offset, factor, 0.0, 0.0, 0.0)
+            tie = new_coupling(body, follower, leader, coefficients, link.joint_name)
+            body.world.user_constraints.put(tie)
+            body.world.constraints.add_user(tie)
+            made.append(JointCoupling(tie))
+    for coupling in made:
+        # From the first leaders on: a follower may lead others.
+        if coupling.leader is None or not any(other.follower is coupling.leader for other in made):
+            coupling.place()
+        place_followers(coupling.follower.body, coupling.follower.index)
+    return made

@@ -1,0 +1,83 @@
+"""What a file brought into a world: its bodies and everything else by name, and what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+from carom.scene.body import Body
+from carom.scene.named_constraints.joint_coupling import JointCoupling
+
+if TYPE_CHECKING:
+    from carom.formats.reading.ignored import IgnoredList
+    from carom.world.world import World
+
+_MOST_NAMES = 8
+
+
+class Scene(Sequence[Body]):
+    """The content of a file in a world; a sequence of its bodies, also by name.
+
+    Attributes:
+        world: The world.
+        source: The file.
+        format: Its format: `URDF`, `SDF`, `MJCF` or `saved world`.
+        bodies: The bodies, in the order of the file.
+        constraints: Constraints by name, such as couplings of joints.
+        actuators: Actuators by name; none are made yet.
+        sensors: Sensors by name; none are made yet.
+        keyframes: Keyframes by name; none are made yet.
+        cameras: Cameras by name; none are made yet.
+        options: Options that the file set in the world, by name; none are set yet.
+        ignored: What the file says and the simulation lacks; prints as a table.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        source: Path,
+        format_name: str,
+        bodies: Sequence[Body],
+        ignored: IgnoredList,
+        constraints: Sequence[JointCoupling] = (),
+    ) -> None:
+        self.world: World = world
+        self.source: Path = source
+        self.format: str = format_name
+        self.bodies: list[Body] = list(bodies)
+        self.constraints: dict[str, JointCoupling] = {it.name: it for it in constraints}
+        self.actuators: dict[str, Any] = {}
+        self.sensors: dict[str, Any] = {}
+        self.keyframes: dict[str, Any] = {}
+        self.cameras: dict[str, Any] = {}
+        self.options: dict[str, Any] = {}
+        self.ignored: IgnoredList = ignored
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(body.name) for body in self.bodies[:_MOST_NAMES])
+        more = f" and {len(self.bodies) - _MOST_NAMES} more" if len(self.bodies) > _MOST_NAMES else ""
+        return f"<Scene of {self.source.name} ({self.format}): {names or 'no bodies'}{more}>"
+
+    def __len__(self) -> int:
+        return len(self.bodies)
+
+    @overload
+    def __getitem__(self, which: int | str) -> Body: ...
+    @overload
+    def __getitem__(self, which: slice) -> list[Body]: ...
+    def __getitem__(self, which: int | str | slice) -> Body | list[Body]:
+        """A body by place or name, or several by place.
+
+        Raises:
+            KeyError: No body, or more than one, has this name.
+            IndexError: There are not as many bodies.
+        """
+        if not isinstance(which, str):
+            return self.bodies[which]
+        found = [body for body in self.bodies if body.name == which]
+        if len(found) != 1:
+            known = ", ".join(repr(body.name) for body in self.bodies) or "none"
+            problem = f"{len(found)} bodies have" if found else "no body has"
+            raise KeyError(f"{problem} the name {which!r}; those of {self.source.name} are {known}")
+        return found[0]
