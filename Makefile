@@ -12,6 +12,8 @@
 #   make oracle       real PyBullet in .oracle/, which the targets below use (Python 3.11 or older)
 #   make record       record what real PyBullet does in every conformance scenario
 #   make surface      call every function of real PyBullet in every way and record what comes of it
+#   make differ       random programs of calls, by real PyBullet and by Carom; MINUTES=20 limits it, and the next
+#                     call continues
 #   make conformance  compare Carom with real PyBullet, live
 #   make report       the comparison as tables and plots, in docs/conformance/
 #   make cluster      the tests of rollouts on several machines, which need Ray
@@ -48,7 +50,7 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 PIP := $(RUN) tools/patiently.py installing $(RUN) -m pip --quiet --disable-pip-version-check
 
-.PHONY: help demo test quick check thorough mutate lint types docs figures oracle record surface cluster conformance report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
+.PHONY: help demo test quick check thorough mutate lint types docs figures oracle record surface cluster conformance differ report soak fuzz bench clients growth scaling learning watching gpu-report gpu from-nothing wheels wine aarch64 installed oldest clean
 
 help:
 	@sed -n 's/^#   //p' $(firstword $(MAKEFILE_LIST))
@@ -180,6 +182,11 @@ cluster: $(VENV)/dev
 
 conformance: oracle $(VENV)/dev
 	$(RUN) -m tests.conformance.live --oracle .oracle/bin/python
+
+differ: oracle $(VENV)/dev
+	$(RUN) -m carom warmup
+	$(RUN) -m tools.differ.run --oracle .oracle/bin/python $(if $(MINUTES),--minutes $(MINUTES))
+	$(RUN) -m tools.differ.run --oracle .oracle/bin/python --getters
 
 report: $(VENV)/dev
 	$(RUN) -m tests.conformance.report

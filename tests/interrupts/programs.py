@@ -1,7 +1,7 @@
 """Programs in which something runs in the middle of calls: `python -m tests.interrupts.programs NAME`.
 
-On PyBullet, whose calls are atomic, all of them end well. Each is a process of its own, because what it guards
-against are crashes and deadlocks.
+On PyBullet, whose calls are atomic, all of them end well. Each is a process of its own, because it guards
+against crashes and deadlocks.
 """
 
 from __future__ import annotations
@@ -194,21 +194,10 @@ def threads_change() -> None:
 def threads_get_the_answers_of_one() -> None:
     state = p.saveState()
     want = answers()
-    body = p.getNumBodies() - 1
-    for count in (2, 4):
+    for count in (1, 3):
         p.restoreState(state)
-        got: list[Any] = []
         watched = [True]
-
-        def watch() -> None:
-            while watched[0]:
-                p.getLinkStates(1, list(range(p.getNumJoints(1))), 1, 1)
-                p.getContactPoints(body)
-                p.getDynamicsInfo(1, 3)
-                p.calculateMassMatrix(1, [0.1] * 14)
-                p.getClosestPoints(1, 0, 0.2)
-
-        threads = [threading.Thread(target=watch) for _ in range(count - 1)]
+        threads = [threading.Thread(target=_watch, args=(watched,)) for _ in range(count)]
         for thread in threads:
             thread.start()
         got = answers()
@@ -216,6 +205,15 @@ def threads_get_the_answers_of_one() -> None:
         for thread in threads:
             thread.join()
         assert got == want
+
+
+def _watch(watched: list[bool]) -> None:
+    while watched[0]:
+        p.getLinkStates(1, list(range(p.getNumJoints(1))), 1, 1)
+        p.getContactPoints(1)
+        p.getDynamicsInfo(1, 3)
+        p.calculateMassMatrix(1, [0.1] * 14)
+        p.getClosestPoints(1, 0, 0.2)
 
 
 @program
@@ -353,12 +351,7 @@ def threads_connect_at_once() -> None:
     for _ in range(50):
         numbers: list[int] = []
         start = threading.Barrier(8)
-
-        def connect() -> None:
-            start.wait()
-            numbers.append(p.connect(p.DIRECT))
-
-        threads = [threading.Thread(target=connect) for _ in range(8)]
+        threads = [threading.Thread(target=_connect, args=(start, numbers)) for _ in range(8)]
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -366,6 +359,11 @@ def threads_connect_at_once() -> None:
         assert len(set(numbers)) == 8
         for number in numbers:
             p.disconnect(number)
+
+
+def _connect(start: threading.Barrier, numbers: list[int]) -> None:
+    start.wait()
+    numbers.append(p.connect(p.DIRECT))
 
 
 def main() -> None:

@@ -20,6 +20,16 @@ needs_posix = pytest.mark.skipif(os.name != "posix", reason="needs signals and f
 @needs_posix
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_ends_well(name: str) -> None:
-    command = [sys.executable, "-m", "tests.interrupts.programs", name]
+    assert _run("programs", name) == "well\n"
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_a_storm_ends_well(seed: int) -> None:
+    assert _run("storm", "--seconds", "5", "--seed", str(seed)).endswith("well\n")
+
+
+def _run(module: str, *arguments: str) -> str:
+    command = [sys.executable, "-m", f"tests.interrupts.{module}", *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE, check=False)
-    assert (done.returncode, done.stdout) == (0, "well\n"), done.stderr[-3000:]
+    assert not done.returncode, done.stderr[-3000:]
+    return done.stdout

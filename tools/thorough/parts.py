@@ -23,6 +23,8 @@ FILE_PIECES, FILE_CASES = 10, 10_000
 """Of the fuzzer of files: 100,000 cases of each kind."""
 DIFFER_PIECES, DIFFER_SEEDS = 42, 20
 """Of the differential fuzzer: 10,080 programs, one of each theme for each seed."""
+STORMS, STORM_SECONDS = 10, 120
+"""Of random calls by threads and signal handlers, and how long each lasts [s]."""
 MUTATION_PIECES, MUTATIONS = 12, 4
 """Samples of the list of mutations, and how many are in one."""
 _PYTEST = ("-m", "pytest", "-q", "-p", "no:cacheprovider")
@@ -89,6 +91,14 @@ def differ() -> list[Piece]:
     ]
 
 
+def storms() -> list[Piece]:
+    """Random calls from threads and signal handlers at once: twenty minutes of them."""
+    storm = ("-m", "tests.interrupts.storm", "--seconds", str(STORM_SECONDS), "--seed", SEED, "--threads")
+    return [
+        Piece("storms", f"storm {number}", (*storm, str(2 + number % 3)), number) for number in range(STORMS)
+    ]
+
+
 def soak() -> list[Piece]:
     """Long work, and long lives of workers, whose memory must not grow."""
     work = ("-m", "tests.conformance.soak")
@@ -109,7 +119,7 @@ def mutations() -> list[Piece]:
 
 
 PARTS: dict[str, Callable[[], Sequence[Piece]]] = {
-    part.__name__: part for part in (properties, gpu, platforms, fuzz, differ, soak, mutations)
+    part.__name__: part for part in (properties, gpu, platforms, fuzz, storms, differ, soak, mutations)
 }
 
 
