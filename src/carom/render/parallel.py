@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
 from carom.native.cpu import core_count
+from carom.native.uninterrupted import uninterrupted
 
 MAX_WORKERS = 8
 """Most threads used: more threads do not speed up images of usual size."""
@@ -27,7 +28,9 @@ def run_all(tasks: Sequence[Callable[[], None]]) -> None:
     pool = _pool()
     # This thread runs tasks, too: it often finishes them before a sleeping thread has woken up.
     pending = iter(tasks)
-    others = [pool.submit(_work, pending) for _ in range(min(worker_count(), len(tasks)) - 1)]
+    # The pool has a lock, which a signal handler that draws, too, would wait for in vain.
+    with uninterrupted:
+        others = [pool.submit(_work, pending) for _ in range(min(worker_count(), len(tasks)) - 1)]
     _work(pending)
     for other in others:
         other.result()

@@ -23,7 +23,7 @@ from carom.native.building.cache import (
     mark_used,
     work_folder,
 )
-from carom.native.building.flags import C_FLAGS, CPP_FLAGS, PLATFORM_FLAGS
+from carom.native.building.flags import C_FLAGS, CPP_FLAGS, OWN_FLAGS, PLATFORM_FLAGS
 from carom.native.building.jobs import Job, run_all
 from carom.native.building.libm import called_functions, include_folders, maths_sources
 from carom.native.building.link import link_command, remove_time
@@ -169,7 +169,7 @@ def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
         own.append(_HERE / "windows.cpp")
     kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
     objects = _objects(parts, "kernels", "c++", CPP_FLAGS, kernels, headers, work)
-    objects += _objects(parts, "the rest", "c++", CPP_FLAGS, own, [*headers, folder], work)
+    objects += _objects(parts, "the rest", "c++", OWN_FLAGS, own, [*headers, folder], work)
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
     return objects + _objects(parts, "maths", "cc", C_FLAGS, maths, folders, work)
