@@ -29,8 +29,7 @@ _ALL = (
 # For kernels and hand-written C++: the only standard header is `<stdint.h>`. Loops that clear a few numbers
 # stay loops, which take less time than a call of `memset`.
 CPP_FLAGS = ("-std=c++17", "-fno-builtin-memset", "-fno-exceptions", "-fno-rtti", "-nostdlibinc", *_ALL)
-# For hand-written C++ only: kernels are generated, and Warp's headers are others' code. Functions of tables have
-# the same parameters, and few use all of them.
+# For hand-written C++ only: kernels are generated. Functions in tables have the same parameters; few use all.
 OWN_FLAGS = (
     *(flag for flag in CPP_FLAGS if flag != "-w"),
     *("-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter"),
