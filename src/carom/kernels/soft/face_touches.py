@@ -45,8 +45,6 @@ from carom.layouts.soft import ANCHORS, TOUCHES_PER_FACE, TOUCHES_PER_NODE
 
 # Corners of a face with a smaller weight at the touching point have no part in the touch.
 _LITTLE = real(1.0e-6)
-# Two planes are the same if 1 less the cosine of their angle, and their distance [m], are at most these.
-_SAME_NORMAL, _SAME_PLANE = real(1.0e-8), real(1.0e-6)
 
 
 @func
@@ -176,31 +174,20 @@ def nearest_of_face_on_shape(
 
 
 @func
-def has_same_touch(
-    state: State, work: SoftWork, world: Int32, node: Int32, shape: Int32, point: Vector3, normal: Vector3
-) -> bool:
-    """Whether a node has a touch with the plane of a shape through a point, so that it stays on its side."""
+def has_touch(work: SoftWork, world: Int32, node: Int32, shape: Int32) -> bool:
+    """Whether a node has a touch with a shape."""
     first = TOUCHES_PER_NODE * node
     for touch in range(first, first + work.node_touches[world, node]):
         if work.touch_shape[world, touch] == shape:
-            own = work.touch_normal[world, touch]
-            foot = state.node_position[world, node] - own * work.touch_offset[world, touch]
-            if (
-                wp.dot(own, normal) >= 1.0 - _SAME_NORMAL
-                and wp.abs(wp.dot(normal, foot - point)) <= _SAME_PLANE
-            ):
-                return True
+            return True
     return False
 
 
 @func
-def is_held_at_corners(
-    state: State, work: SoftWork, world: Int32, nodes: Index4, weights: Vector3, shape: Int32,
-    point: Vector3, normal: Vector3,
-) -> bool:  # fmt: skip
-    """Whether the touches of its nodes already keep a face on its side of a plane through a point."""
+def is_held_at_corners(work: SoftWork, world: Int32, nodes: Index4, weights: Vector3, shape: Int32) -> bool:
+    """Whether touches of its nodes already keep a face outside of a shape."""
     for i in range(3):
-        if weights[i] > _LITTLE and not has_same_touch(state, work, world, nodes[i], shape, point, normal):
+        if weights[i] > _LITTLE and not has_touch(work, world, nodes[i], shape):
             return False
     return True
 
@@ -233,8 +220,7 @@ def look_at_face(
         weights = weights_at(corners, point)
         weights = Vector3(maximum(weights[0], 0.0), maximum(weights[1], 0.0), maximum(weights[2], 0.0))
         weights = weights / (weights[0] + weights[1] + weights[2])
-        foot = point - normal * distance
-        if not is_held_at_corners(state, work, world, nodes, weights, shape, foot, normal):
+        if not is_held_at_corners(work, world, nodes, weights, shape):
             first = first_face_touch(work, face)
             place = keep_nearest(work, world, first, work.face_touches[world, face], distance)
             if place >= 0:
