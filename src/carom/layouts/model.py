@@ -145,7 +145,12 @@ class Model:
     tree_max_velocity: RealRows
     link_mass: RealRows
     link_inertia: Vector3Rows  # principal moments
-    dof_damping: RealRows
+    tree_joint_terms: RealRows  # not 0: some joint has armature, implicit damping or a spring
+    dof_damping: RealRows  # explicit, as PyBullet's
+    dof_armature: RealRows  # inertia of the drive, seen at the joint
+    dof_implicit_damping: RealRows
+    dof_stiffness: RealRows
+    position_spring: RealRows  # position at which the joint's spring is at rest; of a ball a quaternion
     constraint_lower: RealRows
     constraint_upper: RealRows
     constraint_twist: RealRows

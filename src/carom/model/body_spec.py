@@ -45,7 +45,11 @@ class LinkSpec:
         effort: Largest drive force the file states; not enforced.
         velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
-        damping: Viscous joint damping [N m s/rad or N s/m].
+        damping: Viscous joint damping [N m s/rad or N s/m]: explicit in a body with `is_held`, else implicit.
+        armature: Inertia of the drive, seen at the joint [kg m² or kg].
+        stiffness: Of a spring at the joint [N m/rad or N/m].
+        spring_reference: Position at which this spring is at rest [rad or m]; of a spherical joint it is
+            always the position without rotation.
         friction: Dry friction of the joint [N m or N]; not simulated in a body with `is_held`.
         collisions: Collision shapes, with poses in the link frame.
         visuals: Visual shapes, with poses in the link frame.
@@ -74,6 +78,9 @@ class LinkSpec:
     twist: float = 0.0
     damping: float = 0.0
     friction: float = 0.0
+    armature: float = 0.0
+    stiffness: float = 0.0
+    spring_reference: float = 0.0
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     compound_margin: float = MARGIN
@@ -111,8 +118,8 @@ class BodySpec(Reusable):
         user_data: Key and value pairs stated by the file for the model.
         soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
         link_damping: Share of the velocity of the body's links that air takes away [1/s].
-        is_held: As in PyBullet, motors hold all joints until they are commanded, and joints have no friction
-            and follow no others.
+        is_held: As in PyBullet, motors hold all joints until they are commanded, joints have no friction
+            and follow no others, and their damping is explicit.
     """
 
     name: str
@@ -125,6 +132,11 @@ class BodySpec(Reusable):
     soft: SoftSpec | None = None
     link_damping: float = DEFAULT_LINK_DAMPING
     is_held: bool = True
+
+    @property
+    def damping_field(self) -> str:
+        """The array of `Model` with the damping of its joints."""
+        return "dof_damping" if self.is_held else "dof_implicit_damping"
 
     def link(self, index: int) -> LinkSpec:
         """A link by its index; -1 is the base."""

@@ -58,6 +58,16 @@ _INDEX_FIELDS = {
     "dof_parent": "dof",
     "tree_batch": "tree",
 }
+# Terms of joints that are implicit in velocity, in the arrays of dofs.
+_TERMS = ("dof_implicit_damping", "dof_armature", "dof_stiffness")
+
+
+def has_joint_terms(spec: BodySpec) -> bool:
+    """Whether joints of a body have armature, implicit damping or a spring when it is loaded."""
+    return any(
+        link.armature != 0.0 or link.stiffness != 0.0 or (link.damping != 0.0 and not spec.is_held)
+        for link in spec.links
+    )
 
 
 @record(frozen=False, hot=True)
@@ -191,7 +201,9 @@ class WorldArrays:
         model["link_joint_type"][first_link] = JointCode.FIXED
         model["link_first_position"][first_link] = rows.first["position"]
         model["link_first_dof"][first_link] = first_dof
-        model["dof_damping"][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        for field in ("dof_damping", *_TERMS):
+            model[field][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
 
         last_dof = {BASE: -1}
@@ -210,12 +222,19 @@ class WorldArrays:
             last_dof[j] = last_dof[link.parent]
             for _ in range(DOF_COUNT[code]):
                 model["dof_parent"][dof] = last_dof[j]
-                model["dof_damping"][:, dof] = link.damping
+                model["dof_damping"][:, dof] = model["dof_implicit_damping"][:, dof] = 0.0
+                model[spec.damping_field][:, dof] = link.damping
+                model["dof_armature"][:, dof] = link.armature
+                model["dof_stiffness"][:, dof] = link.stiffness
                 last_dof[j] = dof
                 self._reset_motor(dof, code, held=spec.is_held)
                 dof += 1
+            springs = model["position_spring"][:, position : position + POSITION_COUNT[code]]
             if code == JointCode.SPHERICAL:
                 self._reset_spherical(row, position)
+                springs[:] = (0.0, 0.0, 0.0, 1.0)
+            else:
+                springs[:] = link.spring_reference
             position += POSITION_COUNT[code]
 
     def set_base_freedom(self, rows: TreeRows, *, free: bool) -> None:
