@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from carom.scene.link_dynamics import LinkDynamics
 
 SPRING_REFERENCE = "joint_spring_reference"
-# Fields of `Model` over dofs, by the names of terms in `LinkDynamics`; damping has one of two, see `BodySpec`.
+# Fields of `Model` over dofs, by the names of terms in `LinkDynamics`; that of damping depends on the body.
 OF_DOFS = {"joint_armature": "dof_armature", "joint_stiffness": "dof_stiffness"}
 TERMS = ("joint_damping", *OF_DOFS, SPRING_REFERENCE)
 

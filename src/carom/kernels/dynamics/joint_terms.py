@@ -7,26 +7,10 @@ So damping and springs are stable however stiff they are, and constraints count 
 import warp as wp
 
 from carom.kernels.dynamics.kinematics import load_quaternion
+from carom.kernels.maths.rotation import rotation_vector
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Quaternion, Vector3, func, real
+from carom.kernels.types import Int32, Quaternion, Vector3, func
 from carom.layouts.codes import PLANAR, SPHERICAL
-
-# Below this sine of half the angle, the angle of a rotation is twice the sine.
-_SMALL_SINE = real(1e-12)
-
-
-@func
-def rotation_vector(turn: Quaternion) -> Vector3:
-    """The axis of a rotation times its angle, which is at most half a turn."""
-    axis = Vector3(turn[0], turn[1], turn[2])
-    cosine = turn[3]
-    if cosine < 0.0:
-        axis = -axis
-        cosine = -cosine
-    sine = wp.length(axis)
-    if sine < _SMALL_SINE:
-        return 2.0 * axis
-    return axis * (2.0 * wp.atan2(sine, cosine) / sine)
 
 
 @func
