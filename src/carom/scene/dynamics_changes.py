@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
 from carom.model.inertia import mass_terms, moments_at
-from carom.scene.joint_terms import OF_DOFS, SPRING_REFERENCE, checked_terms, set_terms, write_terms
+from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, checked_terms, set_terms, write_terms
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3

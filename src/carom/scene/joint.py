@@ -14,7 +14,7 @@ from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
-from carom.scene.joint_terms import friction_of, set_friction
+from carom.scene.joint_terms.friction import friction_of, set_friction
 from carom.scene.named import Named
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from carom.model.body_spec import BASE
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import OF_BODY, shape_inertia, unit_inertia
-from carom.scene.joint_terms import OF_DOFS, SPRING_REFERENCE, TERMS
+from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS
 from carom.worlds.chosen import Chosen
 
 # Fields of `Shapes` that can differ between worlds, by their public names.

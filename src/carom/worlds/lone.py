@@ -9,7 +9,7 @@ from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 from carom.scene.dynamics_changes import OF_BODY
-from carom.scene.joint_terms import OF_DOFS
+from carom.scene.joint_terms.implicit import OF_DOFS
 from carom.world.world import World
 from carom.worlds.dynamics import OF_SURFACE
 

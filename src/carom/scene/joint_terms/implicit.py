@@ -1,4 +1,4 @@
-"""Armature, damping, springs and friction of joints: what can be read and set during the simulation."""
+"""Armature, damping and springs of joints: what can be set during the simulation."""
 
 from __future__ import annotations
 
@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
-from carom.layouts.codes import WITH_FRICTION, ConstraintKind, JointCode
-from carom.scene.joint_constraints import JointConstraint
+from carom.layouts.codes import JointCode
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -83,39 +82,3 @@ def body_term_check(body: Body) -> Any:
         )
 
     return has_terms
-
-
-def friction_of(body: Body, joint: int) -> JointConstraint | None:
-    """The friction of a joint, if it ever had some."""
-    for constraint in body.world.constraints.all:
-        if (
-            constraint.body is body
-            and constraint.joint == joint
-            and constraint.kind == ConstraintKind.FRICTION
-        ):
-            return constraint
-    return None
-
-
-def set_friction(body: Body, joint: int, friction: float) -> None:
-    """Set the friction of a joint [N m or N].
-
-    Raises:
-        ValueError: It is negative, or the joint is neither revolute nor prismatic.
-    """
-    if not 0.0 <= friction < float("inf"):
-        raise ValueError(f"friction_loss is {friction}: it must be at least 0 and finite")
-    if body.joint_types[joint] not in WITH_FRICTION:
-        link = body.spec.links[joint]
-        raise ValueError(
-            f"joint {link.joint_name!r} is {link.joint_type.value}: friction is not built for such joints"
-        )
-    constraint = friction_of(body, joint)
-    if constraint is not None:
-        constraint.upper = friction
-    elif friction > 0.0:
-        constraints = body.world.constraints
-        constraints.all.append(JointConstraint(body, joint, ConstraintKind.FRICTION, upper=friction))
-    else:
-        return
-    body.world.scene_changed()
