@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.actuators import advance_activations
 from carom.kernels.dynamics.dynamics import (
     generalized_forces,
     link_bias_forces,
@@ -90,6 +91,8 @@ def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratc
     if model.tree[tree].sensor_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)
     apply_delta_velocities(model, state, scratch, world, tree)
+    if model.tree[tree].actuator_count > 0:
+        advance_activations(model, settings, state, world, tree)
     integrate_positions(model, state, world, tree, settings.time_step)
 
 
