@@ -150,8 +150,8 @@ def row_sweep(settings: Settings, scratch: Scratch, world: Int32, count: Int32, 
     inner = Int32(0)
     while inner < settings.inner_iterations:
         residual = relax_rows(
-            scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity, scratch.block_response,
-            world, first, count, stride,
+            scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
+            scratch.block_response, world, first, count, stride,
         )  # fmt: skip
         inner += 1
         if residual == 0.0:
