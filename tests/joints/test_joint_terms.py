@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ H = 1.0 / 240
 INERTIA = 2.0 / 3.0  # of the rod of `pendulum`
 
 
-def rod(time_step: float = H, **terms: float) -> Body:
+def rod(time_step: float = H, **terms: Any) -> Body:
     """A weightless rod on a hinge."""
     world = World(time_step)
     spec = replace(pendulum(**terms), is_held=False, link_damping=0.0)
