@@ -88,7 +88,12 @@ class Joint:
         frame: Joint frame in the parent's link frame; it is the child's link frame at position 0.
         axis: Unit axis in the joint frame.
         axis_length: Length the axis has in the file; PyBullet reports it unnormalised.
-        damping: Viscous damping [N m s/rad or N s/m].
+        damping: Viscous damping [N m s/rad or N s/m]. It is implicit in velocity where files are read as
+            written; for PyBullet it is explicit.
+        armature: Inertia of the drive, seen at the joint [kg m² or kg].
+        stiffness: Of a spring at the joint [N m/rad or N/m].
+        spring_reference: Position at which this spring is at rest [rad or m]; of a spherical joint it is
+            always the position without rotation.
         friction: Dry friction as the file states it [N m or N]; PyBullet's API does not simulate it.
     """
 
@@ -102,5 +107,8 @@ class Joint:
     limit: JointLimit = JointLimit()
     damping: float = 0.0
     friction: float = 0.0
+    armature: float = 0.0
+    stiffness: float = 0.0
+    spring_reference: float = 0.0
     mimic: Mimic | None = None
     safety: SafetyController | None = None

@@ -120,6 +120,9 @@ def _attach(spec: LinkSpec, node: TreeNode, parent: int) -> None:
     spec.twist = joint.limit.twist
     spec.damping = joint.damping
     spec.friction = joint.friction
+    spec.armature = joint.armature
+    spec.stiffness = joint.stiffness
+    spec.spring_reference = joint.spring_reference
     spec.mimic = joint.mimic
 
 

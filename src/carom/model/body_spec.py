@@ -12,7 +12,10 @@ from struct import pack, unpack
 from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
+from carom.description.actuator import ActuatorSpec
+from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
+from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
 from carom.record import record
@@ -45,7 +48,11 @@ class LinkSpec:
         effort: Largest drive force the file states; not enforced.
         velocity: Maximum speed the file states; not enforced.
         twist: Twist limit of a spherical joint [rad]; negative means none.
-        damping: Viscous joint damping [N m s/rad or N s/m].
+        damping: Viscous joint damping [N m s/rad or N s/m]: explicit in a body with `is_held`, else implicit.
+        armature: Inertia of the drive, seen at the joint [kg m² or kg].
+        stiffness: Of a spring at the joint [N m/rad or N/m].
+        spring_reference: Position at which this spring is at rest [rad or m]; of a spherical joint it is
+            always the position without rotation.
         friction: Dry friction of the joint [N m or N]; not simulated in a body with `is_held`.
         collisions: Collision shapes, with poses in the link frame.
         visuals: Visual shapes, with poses in the link frame.
@@ -74,12 +81,23 @@ class LinkSpec:
     twist: float = 0.0
     damping: float = 0.0
     friction: float = 0.0
+    armature: float = 0.0
+    stiffness: float = 0.0
+    spring_reference: float = 0.0
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     compound_margin: float = MARGIN
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def spring_rest(self) -> tuple[float, ...]:
+        """The position coordinates at which the joint's spring is at rest when it is loaded."""
+        code = JOINT_CODE[self.joint_type]
+        if code == JointCode.SPHERICAL:
+            return (0.0, 0.0, 0.0, 1.0)
+        return (self.spring_reference,) * POSITION_COUNT[code]
 
 
 class Reusable:
@@ -111,8 +129,9 @@ class BodySpec(Reusable):
         user_data: Key and value pairs stated by the file for the model.
         soft: The specification of a soft body; its base is fixed and has neither shapes nor links.
         link_damping: Share of the velocity of the body's links that air takes away [1/s].
-        is_held: As in PyBullet, motors hold all joints until they are commanded, and joints have no friction
-            and follow no others.
+        is_held: As in PyBullet, motors hold all joints until they are commanded, joints have no friction
+            and follow no others, and their damping is explicit.
+        actuators: What drives its joints besides their motors.
     """
 
     name: str
@@ -125,6 +144,12 @@ class BodySpec(Reusable):
     soft: SoftSpec | None = None
     link_damping: float = DEFAULT_LINK_DAMPING
     is_held: bool = True
+    actuators: tuple[ActuatorSpec, ...] = ()
+
+    @property
+    def damping_field(self) -> str:
+        """The array of `Model` with the damping of its joints."""
+        return "dof_damping" if self.is_held else "dof_implicit_damping"
 
     def link(self, index: int) -> LinkSpec:
         """A link by its index; -1 is the base."""

@@ -28,6 +28,7 @@ from carom.layouts.codes import (
 )
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
+from carom.model.actuator_rows import write_actuator
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
@@ -50,6 +51,7 @@ _INDEX_FIELDS = {
     "tree_first_velocity": "dof",
     "tree_first_dof": "dof",
     "tree_first_block": "block",
+    "tree_first_actuator": "actuator",
     "tree_first_delta": "delta",
     "link_parent": "link",
     "link_first_position": "position",
@@ -58,6 +60,16 @@ _INDEX_FIELDS = {
     "dof_parent": "dof",
     "tree_batch": "tree",
 }
+# Terms of joints that are implicit in velocity, in the arrays of dofs.
+_TERMS = ("dof_implicit_damping", "dof_armature", "dof_stiffness")
+
+
+def has_joint_terms(spec: BodySpec) -> bool:
+    """Whether joints of a body have armature, implicit damping or a spring when it is loaded."""
+    return any(
+        link.armature != 0.0 or link.stiffness != 0.0 or (link.damping != 0.0 and not spec.is_held)
+        for link in spec.links
+    )
 
 
 @record(frozen=False, hot=True)
@@ -77,7 +89,7 @@ class WorldArrays:
         self.model: ArrayTable = ArrayTable(Model, references=_INDEX_FIELDS)
         self.state: ArrayTable = ArrayTable(State, world_count)
         self.used: dict[str, int] = dict.fromkeys(
-            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node"), 0
+            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node", "actuator"), 0
         )
         # The numbers of replacements for which it was made, and it.
         self._row_changes: tuple[tuple[int, int], RowChanges] | None = None
@@ -135,11 +147,14 @@ class WorldArrays:
             "block": dofs * blocks,
             "delta": blocks,
             "node": 0 if spec.soft is None else len(spec.soft.nodes),
+            "actuator": len(spec.actuators),
         }
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
         self._write_tree(rows, spec)
         self._write_links(rows, spec, codes)
+        for row, actuator in enumerate(spec.actuators, start=rows.first["actuator"]):
+            write_actuator(self.model.numpy, row, actuator)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
         if spec.soft is not None:
@@ -174,6 +189,8 @@ class WorldArrays:
         model["tree_first_velocity"][tree] = first["dof"]
         model["tree_first_block"][tree] = first["block"]
         model["tree_first_delta"][tree] = first["delta"]
+        model["tree_first_actuator"][tree] = first["actuator"]
+        model["tree_actuator_count"][tree] = rows.count["actuator"]
         model["tree_sensor_count"][tree] = 0
         model["tree_constraint_count"][tree] = 0
         model["tree_batch"][tree] = tree
@@ -191,7 +208,9 @@ class WorldArrays:
         model["link_joint_type"][first_link] = JointCode.FIXED
         model["link_first_position"][first_link] = rows.first["position"]
         model["link_first_dof"][first_link] = first_dof
-        model["dof_damping"][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        for name in ("dof_damping", *_TERMS):
+            model[name][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
 
         last_dof = {BASE: -1}
@@ -210,12 +229,16 @@ class WorldArrays:
             last_dof[j] = last_dof[link.parent]
             for _ in range(DOF_COUNT[code]):
                 model["dof_parent"][dof] = last_dof[j]
-                model["dof_damping"][:, dof] = link.damping
+                model["dof_damping"][:, dof] = model["dof_implicit_damping"][:, dof] = 0.0
+                model[spec.damping_field][:, dof] = link.damping
+                model["dof_armature"][:, dof] = link.armature
+                model["dof_stiffness"][:, dof] = link.stiffness
                 last_dof[j] = dof
                 self._reset_motor(dof, code, held=spec.is_held)
                 dof += 1
             if code == JointCode.SPHERICAL:
                 self._reset_spherical(row, position)
+            model["position_spring"][:, position : position + POSITION_COUNT[code]] = link.spring_rest
             position += POSITION_COUNT[code]
 
     def set_base_freedom(self, rows: TreeRows, *, free: bool) -> None:

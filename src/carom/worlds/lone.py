@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
+from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 from carom.scene.dynamics_changes import OF_BODY
+from carom.scene.joint_terms.implicit import OF_DOFS
 from carom.world.world import World
 from carom.worlds.dynamics import OF_SURFACE
 
@@ -57,29 +61,49 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
                 dynamics.inertia = (ix, iy, iz)
             if link >= 0 and body.velocity_count[link]:
                 dof = body.velocity_index[link]
-                dynamics.joint_damping = float(_row(model, "dof_damping", number)[dof])
+                for name, field in {"joint_damping": body.spec.damping_field, **OF_DOFS}.items():
+                    setattr(dynamics, name, float(_row(model, field, number)[dof]))
+                first, count = body.position_index[link], body.position_count[link]
+                rest = _row(model, "position_spring", number)[first : first + count]
+                dynamics.joint_spring_reference = tuple(rest.tolist())
             body.set_dynamics(link, dynamics)
     _take_limits(world, engine, number)
+    _take_actuators(world, engine, number)
     for user, row in world.user_constraints.rows.items():
         constraint = world.user_constraints.get(user)
         if constraint is not None:
             constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
 
 
+def _take_actuators(world: World, engine: Engine, number: int) -> None:
+    model = engine.arrays.model.numpy
+    for body in world.bodies.values():
+        rows = range(body.rows.first["actuator"], body.rows.first["actuator"] + body.rows.count["actuator"])
+        if rows:
+            specs = zip(rows, body.spec.actuators, strict=True)
+            taken = tuple(read_actuator(model, row, number, spec) for row, spec in specs)
+            body.spec = replace(body.spec, actuators=taken)
+            for row, spec in zip(rows, taken, strict=True):
+                write_actuator(world.arrays.model.numpy, row, spec)
+
+
 def _take_limits(world: World, engine: Engine, number: int) -> None:
     model = engine.arrays.model
     kinds, links = model.numpy["constraint_kind"], model.numpy["constraint_link"]
     lower, upper = _row(model, "constraint_lower", number), _row(model, "constraint_upper", number)
+    of_joints = (ConstraintKind.LIMIT, ConstraintKind.FRICTION)
     rows = {
-        int(links[row]): row
+        (int(kinds[row]), int(links[row])): row
         for row in range(engine.arrays.used["constraint"])
-        if kinds[row] == ConstraintKind.LIMIT
+        if kinds[row] in of_joints
     }
     for constraint in world.constraints.all:
-        if constraint.kind != ConstraintKind.LIMIT:
+        if constraint.kind not in of_joints:
             continue
-        row = rows[constraint.body.first_link + 1 + constraint.joint]
+        row = rows[constraint.kind, constraint.body.first_link + 1 + constraint.joint]
         constraint.lower, constraint.upper = float(lower[row]), float(upper[row])
+        if constraint.kind == ConstraintKind.FRICTION:
+            continue
         dynamics = constraint.body.dynamics(constraint.joint)
         dynamics.joint_lower_limit, dynamics.joint_upper_limit = constraint.lower, constraint.upper
 

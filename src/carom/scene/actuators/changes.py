@@ -1,0 +1,34 @@
+"""Adding actuators to bodies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from carom.description.actuator import Actuator
+from carom.errors import DescriptionError
+from carom.layouts.codes import ConstraintKind
+from carom.model.actuator_rows import insert_actuator, write_actuator
+from carom.scene.actuators.actuated_joint import actuated_joint
+from carom.scene.handles import world_of
+from carom.scene.joint_constraints import JointConstraint
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+
+def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
+    """Add an actuator to a body, as `Body.add_actuator` does."""
+    world, spec = world_of(body), actuator.spec(name)
+    spec.check()
+    if not name or any(other.name == name for other in body.spec.actuators):
+        raise DescriptionError(f"actuator {name!r}: each one of a body needs a name of its own")
+    joint = actuated_joint(body, spec)
+    row = insert_actuator(world.arrays, body.rows, [other.rows for other in world.bodies.values()])
+    write_actuator(world.arrays.model.numpy, row, spec)
+    number = len(body.spec.actuators)
+    body.spec = replace(body.spec, actuators=(*body.spec.actuators, spec))
+    world.constraints.all.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
+    world.constraints.rows.forget()
+    body.__dict__.pop("actuators", None)
+    world.scene_changed()
