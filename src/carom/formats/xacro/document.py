@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
 
@@ -42,6 +42,22 @@ class Expanded:
         )
 
 
+def expanded_if_xacro(
+    root: Element, file: Path, search: AssetSearch, arguments: Sequence[tuple[str, str]]
+) -> Expanded | None:
+    """The expanded document of a root element; None if there is nothing to expand.
+
+    Raises:
+        DescriptionError: As `expand`.
+        ValueError: There are arguments that the document does not have.
+    """
+    if is_xacro(root, file):
+        return expand(root, file, search, dict(arguments))
+    if arguments:
+        raise ValueError(f"{file} is no xacro file, so it has no argument {arguments[0][0]!r} for xacro_args")
+    return None
+
+
 def is_xacro(root: Element, file: Path) -> bool:
     """Whether a document has anything to expand.
 
@@ -54,7 +70,9 @@ def is_xacro(root: Element, file: Path) -> bool:
         element = pending.pop()
         if element.tag.startswith(PREFIX):
             return True
-        if may_have and any("${" in text or "$(" in text for text in (element.text, *element.attributes.values())):
+        if may_have and any(
+            "${" in text or "$(" in text for text in (element.text, *element.attributes.values())
+        ):
             return True
         pending.extend(element.children)
     return False
@@ -88,6 +106,4 @@ def _check_depth(root: PlacedElement) -> None:
         level = [child for element in level for child in element.children]
         if not level:
             return
-    raise DescriptionError(
-        f"elements nested deeper than {MAX_DEPTH}", file=root.file, line=level[0].line
-    )
+    raise DescriptionError(f"elements nested deeper than {MAX_DEPTH}", file=root.file, line=level[0].line)

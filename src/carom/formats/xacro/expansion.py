@@ -82,9 +82,7 @@ class Expansion:
 
     def _error(self, element: PlacedElement, reason: str) -> DescriptionError:
         calls = from_calls(_Called(tuple(reversed(self._calls))))
-        return DescriptionError(
-            reason + calls, file=element.file, line=element.line, element=_label(element)
-        )
+        return DescriptionError(reason + calls, file=element.file, line=element.line, element=_label(element))
 
     def _plain(
         self,
@@ -228,18 +226,22 @@ class Expansion:
         self._give_blocks(macro, holder, inner)
         for parameter in macro.parameters:
             if not parameter.stars and parameter.name not in attributes:
-                self._give_default(macro, parameter, scope, inner)
+                self._give_default(macro, parameter, scope, (seen, inner))
         self._calls.append(f"macro {name!r} called at {element.file}:{element.line}")
         self._all(macro.element, inner, into)  # pyright: ignore
         self._calls.pop()
 
-    def _give_default(self, macro: Macro, parameter: Parameter, scope: Scope, inner: Scope) -> None:
+    def _give_default(
+        self, macro: Macro, parameter: Parameter, scope: Scope, into: tuple[Scope, Scope]
+    ) -> None:
+        """Give a parameter the value of that name where the call is, or its default."""
+        seen, inner = into
         if parameter.is_forwarded and parameter.name in scope:
             inner.put(parameter.name, scope[parameter.name])
         elif parameter.default is not None:
             before, self.texts.file = self.texts.file, macro.file
             try:
-                inner.put(parameter.name, self.texts.evaluate(parameter.default, inner))
+                inner.put(parameter.name, self.texts.evaluate(parameter.default, seen))
             finally:
                 self.texts.file = before
         else:
@@ -251,7 +253,9 @@ class Expansion:
         for parameter in macro.parameters:
             if parameter.stars:
                 if not blocks:
-                    raise ExpressionError(f"macro {macro.name!r} needs an element for block {parameter.name!r}")
+                    raise ExpressionError(
+                        f"macro {macro.name!r} needs an element for block {parameter.name!r}"
+                    )
                 block = blocks.pop(0)
                 inner.blocks[parameter.name] = (
                     Block([block], "", True)
@@ -279,9 +283,7 @@ class Expansion:
     def _copy(self, element: PlacedElement) -> PlacedElement:
         self.budget.element()
         self.budget.text(len(element.text) + sum(map(len, element.attributes.values())))
-        copy = PlacedElement(
-            element.tag, dict(element.attributes), element.line, element.file, element.calls
-        )
+        copy = PlacedElement(element.tag, dict(element.attributes), element.line, element.file, element.calls)
         copy.text = element.text
         copy.children = [self._copy(child) for child in element.children]  # pyright: ignore
         return copy

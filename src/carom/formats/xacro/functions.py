@@ -12,14 +12,14 @@ from carom.formats.xacro.values import Value, checked, text_of
 _MOST_ARGUMENTS = 1000
 _WIDEST = 1000
 _MATHS = (
-    "acos acosh asin asinh atan atan2 atanh ceil copysign cos cosh degrees erf erfc exp expm1 fabs floor fmod "
-    "gamma hypot isclose isfinite isinf isnan lgamma log log10 log1p log2 modf pow radians remainder sin sinh "
-    "sqrt tan tanh trunc"
+    "acos acosh asin asinh atan atan2 atanh ceil copysign cos cosh degrees erf erfc exp expm1 fabs floor "
+    "fmod gamma hypot isclose isfinite isinf isnan lgamma log log10 log1p log2 modf pow radians remainder "
+    "sin sinh sqrt tan tanh trunc"
 )
 _METHODS = (
     "capitalize casefold count endswith find index isalnum isalpha isascii isdecimal isdigit isidentifier "
-    "islower isnumeric isspace istitle isupper lower lstrip removeprefix removesuffix rfind rindex rpartition "
-    "partition rsplit rstrip split splitlines startswith strip swapcase title upper"
+    "islower isnumeric isspace istitle isupper lower lstrip removeprefix removesuffix rfind rindex "
+    "rpartition partition rsplit rstrip split splitlines startswith strip swapcase title upper"
 )
 _PADDINGS = ("center", "ljust", "rjust", "zfill")
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from carom.formats.search import AssetSearch
-from carom.formats.xacro.functions import XACRO_FUNCTIONS, Namespace
 from carom.formats.xacro.expression import evaluate
+from carom.formats.xacro.functions import XACRO_FUNCTIONS, Namespace
 from carom.formats.xacro.limits import Budget, ExpressionError
 from carom.formats.xacro.scope import Scope, Unevaluated
 from carom.formats.xacro.values import Value, text_of
@@ -193,7 +193,7 @@ class _Names(dict[str, Value]):
     def __getitem__(self, name: str) -> Value:
         return self._scope[name] if name in self._scope else super().__getitem__(name)
 
-    def __iter__(self):  # noqa: ANN204 - as in dict
+    def __iter__(self) -> Iterator[str]:
         yield from self._scope
         yield from super().__iter__()
 

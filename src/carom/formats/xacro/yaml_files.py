@@ -25,9 +25,7 @@ def load_yaml(data: bytes, file: Path) -> Value:
     try:
         import yaml  # pyright: ignore
     except ImportError:
-        raise ExpressionError(
-            f"{file} is a YAML file, which needs PyYAML: pip install pyyaml"
-        ) from None
+        raise ExpressionError(f"{file} is a YAML file, which needs PyYAML: pip install pyyaml") from None
 
     class Loader(yaml.SafeLoader):
         """A loader of plain values, which also knows the angles of robot files."""
@@ -41,7 +39,7 @@ def load_yaml(data: bytes, file: Path) -> Value:
     for tag, factor in _ANGLES.items():
         Loader.add_constructor(tag, angle(factor))
     try:
-        content = yaml.load(data, Loader)  # noqa: S506 - derived from the safe loader
+        content = yaml.load(data, Loader)
     except (yaml.YAMLError, ValueError, TypeError, RecursionError) as error:
         raise ExpressionError(f"{file} cannot be read: {' '.join(str(error).split())}") from None
     return _Plain(file).value(content, 0)
