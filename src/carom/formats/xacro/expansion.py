@@ -133,7 +133,7 @@ class Expansion:
         where = element.attributes.get("scope", "")
         if where not in ("", "parent", "global"):
             raise ExpressionError(f"scope is {where!r}; expected parent or global")
-        target = scope.outermost if where == "global" else (scope.parent or scope) if where else scope
+        target = {"": scope, "parent": scope.around, "global": scope.outermost}[where]
         given = element.attributes
         if truth(self.texts.evaluate(given.get("remove", "false"), scope)):
             target.properties.pop(name, None)

@@ -67,6 +67,11 @@ class Scope(Mapping[str, Value]):
         """The scope of the document."""
         return self if self.parent is None else self.parent.outermost
 
+    @property
+    def around(self) -> Scope:
+        """The scope around this one; the outermost for itself."""
+        return self if self.parent is None else self.parent
+
     def chain(self) -> Iterator[Scope]:
         """This scope and those around it, from the inside."""
         scope: Scope | None = self
