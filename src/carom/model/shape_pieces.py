@@ -151,7 +151,10 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
     following = [*sides[1:], 0]
     quads = [[a, CYLINDER_SIDES + a, CYLINDER_SIDES + b, b] for a, b in zip(sides, following, strict=True)]
-    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, [bottom, top, *quads]), MARGIN)
+    loops = [bottom, top, *quads]
+    corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
+    counts = np.array([len(loop) for loop in loops], dtype=np.int32)
+    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts), MARGIN)
 
 
 def _on_grid(
