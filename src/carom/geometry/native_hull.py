@@ -93,14 +93,15 @@ def hull_loops(
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The faces of the hull of (n, 3) points, grown from a tetrahedron.
 
-    The point farthest from the present faces is added again and again, until all others are less than
-    `tolerance` outside or there are `most_vertices`; points within `rounding` of a face count as on it.
-    Triangles in one plane are joined.
+    The point farthest from the present faces is added again and again. Triangles in one plane are joined.
 
     Args:
         points: Contiguous.
         corners: Indices of four points that span a volume, the fourth below the plane of the others.
         size: Size of the hull [m].
+        rounding: Points that are as near to a face count as on it [m].
+        tolerance: Points outside by no more are left out [m].
+        most_vertices: Number of points of the hull at most, at least 4; None for no limit.
 
     Returns:
         The corners of all faces, one after the other, each counter-clockwise from outside, as indices into

@@ -14,6 +14,9 @@ from carom.formats.mesh.stl import read_stl
 MAX_FILE_BYTES = 512 << 20
 """Largest mesh file that is read."""
 
+MAX_CACHED_BYTES = 256 << 20
+"""Most memory that the meshes of unchanged files take; robots may have a hundred of them."""
+
 _READERS = {".obj": read_obj, ".stl": read_stl, ".dae": read_collada}
 
 
@@ -39,8 +42,8 @@ def read_mesh(path: Path) -> list[MeshPart]:
     parts = reader(data, file)
     if not parts:
         raise DescriptionError("there are no triangles", file=file)
-    _cache.put(file, stamp, tuple(parts))
+    _cache.put(file, stamp, tuple(parts), sum(it.vertices.nbytes + it.triangles.nbytes for it in parts))
     return parts
 
 
-_cache: FileCache[Path, tuple[MeshPart, ...]] = FileCache(64)
+_cache: FileCache[Path, tuple[MeshPart, ...]] = FileCache(1024, most_bytes=MAX_CACHED_BYTES)
