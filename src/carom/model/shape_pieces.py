@@ -138,7 +138,7 @@ def _polyhedral(
 
 def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
     """The hull of points, once made for the same ones: files and scripts bring the same again and again."""
-    key = blake2b(np.ascontiguousarray(points, dtype=np.float64), digest_size=20).digest()
+    key = blake2b(points.astype(np.float64).tobytes(), digest_size=20).digest()
     with _hulls_lock:
         known = _hulls.pop(key, None)
         if known is not None:
