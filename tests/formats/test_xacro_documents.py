@@ -265,5 +265,5 @@ def test_models_of_sdf_may_have_macros(tmp_path):
         '<model name="m"><pose>0 0 ${2 * $(arg h)} 0 0 0</pose><link name="l"/></model></sdf>'
     )
     with World() as world:
-        pose = world.load(file, xacro_args={"h": 3})[0].base_pose
-        assert pose[2] == 6.0
+        body = world.load(file, xacro_args={"h": 3})[0]
+        assert body.links[-1].pose.position[2] == 6.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ class _Property(NamedTuple):
 
 class _Kind(NamedTuple):
     name: str
-    count: int
+    rows: int
     properties: list[_Property]
 
 
@@ -38,7 +38,7 @@ def read_ply(data: bytes, file: Path) -> list[MeshPart]:
     try:
         order, kinds, at = _header(data)
         reading = _Ascii(data[at:]) if not order else _Binary(data, at, order)
-        found = {kind.name: reading.values(kind) for kind in kinds}
+        found: dict[str, Any] = {kind.name: reading.values(kind) for kind in kinds}
         vertices, faces = found["vertex"], found["face"]
         positions = np.stack([np.asarray(vertices[axis], np.float64) for axis in "xyz"], axis=1)
         lists = faces.get("vertex_indices", faces.get("vertex_index"))
@@ -87,7 +87,7 @@ class _Ascii:
     def values(self, kind: _Kind) -> dict[str, list[object]]:
         """The values of an element by property, one for each of its kind."""
         result: dict[str, list[object]] = {it.name: [] for it in kind.properties}
-        for _ in range(kind.count):
+        for _ in range(kind.rows):
             for one in kind.properties:
                 if one.count_kind is None:
                     result[one.name].append(float(self._next()))
@@ -113,11 +113,11 @@ class _Binary:
         """The values of an element by property, one for each of its kind."""
         if all(one.count_kind is None for one in kind.properties):
             row = np.dtype([(one.name, self.order + one.kind) for one in kind.properties])
-            rows = np.frombuffer(self.data, row, kind.count, self.at) if kind.count else np.empty(0, row)
+            rows = np.frombuffer(self.data, row, kind.rows, self.at) if kind.rows else np.empty(0, row)
             self.at += rows.nbytes
             return {one.name: rows[one.name] for one in kind.properties}
         result: dict[str, NDArray[np.generic] | list[object]] = {one.name: [] for one in kind.properties}
-        for _ in range(kind.count):
+        for _ in range(kind.rows):
             for one in kind.properties:
                 count = 1 if one.count_kind is None else int(self._take(one.count_kind, 1)[0])
                 taken = self._take(one.kind, count)

@@ -77,6 +77,7 @@ class _Reading:
             root.attributes.get("version")
         context = SdfContext(file, root, self.scale, self.search)
         context.words_are_true = self.words_are_true
+        context.has_frames = self.cursor is not None
         robots: list[PlacedRobot] = []
         for element in (root.first("world") or root).children:
             if element.tag == "model":
