@@ -1,4 +1,4 @@
-"""Documents of xacro: what they expand to, as the program xacro 2.1.1 expands them, and their errors."""
+"""Documents of xacro: what they expand to, as in xacro 2.1.1 except for `$(eval)` and lost packages; errors."""
 
 from __future__ import annotations
 
