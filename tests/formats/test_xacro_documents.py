@@ -1,4 +1,4 @@
-"""Documents of xacro: what they expand to, as in xacro 2.1.1 except for `$(eval)` and lost packages; errors."""
+"""Documents of xacro: as xacro 2.1.1 expands them, except for `$(eval)` and packages that are not found."""
 
 from __future__ import annotations
 
