@@ -160,3 +160,16 @@ def test_version(capsys):
 def test_warmup_says_when_it_is_done(capsys):
     assert main(["warmup"]) == 0
     assert "kernels are ready" in capsys.readouterr().out
+
+
+def test_check_takes_arguments_of_xacro(tmp_path, capsys):
+    file = tmp_path / "r.xacro"
+    file.write_text(
+        '<robot name="r" xmlns:xacro="x"><xacro:arg name="two" default="false"/><link name="a"/>'
+        '<xacro:if value="$(arg two)"><link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
+        '<child link="b"/></joint></xacro:if></robot>'
+    )
+    assert main(["check", str(file)]) == 0
+    assert "0 movable joints" in capsys.readouterr().out
+    assert main(["check", "--xacro-arg", "two=true", str(file)]) == 0
+    assert "1 movable joint\n" in capsys.readouterr().out

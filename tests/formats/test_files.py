@@ -96,3 +96,14 @@ def test_a_file_without_end_is_refused(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(files, "open", lambda *_: io.BufferedReader(Endless()), raising=False)
     with pytest.raises(DescriptionError, match="more than the 1000"):
         read_bounded(file, 1000)
+
+
+def test_the_least_recently_used_go_when_the_sizes_are_too_large(tmp_path: Path) -> None:
+    cache: FileCache[str, str] = FileCache(9, most_bytes=10)
+    file = tmp_path / "f"
+    stamp = write(file, "one")
+    for key in ("a", "b", "c"):
+        cache.put(key, stamp, key, 4)
+    assert [cache.get(key, file) for key in ("a", "b", "c")] == [None, "b", "c"]
+    cache.put("d", stamp, "d", 100)
+    assert [cache.get(key, file) for key in ("b", "c", "d")] == [None, None, "d"]

@@ -8,10 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial import ConvexHull as Reference
+from tests.geometry.hull_reference import reference_loops
 from tests.thorough.profiles import cases
 
+from carom.description import ConvexHull as Geometry
+from carom.geometry import hull
 from carom.geometry.hull import LARGEST, SMALLEST, THICKEST_SLAB, convex_hull, extreme_points
 from carom.geometry.polyhedron import Polyhedron
+from carom.model.shape_pieces import shape_pieces
 
 CUBE = np.array([(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
@@ -185,3 +189,36 @@ def test_size_and_place_do_not_matter(scale: float) -> None:
 def test_no_points_and_points_that_are_none_are_refused(bad: object) -> None:
     with pytest.raises(ValueError, match="point"):
         convex_hull(np.array(bad))
+
+
+def assert_as_in_plain_python(points: np.ndarray, tolerance: float, most: int | None) -> None:
+    """The native loops give the very same corners, in the same order."""
+    _, centred, corners, counts = hull._hull_loops(points, tolerance, most)
+    size = float(np.abs(centred).max())
+    first = hull._first_corners(centred, 0.0 if len(centred) != len(points) else hull.FLAT * size)
+    expected = reference_loops(centred, first, size, tolerance, most)
+    assert np.split(corners, np.cumsum(counts)[:-1])[0].tolist() == expected[0]
+    assert [it.tolist() for it in np.split(corners, np.cumsum(counts)[:-1])] == expected
+
+
+@settings(max_examples=cases(60), deadline=None)
+@given(st.one_of(clouds, lattices), st.sampled_from([(1e-4, 512), (1e-7, None), (0.0, 8)]))
+def test_native_hulls_are_those_of_plain_python(points: np.ndarray, limits: tuple[float, int | None]) -> None:
+    assert_as_in_plain_python(points, *limits)
+
+
+def test_large_native_hulls_are_those_of_plain_python() -> None:
+    random = np.random.default_rng(3)
+    ball = random.normal(size=(900, 3))
+    ball /= np.linalg.norm(ball, axis=1, keepdims=True)
+    for tolerance, most in ((1e-4, 512), (1e-7, None), (0.0, 40)):
+        assert_as_in_plain_python(ball, tolerance, most)
+
+
+def test_the_same_points_are_hulled_once() -> None:
+    points = np.random.default_rng(5).normal(size=(60, 3))
+    made = shape_pieces(Geometry(points), implicit_cylinder=True)
+    again = shape_pieces(Geometry(points.copy()), implicit_cylinder=True)
+    assert made[0] is again[0]
+    moved = shape_pieces(Geometry(points + 1e-12), implicit_cylinder=True)
+    assert moved[0] is not made[0]

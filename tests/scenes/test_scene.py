@@ -78,9 +78,9 @@ def test_names_that_no_body_has_are_named(write):
         ("<html/>", "page", "its first element is <html>; a robot file begins with <robot>"),
         ("#usda 1.0", "stage.usda", "USD files are not read yet"),
         (
-            '<robot name="r" xmlns:xacro="x"><xacro:macro name="leg"/></robot>',
+            '<robot name="r" xmlns:xacro="x"><xacro:leg/></robot>',
             "r.xacro",
-            ":1: <xacro:macro>: it is a xacro file",
+            ":1: <xacro:leg>: there is no macro 'leg'",
         ),
     ],
 )

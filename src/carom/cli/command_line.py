@@ -92,6 +92,14 @@ def _parser() -> argparse.ArgumentParser:
     check.add_argument(
         "--without-meshes", action="store_true", help="leave out shapes whose mesh is missing, and list them"
     )
+    check.add_argument(
+        "--xacro-arg",
+        action="append",
+        type=_named_value,
+        default=[],
+        metavar="NAME=VALUE",
+        help="argument of a xacro file; can be given several times",
+    )
     check.set_defaults(command=_check)
 
     view = commands.add_parser("view", help="show a robot in the browser, with a slider for each joint")
@@ -152,6 +160,13 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _named_value(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not name or not equals:
+        raise argparse.ArgumentTypeError(f"{text!r} is not NAME=VALUE")
+    return name, value
+
+
 def _positive(text: str) -> float:
     try:
         value = float(text)
@@ -186,6 +201,7 @@ def _check(options: argparse.Namespace) -> bool:
         strict=options.strict,
         package_paths=options.package_path,
         missing_meshes="warn" if options.without_meshes else "error",
+        xacro_args=dict(options.xacro_arg),
     )
     return not check(options.files, choices)
 

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from carom.description import Robot
 from carom.errors import DescriptionError
+from carom.formats.files import read_bounded
 from carom.formats.kinds import FileKind, kind_of, refuse_usd
 from carom.formats.mjcf import read_mjcf
 from carom.formats.placed import PlacedRobot
-from carom.formats.robot.file import locate
+from carom.formats.reading.written import Written
+from carom.formats.robot.file import MAX_FILE_BYTES, locate
 from carom.formats.sdf import read_sdf
 from carom.formats.search import AssetSearch
 from carom.formats.urdf import read_urdf
+from carom.formats.urdf.reader import read_written_urdf
+from carom.formats.xml_tree import parse_root
 
 
 def read_robots(source: Path, *, search: AssetSearch | None = None) -> tuple[FileKind, list[PlacedRobot]]:
@@ -29,8 +34,20 @@ def read_robots(source: Path, *, search: AssetSearch | None = None) -> tuple[Fil
         case FileKind.MJCF:
             return kind, read_mjcf(file, colours=True, search=search)
         case FileKind.URDF:
-            return kind, [PlacedRobot(read_urdf(file, search=search))]
+            return kind, [PlacedRobot(_read_urdf(file, search))]
         case FileKind.USD:
             raise refuse_usd(file)
         case FileKind.SAVED_WORLD:
             raise DescriptionError("it is a saved world, and no robot file", file=file)
+
+
+def _read_urdf(file: Path, search: AssetSearch) -> Robot:
+    """The robot of a URDF file as PyBullet reads it, which knows no xacro; that is expanded here."""
+    from carom.formats.xacro import is_xacro
+
+    data, _ = read_bounded(file, MAX_FILE_BYTES)
+    if is_xacro(parse_root(data, file, "robot"), file):
+        packages = search.packages or ()
+        search = AssetSearch(search.additional, search.folders, packages)
+        return read_written_urdf(file, Written(), search=search)[0]
+    return read_urdf(file, search=search)

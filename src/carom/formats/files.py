@@ -95,11 +95,14 @@ def read_bounded(file: Path, most_bytes: int) -> tuple[bytes, FileStamp]:
 class FileCache(Generic[Key, Value]):
     """Values made from files, kept while the files are unchanged; the least recently used are dropped first.
 
-    With `outlive` it also returns values of deleted files.
+    With `outlive` it also returns values of deleted files. `most_bytes` bounds the sum of the sizes that
+    `put` is told; the value put last is kept, whatever its size.
     """
 
-    def __init__(self, capacity: int, *, outlive: bool = False) -> None:
+    def __init__(self, capacity: int, *, outlive: bool = False, most_bytes: int | None = None) -> None:
         self._capacity = capacity
+        self._most_bytes = most_bytes
+        self._sizes: dict[Key, int] = {}
         self._outlive = outlive
         self._entries: OrderedDict[Key, tuple[FileStamp, Value]] = OrderedDict()
         # The thread that holds it may come again: a signal handler, a finalizer or a tracer can load files.
@@ -123,16 +126,26 @@ class FileCache(Generic[Key, Value]):
                 return value if unchanged else None
             if not unchanged:
                 self._entries.pop(key, None)
+                self._sizes.pop(key, None)
                 return None
             with suppress(KeyError):
                 self._entries.move_to_end(key)
             return value
 
-    def put(self, key: Key, stamp: FileStamp, value: Value) -> None:
-        """Keep a value made from a file that had this stamp before it was read."""
+    def put(self, key: Key, stamp: FileStamp, value: Value, size: int = 0) -> None:
+        """Keep a value, of this size in bytes, made from a file that had this stamp before it was read."""
         with self._lock:
             self._entries[key] = (stamp, value)
+            self._sizes[key] = size
             with suppress(KeyError):
                 self._entries.move_to_end(key)
-                while len(self._entries) > self._capacity:
-                    self._entries.popitem(last=False)
+                while len(self._entries) > self._capacity or self._is_too_large():
+                    oldest, _ = self._entries.popitem(last=False)
+                    self._sizes.pop(oldest, None)
+
+    def _is_too_large(self) -> bool:
+        return (
+            self._most_bytes is not None
+            and len(self._entries) > 1
+            and sum(self._sizes.get(key, 0) for key in self._entries) > self._most_bytes
+        )

@@ -77,6 +77,26 @@ class AssetSearch:
             return _in_package_above(package, rest, source)
         return None
 
+    def find_package(self, name: str, source: Path) -> Path | None:
+        """The folder of a package that a robot file, `source`, names: in `packages`, or above the file.
+
+        A folder is that of a package by its own name or by the one that its `package.xml` states; the folders
+        beside those above the file count as well.
+        """
+        if not name or "/" in name or "\\" in name or name in (".", ".."):
+            return None
+        for folder in self.packages or ():
+            for candidate in (folder / name, folder):
+                if candidate.is_dir() and name in (candidate.name, _package_name(str(candidate))):
+                    return candidate
+        for above in _folders_above(source):
+            if os.path.basename(above) == name or _package_name(above) == name:
+                return path_of(above)
+            beside = os.path.join(above, name)
+            if os.path.isdir(beside):
+                return path_of(beside)
+        return None
+
     def find_in(self, directory: str, name: str, source: Path) -> Path | None:
         """The file of a name in a directory that a robot file states, with or without folders, or None."""
         name = _without_scheme(name)

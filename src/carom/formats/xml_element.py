@@ -107,3 +107,36 @@ class TreeBuilder:
         if not owner.children:
             owner.text = "".join(self._chunks)
         self._chunks.clear()
+
+
+class PlacedElement(Element):
+    """An element of a document that is put together from several files.
+
+    Attributes:
+        file: The file that contains it.
+        calls: Where the macros around it were called, the innermost first, as in
+            `macro 'leg' called at robot.xacro:12`; empty outside macros.
+    """
+
+    __slots__ = ("calls", "file")
+
+    def __init__(
+        self, tag: str, attributes: dict[str, str], line: int, file: Path, calls: tuple[str, ...] = ()
+    ) -> None:
+        super().__init__(tag, attributes, line)
+        self.file = file
+        self.calls = calls
+
+    @classmethod
+    def of(cls, element: Element, file: Path) -> PlacedElement:
+        """The same element, with all inside it, in a file."""
+        placed = cls(element.tag, element.attributes, element.line, file)
+        placed.text = element.text
+        placed.children = [cls.of(child, file) for child in element.children]
+        return placed
+
+
+def from_calls(element: Element) -> str:
+    """What an error message adds for an element that macros made: where they were called."""
+    calls = getattr(element, "calls", ())
+    return f" (in {', in '.join(calls)})" if calls else ""

@@ -60,13 +60,12 @@ def polyhedron(
     return Polyhedron(vertices, planes, first_corner, corner_count, corners)
 
 
-def polyhedron_of_loops(vertices: Floats, loops: list[list[int]]) -> Polyhedron:
+def polyhedron_of_loops(vertices: Floats, corners: Ints, counts: Ints) -> Polyhedron:
     """A polyhedron from the corners of its faces; vertices (n, 3) that no face uses are left out.
 
-    Each loop goes around a face, counter-clockwise from outside, nearly in one plane.
+    `corners` are those of all faces, one after the other, and `counts` the number of corners of each. They go
+    around a face counter-clockwise from outside, nearly in one plane.
     """
-    counts = np.array([len(loop) for loop in loops], dtype=np.int32)
-    corners = np.fromiter((corner for loop in loops for corner in loop), np.int64, counts.sum())
     used, renamed = np.unique(corners, return_inverse=True)
     kept = np.ascontiguousarray(vertices[used], dtype=np.float64)
     renamed = renamed.reshape(-1).astype(np.int32)

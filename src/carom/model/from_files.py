@@ -31,15 +31,23 @@ def sdf_bodies(
     scale: float,
     words_are_true: bool = True,
     cursor: Cursor | None = None,
+    xacro_args: Sequence[tuple[str, str]] = (),
 ) -> list[PlacedBody]:
     """The bodies of an SDF file, in the order of the file; raises `DescriptionError`.
 
     With `words_are_true`, `<static>true</static>` makes a model static; in PyBullet it does not. A `cursor`
-    records what is taken of the file.
+    records what is taken of the file, and expands macros of xacro, with these arguments.
     """
     from carom.formats.sdf import read_sdf
 
-    robots = read_sdf(path, scale=scale, words_are_true=words_are_true, search=search, cursor=cursor)
+    robots = read_sdf(
+        path,
+        scale=scale,
+        words_are_true=words_are_true,
+        search=search,
+        cursor=cursor,
+        xacro_args=xacro_args,
+    )
     return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
 
 

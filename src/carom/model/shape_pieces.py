@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Sequence
 from functools import lru_cache
+from hashlib import blake2b
 from math import pi
+from threading import RLock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +49,10 @@ CYLINDER_SIDES = 32
 GRID = 10216
 """Cells across a hull of the grid on which its vertices lie."""
 
-_CACHED = 256
+MOST_HULLS = 2048
+"""Most hulls that are kept, by the points they are of; with the most vertices, 120 MB."""
+
+_CACHED = 1024
 
 MeshGeometry = ConvexHull | TriangleMesh
 
@@ -73,6 +79,11 @@ class ShapePiece:
     polyhedron: Polyhedron | None = None
     columns: int = 0
     hierarchy: TriangleHierarchy | None = None
+
+
+_hulls: OrderedDict[bytes, ShapePiece] = OrderedDict()
+# The thread that holds it may come again: a signal handler or a finalizer can load files.
+_hulls_lock = RLock()
 
 
 def shape_pieces(geometry: Geometry, *, implicit_cylinder: bool) -> Sequence[ShapePiece]:
@@ -126,6 +137,22 @@ def _polyhedral(
 
 
 def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
+    """The hull of points, once made for the same ones: files and scripts bring the same again and again."""
+    key = blake2b(points.astype(np.float64).tobytes(), digest_size=20).digest()
+    with _hulls_lock:
+        known = _hulls.pop(key, None)
+        if known is not None:
+            _hulls[key] = known
+            return known
+    made = _made_hull(points)
+    with _hulls_lock:
+        _hulls[key] = made
+        while len(_hulls) > MOST_HULLS:
+            _hulls.popitem(last=False)
+    return made
+
+
+def _made_hull(points: NDArray[np.float64]) -> ShapePiece:
     try:
         hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MOST_HULL_VERTICES)
     except ValueError as problem:
@@ -151,7 +178,10 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
     following = [*sides[1:], 0]
     quads = [[a, CYLINDER_SIDES + a, CYLINDER_SIDES + b, b] for a, b in zip(sides, following, strict=True)]
-    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, [bottom, top, *quads]), MARGIN)
+    loops = [bottom, top, *quads]
+    corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
+    counts = np.array([len(loop) for loop in loops], dtype=np.int32)
+    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts), MARGIN)
 
 
 def _on_grid(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
@@ -62,6 +62,7 @@ class DescriptionLoading(BodyAdding):
         package_paths: Sequence[str | Path] = ...,
         missing_meshes: str = ...,
         default_mass: float | None = ...,
+        xacro_args: Mapping[str, object] | None = ...,
     ) -> Scene: ...
     def load(
         self,
@@ -76,6 +77,7 @@ class DescriptionLoading(BodyAdding):
         package_paths: Sequence[str | Path] = (),
         missing_meshes: str = "error",
         default_mass: float | None = None,
+        xacro_args: Mapping[str, object] | None = None,
     ) -> Body | Scene:
         """Add what a file describes: a robot or a scene (URDF, SDF, MJCF), or a world saved by `save`.
 
@@ -98,6 +100,8 @@ class DescriptionLoading(BodyAdding):
             missing_meshes: `"warn"` leaves out shapes of URDF files whose mesh is missing or cannot be read;
                 `"error"` raises an error.
             default_mass: Mass of links of URDF files without `<inertial>` [kg].
+            xacro_args: Values of the arguments that a xacro file declares, by name; macros are expanded
+                without ROS.
 
         Returns:
             The bodies of the file and everything else in it by name; of a specification the body's handle. A
@@ -115,7 +119,9 @@ class DescriptionLoading(BodyAdding):
 
         path = Path(what)
         if is_robot_file(path):
-            choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
+            choices = Choices(
+                fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass, xacro_args
+            )
             return self._load_file(path, position, orientation, choices)
         from carom.formats.reading.ignored import IgnoredList
         from carom.scene.named_constraints.joint_coupling import couplings_of
@@ -149,6 +155,7 @@ class DescriptionLoading(BodyAdding):
         package_paths: Sequence[str | Path] = (),
         missing_meshes: str = "error",
         default_mass: float | None = None,
+        xacro_args: Mapping[str, object] | None = None,
     ) -> Body:
         """Add the robot that a URDF file describes, as its author meant it.
 
@@ -174,6 +181,7 @@ class DescriptionLoading(BodyAdding):
             missing_meshes: `"warn"` leaves out shapes whose mesh is missing or cannot be read; `"error"`
                 raises an error.
             default_mass: Mass of links without `<inertial>` [kg], with as many kg m² about each axis.
+            xacro_args: Values of the arguments that a xacro file declares, by name.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used, or it is strict and something is left
@@ -188,7 +196,9 @@ class DescriptionLoading(BodyAdding):
         from carom.formats.kinds import FileKind
         from carom.world.robot_files import Choices
 
-        choices = Choices(fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass)
+        choices = Choices(
+            fixed_base, scale, flags, strict, package_paths, missing_meshes, default_mass, xacro_args
+        )
         return self._load_file(Path(path), position, orientation, choices, FileKind.URDF)[0]
 
     def load_sdf(self, path: str | Path, *, scale: float = 1.0, strict: bool = False) -> list[Body]:

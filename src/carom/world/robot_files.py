@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,6 +40,7 @@ class Choices:
     package_paths: Sequence[str | Path] = ()
     missing_meshes: str = "error"
     default_mass: float | None = None
+    xacro_args: Mapping[str, object] | None = None
 
     def written(self) -> Written:
         """The choices of a reading; raises `ValueError` if one is not known."""
@@ -47,7 +48,8 @@ class Choices:
             raise ValueError(f"missing_meshes is {self.missing_meshes!r}; expected one of {MISSING_MESHES}")
         if self.default_mass is not None and not 0.0 < self.default_mass < float("inf"):
             raise ValueError(f"default_mass is {self.default_mass}; expected a positive number or None")
-        return Written(self.missing_meshes == "warn", self.default_mass)
+        given = tuple((name, _as_text(value)) for name, value in (self.xacro_args or {}).items())
+        return Written(self.missing_meshes == "warn", self.default_mass, given)
 
     def search(self) -> AssetSearch:
         """The search for the file and its meshes."""
@@ -91,6 +93,8 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
         raise ValueError(f"fixed_base is for URDF; in {kind.value} files, models state it themselves")
     if kind is FileKind.MJCF and choices.scale != 1.0:
         raise ValueError("scale is for URDF and SDF files")
+    if kind is FileKind.MJCF and choices.xacro_args:
+        raise ValueError("xacro_args is for URDF and SDF files")
     result = RobotFile(file, kind)
     if kind is FileKind.URDF:
         from carom.soft.from_urdf import written_urdf_body
@@ -100,19 +104,19 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
         )
         result.bodies = [(spec, IDENTITY)]
     else:
-        result.bodies, result.ignored = _read_scene(file, kind, choices, search)
+        result.bodies, result.ignored = _read_scene(file, kind, choices, written, search)
     return result
 
 
 def _read_scene(
-    file: Path, kind: FileKind, choices: Choices, search: AssetSearch
+    file: Path, kind: FileKind, choices: Choices, written: Written, search: AssetSearch
 ) -> tuple[list[tuple[BodySpec, Pose]], IgnoredList]:
     if kind is FileKind.SDF:
         from carom.formats.sdf.rules import SDF_RULES
         from carom.model.from_files import sdf_bodies
 
         cursor = Cursor(SDF_RULES)
-        bodies = sdf_bodies(file, search, scale=choices.scale, cursor=cursor)
+        bodies = sdf_bodies(file, search, scale=choices.scale, cursor=cursor, xacro_args=written.xacro_args)
     else:
         from carom.formats.mjcf.rules import MJCF_RULES
         from carom.model.from_files import mjcf_bodies
@@ -120,6 +124,11 @@ def _read_scene(
         cursor = Cursor(MJCF_RULES)
         bodies = mjcf_bodies(file, search, flags=choices.flags, cursor=cursor)
     return bodies, cursor.ignored()
+
+
+def _as_text(value: object) -> str:
+    """The text of an argument, as it would be given on a command line."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def report(source: RobotFile, *, strict: bool) -> None:

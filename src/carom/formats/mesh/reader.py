@@ -7,18 +7,30 @@ from pathlib import Path
 from carom.errors import DescriptionError
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.mesh.collada import read_collada
+from carom.formats.mesh.gltf import read_gltf
 from carom.formats.mesh.obj import read_obj
 from carom.formats.mesh.part import MeshPart
+from carom.formats.mesh.ply import read_ply
 from carom.formats.mesh.stl import read_stl
 
 MAX_FILE_BYTES = 512 << 20
 """Largest mesh file that is read."""
 
-_READERS = {".obj": read_obj, ".stl": read_stl, ".dae": read_collada}
+MAX_CACHED_BYTES = 256 << 20
+"""Most memory that the meshes of unchanged files take; robots may have a hundred of them."""
+
+_READERS = {
+    ".obj": read_obj,
+    ".stl": read_stl,
+    ".dae": read_collada,
+    ".glb": read_gltf,
+    ".gltf": read_gltf,
+    ".ply": read_ply,
+}
 
 
 def read_mesh(path: Path) -> list[MeshPart]:
-    """Reads the triangles of an OBJ, STL or DAE file.
+    """Reads the triangles of an OBJ, STL, DAE, GLB, glTF or PLY file.
 
     Unchanged files are served from a cache; changed files are read again.
 
@@ -39,8 +51,8 @@ def read_mesh(path: Path) -> list[MeshPart]:
     parts = reader(data, file)
     if not parts:
         raise DescriptionError("there are no triangles", file=file)
-    _cache.put(file, stamp, tuple(parts))
+    _cache.put(file, stamp, tuple(parts), sum(it.vertices.nbytes + it.triangles.nbytes for it in parts))
     return parts
 
 
-_cache: FileCache[Path, tuple[MeshPart, ...]] = FileCache(64)
+_cache: FileCache[Path, tuple[MeshPart, ...]] = FileCache(1024, most_bytes=MAX_CACHED_BYTES)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from carom.formats.reading.ignored import Ignored, IgnoredList
 from carom.formats.reading.rules import Rules
-from carom.formats.xml_element import Element
+from carom.formats.xml_element import Element, PlacedElement
 
 
 class Recorded(dict[str, str]):
@@ -83,16 +83,18 @@ class TracedElement(Element):
 
     Attributes:
         file: The file that contains it.
+        calls: Where the macros that made it were called, see `PlacedElement`.
         is_taken: Whether `first`, `all` or `note` took it.
     """
 
-    __slots__ = ("file", "is_taken")
+    __slots__ = ("calls", "file", "is_taken")
 
     def __init__(self, element: Element, file: Path) -> None:
         super().__init__(element.tag, Recorded(element.attributes), element.line)
         self.children = [TracedElement(child, file) for child in element.children]
         self.text = element.text
-        self.file = file
+        self.file = element.file if isinstance(element, PlacedElement) else file
+        self.calls = element.calls if isinstance(element, PlacedElement) else ()
         self.is_taken = False
 
     def first(self, tag: str) -> Element | None:

@@ -13,12 +13,14 @@ class Written:
     Attributes:
         missing_meshes: Shapes whose mesh is missing, or of an unknown kind, are left out and reported;
             otherwise they are errors.
+        xacro_args: Names and values of `<xacro:arg>` in a document of xacro.
         default_mass: Mass of links without `<inertial>` [kg], with as many kg m² about all axes; None for
             links without mass.
     """
 
     missing_meshes: bool = False
     default_mass: float | None = None
+    xacro_args: tuple[tuple[str, str], ...] = ()
 
     def without_inertial(self) -> Inertial:
         """The inertial of a link that states none."""

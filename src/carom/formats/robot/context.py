@@ -11,10 +11,10 @@ from carom.description import Material, Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
-from carom.formats.reading.cursor import Cursor
+from carom.formats.reading.cursor import Cursor, TracedElement
 from carom.formats.reading.written import Written
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import Element
+from carom.formats.xml_element import Element, from_calls
 from carom.logger import Logger
 
 Default = TypeVar("Default")
@@ -53,6 +53,7 @@ class FileContext:
         materials: The materials of a URDF file read so far, by name.
         written: How to read the file as its author meant it; None to read it as PyBullet does.
         cursor: What the reader has taken, if that is reported.
+        parts: The files that macros included into this one.
         mesh_directory: Where meshes are that are not found by the name in the file; empty for nowhere.
     """
 
@@ -67,15 +68,25 @@ class FileContext:
         self.written: Written | None = None
         self.cursor: Cursor | None = None
         self.mesh_directory = ""
+        self.parts: list[Path] = []
 
     def error(self, element: Element, reason: str) -> DescriptionError:
         """An error at an element, with its line and its path in the document."""
         names = (_label(step) for step in self.root.path_to(element) or [element])
-        return DescriptionError(reason, file=self.file, line=element.line, element=" > ".join(names))
+        return DescriptionError(
+            reason + from_calls(element),
+            file=self.file_of(element),
+            line=element.line,
+            element=" > ".join(names),
+        )
+
+    def file_of(self, element: Element) -> Path:
+        """The file that contains an element: an included one for what macros made of that."""
+        return element.file if isinstance(element, TracedElement) else self.file
 
     def warn(self, element: Element, message: str) -> None:
         """Log a warning about something that the author of the file may have meant differently."""
-        _log.warning("%s:%d: %s: %s", self.file, element.line, _label(element), message)
+        _log.warning("%s:%d: %s: %s", self.file_of(element), element.line, _label(element), message)
 
     def required(self, element: Element, attribute: str) -> str:
         """The text of a required attribute."""
@@ -88,6 +99,8 @@ class FileContext:
         """The file that a name in this file refers to; the result is kept in `references`."""
         if name not in self.references:
             found = self.search.find_referenced(name, self.file)
+            for file in self.parts if found is None else ():
+                found = found or self.search.find_referenced(name, file)
             if found is None and self.mesh_directory:
                 found = self.search.find_in(self.mesh_directory, name, self.file)
             self.references[name] = found

@@ -11,6 +11,9 @@ from carom.formats.robot.context import FileContext, MissingFile, shown
 from carom.formats.xml_element import Element
 
 MESH_SUFFIXES = (".obj", ".stl", ".dae")
+WRITTEN_MESH_SUFFIXES = (*MESH_SUFFIXES, ".glb", ".gltf", ".ply")
+"""Kinds of meshes in files that are read as written; PyBullet knows fewer."""
+
 FIELD_SUFFIXES = (".cdf",)
 _SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
 
@@ -26,6 +29,11 @@ def shape_element(context: FileContext, owner: Element) -> Element:
     if shape.tag not in _SHAPES:
         raise context.error(shape, f"unknown shape; known are {', '.join(_SHAPES)}")
     return shape
+
+
+def mesh_suffixes(context: FileContext) -> tuple[str, ...]:
+    """The kinds of meshes that a file may refer to, in the way it is read."""
+    return MESH_SUFFIXES if context.written is None else WRITTEN_MESH_SUFFIXES
 
 
 def plane(context: FileContext, shape: Element, normal: Vector3) -> Plane:

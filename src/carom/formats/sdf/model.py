@@ -13,6 +13,7 @@ from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS, read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
+from carom.formats.sdf.frames import Frames
 from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
 from carom.formats.xml_element import Element
@@ -25,7 +26,7 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     """The robots of a `<model>`, one for each link that has no parent; raises `DescriptionError`."""
     name = context.required(element, "name")
     for child in element.children:
-        if child.tag in _IGNORED:
+        if child.tag in _IGNORED and not context.has_frames:
             context.warn(child, f"{_IGNORED[child.tag]} ignored")
     links, poses = _read_links(context, element)
     joint_elements = list(element.all("joint"))
@@ -44,7 +45,9 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     roots = [index for index in range(len(links)) if index not in carried]
     if len(roots) <= 1:
         root = find_root(context, links, joints, joint_elements)
-        # As in PyBullet, the model's pose becomes that of its root link; the link's own pose is ignored.
+        if context.has_frames:
+            place = compose(place, poses[root])
+        # In PyBullet, the model's pose becomes that of its root link; the link's own pose is ignored.
         return [PlacedRobot(_robot(context, name, links, joints, root), place, static)]
     return [
         PlacedRobot(
@@ -58,11 +61,12 @@ def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[P
     links: list[Link] = []
     poses: list[Pose] = []
     lines: dict[str, int] = {}
+    frames = Frames(context, model) if context.has_frames else None
     for element in model.all("link"):
         link = read_link(context, element, read_sdf_geometry, _read_material)
         context.refuse_duplicate(element, link.name, lines)
         links.append(link)
-        poses.append(context.pose(element))
+        poses.append(context.pose(element) if frames is None else frames.of(element))
     if not links:
         raise context.error(model, "there are no links")
     return links, poses

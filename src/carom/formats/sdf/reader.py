@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,13 +28,15 @@ def read_sdf(
     words_are_true: bool = True,
     search: AssetSearch | None = None,
     cursor: Cursor | None = None,
+    xacro_args: Sequence[tuple[str, str]] = (),
 ) -> list[PlacedRobot]:
     """Reads and checks an SDF file, looked up with `AssetSearch.find`; models are in the order of the file.
 
     Only the first `<world>` is read; if there is one, models outside it are ignored. Lights, physics settings
     and plugins are ignored. `scale` is a factor on lengths: positions, boxes, cylinders, capsules and meshes,
     but as in PyBullet neither spheres nor limits. Without `words_are_true`, `<static>true</static>` means 0,
-    as in PyBullet. A `cursor` records what is taken.
+    as in PyBullet. A `cursor` records what is taken; only with one are macros of xacro expanded, with the
+    names and values of `xacro_args`.
 
     Raises:
         DescriptionError: The file is missing, broken, or holds a model that is not a tree of links.
@@ -41,7 +44,8 @@ def read_sdf(
     """
     check_scale(scale)
     search = search or AssetSearch()
-    return _Reading(scale, words_are_true, search, cursor).read(locate(path, search), ())
+    reading = _Reading(scale, words_are_true, search, cursor)
+    return reading.read(locate(path, search), (), xacro_args)
 
 
 class _Reading:
@@ -56,15 +60,24 @@ class _Reading:
         self.cursor = cursor
         self.includes = Includes()
 
-    def read(self, file: Path, including: tuple[Path, ...]) -> list[PlacedRobot]:
+    def read(
+        self, file: Path, including: tuple[Path, ...], xacro_args: Sequence[tuple[str, str]] = ()
+    ) -> list[PlacedRobot]:
         """The robots of a file; `including` are the files by which it is included, outermost first."""
         data, _ = read_bounded(file, MAX_FILE_BYTES)
         root = parse_root(data, file, "sdf")
         if self.cursor is not None:
+            if b"xacro" in data or file.suffix.lower() == ".xacro" or xacro_args:
+                # Imported only here: few files need it.
+                from carom.formats.xacro.document import expanded_if_xacro
+
+                expanded = expanded_if_xacro(root, file, self.search, xacro_args)
+                root = root if expanded is None else expanded.root
             root = self.cursor.trace(root, file)
             root.attributes.get("version")
         context = SdfContext(file, root, self.scale, self.search)
         context.words_are_true = self.words_are_true
+        context.has_frames = self.cursor is not None
         robots: list[PlacedRobot] = []
         for element in (root.first("world") or root).children:
             if element.tag == "model":

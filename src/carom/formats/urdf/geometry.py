@@ -5,7 +5,7 @@ from __future__ import annotations
 from carom.description import Box, Capsule, Cylinder, Geometry, Mesh, SignedDistanceField, Sphere
 from carom.description.pose import Vector3
 from carom.formats.robot.context import FileContext, shown
-from carom.formats.robot.geometry import FIELD_SUFFIXES, MESH_SUFFIXES, plane, shape_element, shape_file
+from carom.formats.robot.geometry import FIELD_SUFFIXES, mesh_suffixes, plane, shape_element, shape_file
 from carom.formats.xml_element import Element
 
 
@@ -27,7 +27,7 @@ def read_urdf_geometry(context: FileContext, owner: Element) -> Geometry:
     name = context.required(shape, "filename")
     if shape.tag == "cdf":
         return SignedDistanceField(shape_file(context, shape, "filename", name, FIELD_SUFFIXES))
-    path = shape_file(context, shape, "filename", name, MESH_SUFFIXES)
+    path = shape_file(context, shape, "filename", name, mesh_suffixes(context))
     return Mesh(path, _mesh_scale(context, shape))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
@@ -17,7 +17,7 @@ from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_o
 from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.extensions import read_extensions, refuse_xacro
+from carom.formats.urdf.extensions import read_extensions
 from carom.formats.urdf.following import checked_followers
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
@@ -26,6 +26,9 @@ from carom.formats.urdf.moving_mass import report_motion_without_mass
 from carom.formats.urdf.rules import URDF_RULES
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
+
+if TYPE_CHECKING:
+    from carom.formats.xacro.document import Expanded
 
 Part = TypeVar("Part", Link, Joint)
 
@@ -68,14 +71,17 @@ def _read(
         file = locate(path, search)
         cached = _cache.get((file, scale, search, written), file)
     if cached is not None:
-        robot, references, ignored = cached
-        if [search.find_referenced(name, file) for name in references] == list(references.values()):
+        robot, references, ignored, expanded = cached
+        is_valid = expanded is None or expanded.is_still_valid(search)
+        if is_valid and [search.find_referenced(name, file) for name in references] == list(
+            references.values()
+        ):
             return robot, ignored
     data, stamp = read_bounded(file, MAX_FILE_BYTES)
-    context = _context(data, file, scale, search, written)
+    context, expanded = _context(data, file, scale, search, written)
     robot, references = _parse(context)
     ignored = IgnoredList() if context.cursor is None else context.cursor.ignored()
-    _cache.put((file, scale, search, written), stamp, (robot, references, ignored))
+    _cache.put((file, scale, search, written), stamp, (robot, references, ignored, expanded))
     return robot, ignored
 
 
@@ -83,21 +89,29 @@ def parse_urdf(
     data: bytes, file: Path, *, scale: float, search: AssetSearch
 ) -> tuple[Robot, dict[str, Path | None]]:
     """A robot from the content of a file, and the path that each file name in it was resolved to."""
-    return _parse(_context(data, file, scale, search, None))
+    return _parse(_context(data, file, scale, search, None)[0])
 
 
 def _context(
     data: bytes, file: Path, scale: float, search: AssetSearch, written: Written | None
-) -> FileContext:
+) -> tuple[FileContext, Expanded | None]:
     element = parse_root(data, file, "robot")
     if written is None:
-        return FileContext(file, element, scale, search)
-    refuse_xacro(element, file)
+        return FileContext(file, element, scale, search), None
+    expanded = None
+    if b"xacro" in data or file.suffix.lower() == ".xacro" or written.xacro_args:
+        # Imported only here: few files need it.
+        from carom.formats.xacro.document import expanded_if_xacro
+
+        expanded = expanded_if_xacro(element, file, search, written.xacro_args)
     cursor = Cursor(URDF_RULES)
-    context = FileContext(file, cursor.trace(element, file), scale, search)
+    context = FileContext(
+        file, cursor.trace(element if expanded is None else expanded.root, file), scale, search
+    )
+    context.parts = [] if expanded is None else list(expanded.files)
     context.written, context.cursor = written, cursor
     read_extensions(context)
-    return context
+    return context, expanded
 
 
 def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
@@ -172,5 +186,6 @@ def _with_late_material(context: FileContext, visual: Visual) -> Visual:
 
 
 _cache: FileCache[
-    tuple[Path, float, AssetSearch, Written | None], tuple[Robot, dict[str, Path | None], IgnoredList]
+    tuple[Path, float, AssetSearch, Written | None],
+    tuple[Robot, dict[str, Path | None], IgnoredList, Expanded | None],
 ] = FileCache(64)

@@ -14,7 +14,7 @@ from carom.formats.visuals.render_mesh import RenderMesh, flat_mesh
 
 
 def read_mesh_visual(path: Path) -> RenderMesh:
-    """Reads an OBJ, STL or DAE file for drawing.
+    """Reads a mesh file of any kind for drawing.
 
     Unchanged files are served from a cache, and so are files that were deleted after they were read.
 
