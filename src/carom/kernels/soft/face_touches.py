@@ -186,10 +186,11 @@ def has_touch(work: SoftWork, world: Int32, node: Int32, shape: Int32) -> bool:
 @func
 def is_held_at_corners(work: SoftWork, world: Int32, nodes: Index4, weights: Vector3, shape: Int32) -> bool:
     """Whether touches of its nodes already keep a face outside of a shape."""
+    held = 0
     for i in range(3):
-        if weights[i] > _LITTLE and not has_touch(work, world, nodes[i], shape):
-            return False
-    return True
+        if weights[i] <= _LITTLE or has_touch(work, world, nodes[i], shape):
+            held += 1
+    return held == 3
 
 
 @func
