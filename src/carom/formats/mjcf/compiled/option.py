@@ -1,0 +1,45 @@
+"""`<option>`: gravity, time step and the like, as data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_NUMBERS = {
+    "timestep": 1,
+    "gravity": 3,
+    "wind": 3,
+    "magnetic": 3,
+    "density": 1,
+    "viscosity": 1,
+    "impratio": 1,
+}
+_WORDS = ("integrator", "cone", "solver", "jacobian")
+DEFAULTS: dict[str, Any] = {"timestep": 0.002, "gravity": (0.0, 0.0, -9.81)}
+
+
+def read_option(context: CompiledContext, element: Element, options: dict[str, Any]) -> None:
+    """Add what an `<option>` states to `options`; flags are under `flag.NAME`, as truth values.
+
+    Raises:
+        DescriptionError: A number or a flag is not one.
+    """
+    attributes = element.attributes
+    for name, count in _NUMBERS.items():
+        if name in attributes:
+            numbers = context.numbers(element, name, attributes[name], count, count)
+            options[name] = numbers[0] if count == 1 else tuple(numbers)
+    for name in _WORDS:
+        if name in attributes:
+            options[name] = attributes[name]
+    if options.get("timestep", 1.0) <= 0.0:
+        raise context.error(element, f"timestep={shown(attributes['timestep'])} must be positive")
+    for flags in element.all("flag"):
+        for name in list(flags.attributes):
+            text = flags.attributes[name]
+            if text not in ("enable", "disable"):
+                raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
+            options[f"flag.{name}"] = text == "enable"
