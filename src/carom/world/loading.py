@@ -241,6 +241,7 @@ class DescriptionLoading(BodyAdding):
     ) -> Scene:
         """Add everything that a robot file describes; see `World.load`."""
         from carom.checks import vector
+        from carom.world.compiled_files import describe, finish
         from carom.world.robot_files import couple, placed, read_robot_file, report
         from carom.world.scene import Scene
 
@@ -252,9 +253,14 @@ class DescriptionLoading(BodyAdding):
 
         def also(bodies: list[Body]) -> None:
             couplings.extend(couple(bodies))
+            if source.model is not None:
+                finish(bodies, source.model)
 
         bodies = self.load_all(placed(source.bodies, place, turn), also)
-        return Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
+        scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
+        if source.model is not None:
+            describe(scene, source.model)
+        return scene
 
     def load_all(
         self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None

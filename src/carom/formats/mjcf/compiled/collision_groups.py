@@ -1,4 +1,4 @@
-"""Collision groups for MJCF's bits: two geoms collide if the type of either meets the affinity of the other."""
+"""Collision groups for MJCF's bits, where the type of either geom has to meet the affinity of the other."""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from carom.description import Material
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.defaults import Attributes, class_defaults
@@ -43,7 +45,7 @@ def _rgba(context: CompiledContext, element: Element, text: str) -> tuple[float,
     return (red, green, blue, opacity)
 
 
-def _texture(context: CompiledContext, element: Element, name: str):
+def _texture(context: CompiledContext, element: Element, name: str) -> Path | None:
     asset = context.named.texture.get(name)
     if asset is None:
         raise context.error(element, f"there is no texture {shown(name)}")

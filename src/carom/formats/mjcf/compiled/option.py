@@ -8,15 +8,8 @@ from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
-_NUMBERS = {
-    "timestep": 1,
-    "gravity": 3,
-    "wind": 3,
-    "magnetic": 3,
-    "density": 1,
-    "viscosity": 1,
-    "impratio": 1,
-}
+_SCALARS = ("timestep", "density", "viscosity", "impratio")
+_VECTORS = ("gravity", "wind", "magnetic")
 _WORDS = ("integrator", "cone", "solver", "jacobian")
 DEFAULTS: dict[str, Any] = {"timestep": 0.002, "gravity": (0.0, 0.0, -9.81)}
 
@@ -28,10 +21,12 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
         DescriptionError: A number or a flag is not one.
     """
     attributes = element.attributes
-    for name, count in _NUMBERS.items():
+    for name in _SCALARS:
         if name in attributes:
-            numbers = context.numbers(element, name, attributes[name], count, count)
-            options[name] = numbers[0] if count == 1 else tuple(numbers)
+            options[name] = context.number(element, attributes, name, 0.0)
+    for name in _VECTORS:
+        if name in attributes:
+            options[name] = tuple(context.numbers(element, name, attributes[name], 3, 3))
     for name in _WORDS:
         if name in attributes:
             options[name] = attributes[name]

@@ -9,6 +9,7 @@ from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
 from carom.formats.mjcf.compiled.compiler import read_compiler
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframe import read_keyframes
 from carom.formats.mjcf.compiled.mesh_mass import Hull
@@ -23,6 +24,7 @@ from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 
+_FILTER_PARENT = "flag.filterparent"
 _MOST_MODELS = 64
 _ASSETS = ("mesh", "material", "texture", "hfield", "model")
 
@@ -69,6 +71,8 @@ def compile_mjcf(
             )
         if context.compiler.total_mass is not None:
             scaled_to_total([body.inertia for body in reader.bodies], context.compiler.total_mass)
+        if model.options.get(_FILTER_PARENT, True):
+            model.excluded += connected_pairs(whole)
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]

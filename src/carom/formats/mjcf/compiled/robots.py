@@ -1,8 +1,8 @@
 """Robots from compiled bodies: links, and joints between them.
 
-All joints of a body share its frame: each moves the body about an anchor in it. A link has its joint at its own
-origin, so all but the last joint of a body get a massless link in between, and the last one as well if its anchor is
-not at the origin of the body, which is then fixed to that link.
+All joints of a body share its frame: each moves the body about an anchor in it. A link has its joint at its
+own origin, so all but the last joint of a body get a massless link in between, and the last one as well if
+its anchor is not at the origin of the body, which is then fixed to that link.
 """
 
 from __future__ import annotations
