@@ -104,6 +104,40 @@ def test_limits_of_a_joint() -> None:
     assert (worlds[panda].joint_positions[:, 0] < upper + 1e-3).all()
 
 
+@pytest.mark.parametrize(
+    "name", ["joint_armature", "joint_stiffness", "joint_damping", "joint_friction", "joint_spring_reference"]
+)
+def test_terms_of_joints_of_a_body_as_written(name: str) -> None:
+    scene = earth()
+    panda = scene.load(f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf", fixed_base=True).bodies[0]
+    panda.joints[1].stiffness = 2.0
+    panda.joints[1].friction_loss = 0.1
+    worlds = Worlds(scene, COUNT, threads=2)
+    worlds[panda].change_dynamics(1, **{name: VALUES})
+    np.testing.assert_array_equal(worlds[panda].dynamics(1)[name], VALUES)
+
+    def change(world: World, value: float) -> None:
+        joint = world.bodies[panda.id].joints[1]
+        if name == "joint_friction":
+            joint.friction_loss = value
+        else:
+            world.bodies[panda.id].change_dynamics(1, **{name: value})
+
+    alone = assert_each_is_alone(scene, worlds, change)
+    assert len({tuple(world.position) for world in alone}) == COUNT
+    for number, world in enumerate(alone):
+        taken = worlds.extract(number)
+        world.step()
+        taken.step()
+        np.testing.assert_array_equal(taken.position, world.position)
+
+
+def test_a_joint_without_friction_has_none_in_any_world() -> None:
+    scene, panda = panda_world()
+    with pytest.raises(ValueError, match="set friction_loss in the original world"):
+        Worlds(scene, COUNT)[panda].change_dynamics(1, joint_friction=VALUES)
+
+
 def test_gravity() -> None:
     scene, _ = box_world()
     worlds = Worlds(scene, COUNT)

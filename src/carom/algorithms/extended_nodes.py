@@ -68,7 +68,8 @@ def extended_nodes(body: Body, *, as_pybullet: bool) -> list[Node]:
             rotation, origin = _placement(body.link_spec(spec.parent), frames[spec.parent], spec, frame)
         node_of[link] = len(nodes)
         rigid = _rigid_body(body, link, frame, as_pybullet)
-        nodes.append(Node(parent, kind, rotation, origin, *rigid, _axes(kind)))
+        armature = 0.0 if link == first_link else body.dynamics(link).joint_armature
+        nodes.append(Node(parent, kind, rotation, origin, *rigid, _axes(kind), armature))
     return nodes
 
 

@@ -24,7 +24,7 @@ def inverse_dynamics(
 ) -> np.ndarray:
     """Generalized forces for given accelerations of a body, by the recursive Newton-Euler algorithm.
 
-    Gravity is included, damping and applied forces are not.
+    Gravity and the armature of joints are included; damping, springs, friction and applied forces are not.
 
     Args:
         body: The body.

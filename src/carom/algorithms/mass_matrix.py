@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarray:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
+    The armature of joints is part of it; what damping and springs add in a time step is not.
+
     Args:
         body: The body.
         positions: Joint positions in order, shape (n,).

@@ -59,6 +59,7 @@ class Mechanism:
         sizes.coordinates = self.coordinates
         sizes.dofs = self.dofs
         sizes.base_dofs = self.dofs - self.joint_dofs
+        sizes.has_armature = any(node.armature for node in nodes)
         first_position = int(BASE_MOTION)
         first_rate = first_position + self.coordinates
         table = ArrayTable(MechanismTable)
@@ -188,6 +189,7 @@ class Mechanism:
             arrays["node_inertia"][index] = node.inertia
             arrays["dof_angular"][dof:after] = axes[:, 0]
             arrays["dof_linear"][dof:after] = axes[:, 1]
+            arrays["dof_armature"][dof:after] = node.armature
             position += POSITION_COUNT[node.kind]
             dof = after
 

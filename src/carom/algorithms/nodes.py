@@ -31,6 +31,7 @@ class Node:
         moment: Mass times centre of mass, (3,).
         inertia: Inertia about the origin of its frame, (3, 3).
         axes: Angular and linear velocity per unit rate of each dof of the joint, (dofs, 2, 3).
+        armature: Inertia of the joint's drive, seen at the joint [kg m² or kg].
     """
 
     parent: int
@@ -41,6 +42,7 @@ class Node:
     moment: np.ndarray
     inertia: np.ndarray
     axes: np.ndarray
+    armature: float = 0.0
 
 
 @record
@@ -83,7 +85,8 @@ def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
         carrier, frame = frames.of_joint(link)
         kind = JointCode(body.joint_types[link])
         rigid = (masses[index], moments[index], inertias[index])
-        nodes.append(Node(1 + carrier, kind, *_parts(frame), *rigid, _axes(body, link, kind)))
+        of_joint = _axes(body, link, kind), body.dynamics(link).joint_armature
+        nodes.append(Node(1 + carrier, kind, *_parts(frame), *rigid, *of_joint))
     return nodes, ends
 
 

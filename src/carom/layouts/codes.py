@@ -24,6 +24,16 @@ class ConstraintKind(IntEnum):
     SPHERICAL_LIMIT = 3
     USER = 4
     FRICTION = 5
+    ACTUATOR = 6
+
+
+class ActivationDynamics(IntEnum):
+    """How the activation of an actuator follows its control."""
+
+    NONE = 0  # it has no activation: its input is the control
+    INTEGRATOR = 1  # the rate is the control
+    FILTER = 2  # first order, by an Euler step
+    FILTER_EXACT = 3  # first order, by its exact solution
 
 
 class UserConstraintKind(IntEnum):
@@ -109,7 +119,8 @@ NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
 # Kernels read codes as Warp constants.
 REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = map(int, JointCode)
-MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER, FRICTION = map(int, ConstraintKind)
+MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER, FRICTION, ACTUATOR = map(int, ConstraintKind)
+UNFILTERED, INTEGRATOR, FILTER, FILTER_EXACT = map(int, ActivationDynamics)
 USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(int, UserConstraintKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)

@@ -27,6 +27,7 @@ class MechanismSizes:
     coordinates: Int32
     dofs: Int32
     base_dofs: Int32  # 6 or 0; they come before those of the joints
+    has_armature: Int32  # 1: some `dof_armature` is not 0
 
 
 @struct
@@ -86,6 +87,7 @@ class MechanismTable:
 
     node: Array[NodeModel]
     dof: Array[DofAxis]
+    dof_armature: Reals  # inertia of the drive, seen at the joint
     axis: Array[DofAxis]  # the same in the base's frame, at its origin
     end: Array[EndModel]
     motion: Array[NodeMotion]

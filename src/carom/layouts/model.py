@@ -82,6 +82,8 @@ class TreeModel:
     batch: Int32  # first tree of its batch: small islands that are solved together
     first_constraint: Int32  # first constraint of its batch, if it is the first tree of one
     batch_constraints: Int32  # constraints of its batch, if it is the first tree of one; else 0
+    first_actuator: Int32
+    actuator_count: Int32
     can_sleep: Int32
     can_wake: Int32  # 1: wakes up when it moves
     sleep_threshold: real  # it may fall asleep after a time with its sum of squared velocities below this
@@ -123,6 +125,14 @@ class ConstraintModel:
     tree: Int32
     link: Int32  # of a user constraint: its row in `UserConstraints`
     place: Int32  # in Bullet's order, before it is sorted by island
+    actuator: Int32  # its row, if it is one
+
+
+@struct
+class ActuatorModel:
+    """One actuator."""
+
+    dynamics: Int32  # see `codes.ActivationDynamics`
 
 
 @struct
@@ -138,6 +148,7 @@ class Model:
     link: Array[LinkModel]
     dof: Array[DofModel]
     constraint: Array[ConstraintModel]
+    actuator: Array[ActuatorModel]
 
     gravity_vector: Vector3Rows  # in the first entry [m/s²]
     tree_linear_damping: RealRows
@@ -155,6 +166,17 @@ class Model:
     constraint_upper: RealRows
     constraint_twist: RealRows
     constraint_max_impulse: RealRows
+    # Force = (gain · terms) input + bias · terms, where the terms are 1, length and velocity of the actuator.
+    actuator_gain: Vector3Rows
+    actuator_bias: Vector3Rows
+    actuator_gear: RealRows  # length per position of the joint
+    actuator_control_lower: RealRows
+    actuator_control_upper: RealRows
+    actuator_force_lower: RealRows
+    actuator_force_upper: RealRows
+    actuator_activation_lower: RealRows
+    actuator_activation_upper: RealRows
+    actuator_time_constant: RealRows  # of a filter [s]
 
 
 @struct
@@ -186,6 +208,9 @@ class State:
     node_velocity: Vector3Rows
     node_force: Vector3Rows
     node_push: Vector3Rows  # contact force by shapes in the last substep [N]
+    actuator_control: RealRows
+    actuator_activation: RealRows
+    actuator_force: RealRows  # in the last substep
     status_entry: IntRows  # result of the last step: see `layouts.status`
 
 
@@ -247,6 +272,7 @@ class RowScratch:
     delta: Int32  # first block of its tree in `delta_velocity`
     response: Int32  # first block of `block_response`
     blocks: Int32
+    soft: Int32  # 1: `Scratch.row_softness` counts
     change: real  # requested change of the dof's rate
     effective_mass: real
     lower: real  # bounds of the impulse
@@ -278,6 +304,9 @@ class Scratch:
     entry_delta_velocity: RealRows
 
     row: Rows[RowScratch]
+    row_softness: RealRows  # of rows that are soft
+    actuator_start: RealRows  # activation at the start of the step
+    actuator_force_start: RealRows
 
 
 # Scratch arrays that are views of another array's blocks, entry by entry.

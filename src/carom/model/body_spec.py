@@ -12,7 +12,9 @@ from struct import pack, unpack
 from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
+from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
+from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
 from carom.record import record
@@ -87,6 +89,14 @@ class LinkSpec:
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def spring_rest(self) -> tuple[float, ...]:
+        """The position coordinates at which the joint's spring is at rest when it is loaded."""
+        code = JOINT_CODE[self.joint_type]
+        if code == JointCode.SPHERICAL:
+            return (0.0, 0.0, 0.0, 1.0)
+        return (self.spring_reference,) * POSITION_COUNT[code]
 
 
 class Reusable:

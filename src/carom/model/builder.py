@@ -201,8 +201,8 @@ class WorldArrays:
         model["link_joint_type"][first_link] = JointCode.FIXED
         model["link_first_position"][first_link] = rows.first["position"]
         model["link_first_dof"][first_link] = first_dof
-        for field in ("dof_damping", *_TERMS):
-            model[field][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        for name in ("dof_damping", *_TERMS):
+            model[name][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
         model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
 
@@ -229,12 +229,9 @@ class WorldArrays:
                 last_dof[j] = dof
                 self._reset_motor(dof, code, held=spec.is_held)
                 dof += 1
-            springs = model["position_spring"][:, position : position + POSITION_COUNT[code]]
             if code == JointCode.SPHERICAL:
                 self._reset_spherical(row, position)
-                springs[:] = (0.0, 0.0, 0.0, 1.0)
-            else:
-                springs[:] = link.spring_reference
+            model["position_spring"][:, position : position + POSITION_COUNT[code]] = link.spring_rest
             position += POSITION_COUNT[code]
 
     def set_base_freedom(self, rows: TreeRows, *, free: bool) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
 from carom.model.inertia import mass_terms, moments_at
+from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, checked_terms, set_terms, write_terms
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
@@ -26,12 +27,14 @@ OF_BODY = {
 _SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")
+_ONLY_OF_JOINT = (*OF_DOFS, SPRING_REFERENCE)
 _VECTORS = ("inertia", "anisotropic_friction")
 _NOT_OF_SURFACE = {
     *OF_BODY,
     _SLEEP_THRESHOLD,
     _ACTIVATION,
     *_OF_JOINT,
+    *_ONLY_OF_JOINT,
     "mass",
     "inertia",
     "joint_limit_force",
@@ -94,6 +97,9 @@ def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
         x, y, z = value
         for component in (x, y, z):
             _check_number(component)
+    elif name == SPRING_REFERENCE and hasattr(value, "__len__"):
+        for component in value:
+            _check_number(component)
     elif type(value) is not float:
         _check_number(value)
     if name not in _NOT_OF_SURFACE:
@@ -124,6 +130,8 @@ def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Ca
         steps.append(partial(_set_inertia, body, link, changes["inertia"]))
     if link != BASE:
         steps += _joint_changes(body, link, changes)
+    elif own := [name for name in _ONLY_OF_JOINT if name in changes]:
+        raise ValueError(f"the base has no joint, and no {own[0]}")
     else:
         dynamics = body.dynamics(link)
         steps += [partial(setattr, dynamics, name, changes[name]) for name in changes.keys() & _OF_JOINT]
@@ -160,8 +168,9 @@ def _activation_change(body: Body, change: ActivationChange) -> Callable[[], Non
 
 def _joint_changes(body: Body, joint: int, changes: Mapping[str, Any]) -> Iterator[Callable[[], None]]:
     dynamics = body.dynamics(joint)
-    if "joint_damping" in changes:
-        yield partial(_set_joint_damping, body, joint, changes["joint_damping"])
+    terms = checked_terms(body, joint, changes)
+    if terms:
+        yield partial(set_terms, body, joint, terms)
     if "joint_lower_limit" in changes or "joint_upper_limit" in changes:
         lower = changes.get("joint_lower_limit", dynamics.joint_lower_limit)
         upper = changes.get("joint_upper_limit", dynamics.joint_upper_limit)
@@ -173,7 +182,7 @@ def write_link(body: Body, link: int) -> None:
     dynamics = body.dynamics(link)
     _write(body, link)
     if link != BASE:
-        _set_joint_damping(body, link, dynamics.joint_damping)
+        write_terms(body, link)
     body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
@@ -257,12 +266,6 @@ def _write(body: Body, link: int) -> None:
     dynamics = body.dynamics(link)
     body.derived.clear()
     body.world.arrays.write_inertia(body.first_link + 1 + link, dynamics.mass, dynamics.inertia)
-
-
-def _set_joint_damping(body: Body, joint: int, damping: float) -> None:
-    body.dynamics(joint).joint_damping = damping
-    first = body.velocity_index[joint]
-    body.world.arrays.model.numpy["dof_damping"][:, first : first + body.velocity_count[joint]] = damping
 
 
 def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:

@@ -14,6 +14,7 @@ from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
+from carom.scene.joint_terms.friction import friction_of, set_friction
 from carom.scene.named import Named
 
 if TYPE_CHECKING:
@@ -95,10 +96,72 @@ class Joint:
         """Maximum force of the motor according to the file (effort); inf if the file states none."""
         return self.spec.effort or np.inf
 
+    # Terms of the joint itself
+
     @property
     def damping(self) -> float:
-        """Viscous damping [N m s/rad or N s/m]."""
+        """Viscous damping [N m s/rad or N s/m]; settable.
+
+        It is implicit in velocity, and stable however large it is, in bodies that `World.load` has read; in
+        those that PyBullet's readings have loaded it is a torque by the velocity before the step.
+        """
         return self.body.dynamics(self.index).joint_damping
+
+    @damping.setter
+    def damping(self, value: float) -> None:
+        self._change(joint_damping=value)
+
+    @property
+    def armature(self) -> float:
+        """Inertia of the drive, seen at the joint [kg m² or kg]; settable.
+
+        It is the inertia of the rotor times the square of the gear ratio, and part of the mass matrix.
+        """
+        return self.body.dynamics(self.index).joint_armature
+
+    @armature.setter
+    def armature(self, value: float) -> None:
+        self._change(joint_armature=value)
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of the joint's own spring [N m/rad or N/m]; settable, and implicit in velocity."""
+        return self.body.dynamics(self.index).joint_stiffness
+
+    @stiffness.setter
+    def stiffness(self, value: float) -> None:
+        self._change(joint_stiffness=value)
+
+    @property
+    def spring_reference(self) -> float | tuple[float, ...]:
+        """Position at which this spring is at rest; settable. Of a spherical joint it is a quaternion."""
+        rest = self.body.dynamics(self.index).joint_spring_reference
+        return rest[0] if len(rest) == 1 else rest
+
+    @spring_reference.setter
+    def spring_reference(self, value: ArrayLike) -> None:
+        rest = vector(np.atleast_1d(value), self.body.position_count[self.index], "spring_reference")
+        self._change(joint_spring_reference=tuple(rest.tolist()))
+
+    @property
+    def friction_loss(self) -> float:
+        """Greatest force of dry friction [N m or N]; settable."""
+        friction = friction_of(self.body, self.index)
+        return 0.0 if friction is None else friction.upper
+
+    @friction_loss.setter
+    def friction_loss(self, value: float) -> None:
+        world_of(self.body)  # raises an error if the body has been removed
+        set_friction(self.body, self.index, float(value))
+
+    def _change(self, **changes: float | tuple[float, ...]) -> None:
+        """Change terms of the joint; raises `ValueError` for a fixed one, and numbers that are not finite."""
+        world_of(self.body)
+        for name, value in changes.items():
+            finite(value, name.removeprefix("joint_"))
+        if not self.degrees_of_freedom:
+            raise ValueError(f"joint {self.name!r} is fixed: it has no damping, armature and spring")
+        self.body.change_dynamics(self.index, **changes)
 
     # State
 

@@ -36,6 +36,9 @@ class LinkDynamics:
         contact_processing_threshold: Maximum distance at which a contact is solved [m].
         anisotropic_friction: Factors on friction along the link's axes.
         joint_damping: [N m s/rad or N s/m].
+        joint_armature: Inertia of the drive, seen at the joint [kg m² or kg].
+        joint_stiffness: Of the joint's spring [N m/rad or N/m].
+        joint_spring_reference: Position coordinates at which this spring is at rest [rad or m].
         joint_lower_limit: [rad or m].
         joint_upper_limit: [rad or m]; there are no limits if it is less than the lower limit.
         joint_limit_impulse: Maximum impulse of a limit per substep [N m s or N s].
@@ -58,6 +61,9 @@ class LinkDynamics:
     joint_lower_limit: float = 0.0
     joint_upper_limit: float = -1.0
     joint_limit_impulse: float = DEFAULT_LIMIT_IMPULSE
+    joint_armature: float = 0.0
+    joint_stiffness: float = 0.0
+    joint_spring_reference: tuple[float, ...] = ()
 
     @classmethod
     def of(cls, link: LinkSpec) -> LinkDynamics:
@@ -67,6 +73,9 @@ class LinkDynamics:
             mass=link.mass,
             inertia=link.inertia,
             joint_damping=link.damping,
+            joint_armature=link.armature,
+            joint_stiffness=link.stiffness,
+            joint_spring_reference=link.spring_rest,
             joint_lower_limit=link.lower,
             joint_upper_limit=link.upper,
             friction_anchor=contact.friction_anchor,

@@ -206,10 +206,11 @@ class BodyBatch(JointBatch):
             **changes: As for `Body.change_dynamics`, each one value for all, or one for each of the n worlds
                 chosen (n,): `mass`, `inertia` (n, 3), `lateral_friction`, `rolling_friction`,
                 `spinning_friction`, `restitution`, `contact_stiffness`, `contact_damping`, `linear_damping`,
-                `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_lower_limit`,
-                `joint_upper_limit`. A `mass` without `inertia` scales the inertia that the link has in the
-                original world in proportion, as if its density changed. Where a lower limit is greater than
-                the upper one, the joint has no limits.
+                `angular_damping`, `max_joint_velocity`, `joint_damping`, `joint_armature`, `joint_stiffness`,
+                `joint_spring_reference` (n, 4 for a spherical joint), `joint_friction` of a joint that has
+                some, `joint_lower_limit`, `joint_upper_limit`. A `mass` without `inertia` scales the inertia
+                that the link has in the original world in proportion, as if its density changed. Where a
+                lower limit is greater than the upper one, the joint has no limits.
 
         Raises:
             ValueError: A number is out of range, there are not as many values as worlds chosen, or limits are

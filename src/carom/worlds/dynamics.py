@@ -14,6 +14,7 @@ from carom.model.body_spec import BASE
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import OF_BODY, shape_inertia, unit_inertia
+from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS
 from carom.worlds.chosen import Chosen
 
 # Fields of `Shapes` that can differ between worlds, by their public names.
@@ -28,9 +29,12 @@ OF_SURFACE = {
         "contact_damping",
     )
 }
+_QUATERNION = 4
 LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
-_ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, "joint_damping", *LIMITS)
-_NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping")
+FRICTION = "joint_friction"
+_OF_JOINT = (*TERMS, FRICTION)
+_ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, *_OF_JOINT, *LIMITS)
+_NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping", *OF_DOFS, FRICTION)
 
 
 def change_dynamics(
@@ -44,7 +48,7 @@ def change_dynamics(
         )
     values = {
         name: worlds.values(
-            np.asarray(engine.take(value)), _inner_shape(name), name, finite=name not in LIMITS
+            np.asarray(engine.take(value)), _inner_shape(body, link, name), name, finite=name not in LIMITS
         )
         for name, value in changes.items()
     }
@@ -83,15 +87,25 @@ def dynamics_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
         found["mass"] = engine.parameter("model", "link_mass", row)
         found["inertia"] = engine.parameter("model", "link_inertia", row)
     if link != BASE and body.velocity_count[link]:
-        found["joint_damping"] = engine.parameter("model", "dof_damping", body.velocity_index[link])
+        dof, position = body.velocity_index[link], body.position_index[link]
+        fields = {"joint_damping": body.spec.damping_field, **OF_DOFS}
+        found |= {name: engine.parameter("model", field, dof) for name, field in fields.items()}
+        count = body.position_count[link]
+        coordinates = position if count == 1 else slice(position, position + count)
+        found[SPRING_REFERENCE] = engine.parameter("model", "position_spring", coordinates)
+        friction = friction_rows(engine, body).get(link)
+        if friction is not None:
+            found[FRICTION] = engine.parameter("model", "constraint_upper", friction)
         limit = limit_rows(engine, body).get(link)
         if limit is not None:
             found |= {name: engine.parameter("model", field, limit) for name, field in LIMITS.items()}
     return {name: found[name] for name in _ALL if name in found}
 
 
-def _inner_shape(name: str) -> tuple[int, ...]:
+def _inner_shape(body: Body, link: int, name: str) -> tuple[int, ...]:
     """Shape of a parameter in one world."""
+    if name == SPRING_REFERENCE and link != BASE and body.position_count[link] > 1:
+        return (body.position_count[link],)
     return (3,) if name == "inertia" else ()
 
 
@@ -115,14 +129,40 @@ def _writes(
                 yield "model", "link_inertia", row, _scaled_inertias(body, link, numbers)
         elif name == "inertia":
             yield "model", "link_inertia", row, numbers
-        elif name == "joint_damping":
+        elif name in _OF_JOINT:
             _require_joint(link, name)
-            first = body.velocity_index[link]
-            dofs = slice(first, first + body.velocity_count[link])
-            yield "model", "dof_damping", dofs, numbers[:, None]
+            yield from _joint_writes(engine, body, link, name, numbers)
         else:
             _require_joint(link, name)
             yield "model", LIMITS[name], _limit_row(engine, body, link), numbers
+
+
+def _joint_writes(
+    engine: Engine, body: Body, joint: int, name: str, numbers: np.ndarray
+) -> Iterator[tuple[str, str, int | slice, np.ndarray]]:
+    """As `_writes`, for damping, armature, spring or friction of a joint."""
+    if name == FRICTION:
+        yield "model", "constraint_upper", _friction_row(engine, body, joint), numbers
+        return
+    if name == SPRING_REFERENCE:
+        first, count = body.position_index[joint], body.position_count[joint]
+        if count == _QUATERNION:
+            numbers = _units(numbers)
+        yield "model", "position_spring", slice(first, first + count), numbers.reshape(len(numbers), -1)
+        return
+    first, count = body.velocity_index[joint], body.velocity_count[joint]
+    field = OF_DOFS.get(name, body.spec.damping_field)
+    yield "model", field, slice(first, first + count), numbers[:, None]
+    if field != "dof_damping":
+        # It stays on where all terms of a body are set to 0: sums with them are the same.
+        yield "model", "tree_joint_terms", body.rows.tree, np.ones(len(numbers))
+
+
+def _units(quaternions: np.ndarray) -> np.ndarray:
+    sizes = np.sqrt((quaternions * quaternions).sum(axis=1, keepdims=True))
+    if not sizes.all():
+        raise ValueError(f"{SPRING_REFERENCE} must be a quaternion other than 0")
+    return quaternions / sizes
 
 
 def _scaled_inertias(body: Body, link: int, masses: np.ndarray) -> np.ndarray:
@@ -151,12 +191,33 @@ def _limit_row(engine: Engine, body: Body, joint: int) -> int:
     return row
 
 
+def _friction_row(engine: Engine, body: Body, joint: int) -> int:
+    """Row of a joint's friction among the constraints."""
+    row = friction_rows(engine, body).get(joint)
+    if row is None:
+        name = body.spec.links[joint].joint_name
+        raise ValueError(
+            f"joint {name!r} has no friction: set friction_loss in the original world before it is copied"
+        )
+    return row
+
+
 def limit_rows(engine: Engine, body: Body) -> dict[int, int]:
     """Rows among the constraints of the limits of a body's joints, by joint."""
+    return _constraint_rows(engine, body, ConstraintKind.LIMIT)
+
+
+def friction_rows(engine: Engine, body: Body) -> dict[int, int]:
+    """Rows among the constraints of the friction of a body's joints, by joint."""
+    return _constraint_rows(engine, body, ConstraintKind.FRICTION)
+
+
+def _constraint_rows(engine: Engine, body: Body, kind: ConstraintKind) -> dict[int, int]:
+    """Rows of the constraints of a kind on a body's joints, by joint."""
     model, used = engine.arrays.model.numpy, engine.arrays.used["constraint"]
     first = body.first_link + 1
     links = model["constraint_link"][:used]
     is_own = (links >= first) & (links < first + body.joint_count)
-    rows = np.flatnonzero(is_own & (model["constraint_kind"][:used] == ConstraintKind.LIMIT))
+    rows = np.flatnonzero(is_own & (model["constraint_kind"][:used] == kind))
     # The first of several counts.
     return {int(links[row]) - first: int(row) for row in rows[::-1]}

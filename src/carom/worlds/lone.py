@@ -9,6 +9,7 @@ from carom.layouts.codes import ConstraintKind
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 from carom.scene.dynamics_changes import OF_BODY
+from carom.scene.joint_terms.implicit import OF_DOFS
 from carom.world.world import World
 from carom.worlds.dynamics import OF_SURFACE
 
@@ -57,7 +58,11 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
                 dynamics.inertia = (ix, iy, iz)
             if link >= 0 and body.velocity_count[link]:
                 dof = body.velocity_index[link]
-                dynamics.joint_damping = float(_row(model, "dof_damping", number)[dof])
+                for name, field in {"joint_damping": body.spec.damping_field, **OF_DOFS}.items():
+                    setattr(dynamics, name, float(_row(model, field, number)[dof]))
+                first, count = body.position_index[link], body.position_count[link]
+                rest = _row(model, "position_spring", number)[first : first + count]
+                dynamics.joint_spring_reference = tuple(rest.tolist())
             body.set_dynamics(link, dynamics)
     _take_limits(world, engine, number)
     for user, row in world.user_constraints.rows.items():
@@ -70,16 +75,19 @@ def _take_limits(world: World, engine: Engine, number: int) -> None:
     model = engine.arrays.model
     kinds, links = model.numpy["constraint_kind"], model.numpy["constraint_link"]
     lower, upper = _row(model, "constraint_lower", number), _row(model, "constraint_upper", number)
+    of_joints = (ConstraintKind.LIMIT, ConstraintKind.FRICTION)
     rows = {
-        int(links[row]): row
+        (int(kinds[row]), int(links[row])): row
         for row in range(engine.arrays.used["constraint"])
-        if kinds[row] == ConstraintKind.LIMIT
+        if kinds[row] in of_joints
     }
     for constraint in world.constraints.all:
-        if constraint.kind != ConstraintKind.LIMIT:
+        if constraint.kind not in of_joints:
             continue
-        row = rows[constraint.body.first_link + 1 + constraint.joint]
+        row = rows[constraint.kind, constraint.body.first_link + 1 + constraint.joint]
         constraint.lower, constraint.upper = float(lower[row]), float(upper[row])
+        if constraint.kind == ConstraintKind.FRICTION:
+            continue
         dynamics = constraint.body.dynamics(constraint.joint)
         dynamics.joint_lower_limit, dynamics.joint_upper_limit = constraint.lower, constraint.upper
 

@@ -30,6 +30,10 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
         scratch.dof[world, dof].start_motor_impulse = state.dof_motor_impulse[world, dof]
         dof += 1
+    first = model.tree[tree].first_actuator
+    for actuator in range(first, first + model.tree[tree].actuator_count):
+        scratch.actuator_start[world, actuator] = state.actuator_activation[world, actuator]
+        scratch.actuator_force_start[world, actuator] = state.actuator_force[world, actuator]
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link_pose_start[world, link] = state.link_pose[world, link]
@@ -59,6 +63,10 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
         state.dof_motor_impulse[world, dof] = scratch.dof[world, dof].start_motor_impulse
         dof += 1
+    first = model.tree[tree].first_actuator
+    for actuator in range(first, first + model.tree[tree].actuator_count):
+        state.actuator_activation[world, actuator] = scratch.actuator_start[world, actuator]
+        state.actuator_force[world, actuator] = scratch.actuator_force_start[world, actuator]
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         state.link_pose[world, link] = scratch.link_pose_start[world, link]

@@ -40,6 +40,7 @@ def add_row(
     scratch.row[world, row].delta = delta
     scratch.row[world, row].response = response
     scratch.row[world, row].blocks = blocks
+    scratch.row[world, row].soft = 0
     scratch.row[world, row].change = change
     scratch.row[world, row].effective_mass = effective_mass
     scratch.row[world, row].lower = lower

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.actuators import advance_activations
 from carom.kernels.dynamics.dynamics import (
     generalized_forces,
     link_bias_forces,
@@ -14,6 +15,7 @@ from carom.kernels.dynamics.feedback import (
     measure_joint_wrenches,
 )
 from carom.kernels.dynamics.integration import integrate_positions
+from carom.kernels.dynamics.joint_terms import add_joint_terms
 from carom.kernels.dynamics.kinematics import forward_kinematics, motion_subspaces
 from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, invert, solve
 from carom.kernels.dynamics.motors import explicit_pd
@@ -44,6 +46,8 @@ def move_tree(
     link_bias_forces(model, state, scratch, world, tree, FREE_MOTION)
     generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
     composite_inertia(model, scratch, world, tree)
+    if model.tree_joint_terms[world, tree] != 0.0:
+        add_joint_terms(model, settings, state, scratch, world, tree)
     factorise(model, scratch, world, tree)
     solve(model, scratch, world, tree)
     if model.tree[tree].sensor_count > 0:
@@ -87,6 +91,8 @@ def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratc
     if model.tree[tree].sensor_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)
     apply_delta_velocities(model, state, scratch, world, tree)
+    if model.tree[tree].actuator_count > 0:
+        advance_activations(model, settings, state, world, tree)
     integrate_positions(model, state, world, tree, settings.time_step)
 
 

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.rotation import axis_rotation
+from carom.kernels.maths.rotation import axis_rotation, rotation_vector
 from carom.kernels.mechanism.dynamics import quaternion_at
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Quaternion, Reals, Vector3, func, real
@@ -78,19 +78,6 @@ def end_position(chain: Chain, search: Search, end: Int32) -> Vector3:
     return position
 
 
-@func
-def rotation_vector(start: Quaternion, target: Quaternion) -> Vector3:
-    """The rotation vector from one rotation to another: axis times angle, at most π."""
-    turn = target * wp.quat_inverse(start)
-    axis = Vector3(turn[0], turn[1], turn[2])
-    cosine = turn[3]
-    if cosine < 0.0:
-        axis = -axis
-        cosine = -cosine
-    sine = wp.length(axis)
-    return 2.0 * axis if sine < 1.0e-12 else axis * (2.0 * wp.atan2(sine, cosine) / sine)
-
-
 @wp.struct
 class Errors:
     """The errors of the ends."""
@@ -115,7 +102,7 @@ def measure_errors(sizes: ChainSizes, chain: Chain, search: Search, oriented: In
             joint = chain.end_joint[end]
             if joint >= 0:
                 rotation = search.joint[joint].rotation * rotation
-            turn = rotation_vector(rotation, search.end_target_rotation[end])
+            turn = rotation_vector(search.end_target_rotation[end] * wp.quat_inverse(rotation))
             search.block_error[end * stride + 1] = turn
             angle = wp.max(angle, wp.length(turn))
             squares += wp.dot(turn, turn)

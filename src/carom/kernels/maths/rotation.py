@@ -68,3 +68,15 @@ def rotation_step(rate: Vector3, dt: real) -> Quaternion:
         # Taylor series of sin(speed dt / 2) / speed.
         scale = 0.5 * dt - dt * dt * dt * 0.020833333333 * speed * speed
     return Quaternion(rate[0] * scale, rate[1] * scale, rate[2] * scale, wp.cos(0.5 * speed * dt))
+
+
+@func
+def rotation_vector(turn: Quaternion) -> Vector3:
+    """The axis of a rotation times its angle, which is at most π."""
+    axis = Vector3(turn[0], turn[1], turn[2])
+    cosine = turn[3]
+    if cosine < 0.0:
+        axis = -axis
+        cosine = -cosine
+    sine = wp.length(axis)
+    return 2.0 * axis if sine < 1.0e-12 else axis * (2.0 * wp.atan2(sine, cosine) / sine)

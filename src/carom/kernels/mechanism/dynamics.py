@@ -145,6 +145,9 @@ def newton_euler(
         keep_motion(mechanism, node, omega, alpha, acceleration)
         keep_forces(mechanism, node, omega, alpha, acceleration)
     gather_forces(sizes, mechanism)
+    if sizes.has_armature != 0 and accelerations >= 0:
+        for dof in range(sizes.base_dofs, sizes.dofs):
+            mechanism.output[dof] += mechanism.dof_armature[dof] * joints[accelerations + dof]
 
 
 @func
@@ -344,6 +347,9 @@ def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
             mechanism.motion[parent].mass += mass
             mechanism.motion[parent].moment += moment
             mechanism.motion[parent].inertia += inertia
+    if sizes.has_armature != 0:
+        for dof in range(sizes.base_dofs, sizes.dofs):
+            mechanism.matrix[dof * sizes.dofs + dof] += mechanism.dof_armature[dof]
 
 
 @func

@@ -18,7 +18,9 @@ def scratch_of_batch(model: Model, scratch: Scratch, root: Int32) -> Scratch:
     own = Scratch()
     own = scratch
     if model.tree[root].batch_constraints > 0:
-        own.row = scratch.row[:, first : first + MAX_ROWS_PER_CONSTRAINT * model.tree[root].batch_constraints]
+        end = first + MAX_ROWS_PER_CONSTRAINT * model.tree[root].batch_constraints
+        own.row = scratch.row[:, first:end]
+        own.row_softness = scratch.row_softness[:, first:end]
     return own
 
 

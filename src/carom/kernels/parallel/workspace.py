@@ -57,7 +57,9 @@ def scratch_of_island(scratch: Scratch, work: IslandWork, world: Int32, root: In
     first = work.tree_window[world, root][ROW]
     own = Scratch()
     own = scratch
-    own.row = scratch.row[:, first : window_end(work, world, root, ROW, scratch.row.shape[1])]
+    end = window_end(work, world, root, ROW, scratch.row.shape[1])
+    own.row = scratch.row[:, first:end]
+    own.row_softness = scratch.row_softness[:, first:end]
     return own
 
 

@@ -6,6 +6,7 @@ squared change of a row's velocity is at most the residual threshold, or after t
 
 import warp as wp
 
+from carom.kernels.dynamics.actuators import actuator_row, keep_actuator_force
 from carom.kernels.dynamics.feedback import gather_constraint_forces
 from carom.kernels.dynamics.friction import friction_row
 from carom.kernels.dynamics.limits import limit_rows, spherical_limit_rows
@@ -14,8 +15,16 @@ from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.rows import row_dof
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import ConstraintRows, Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector4, Vector4Rows, func, real
-from carom.layouts.codes import FRICTION, LIMIT, MOTOR, MOTOR_MAX_IMPULSE, SPHERICAL_LIMIT, SPHERICAL_MOTOR
+from carom.kernels.types import Int32, RealRows, Vector4, Vector4Rows, func, real
+from carom.layouts.codes import (
+    ACTUATOR,
+    FRICTION,
+    LIMIT,
+    MOTOR,
+    MOTOR_MAX_IMPULSE,
+    SPHERICAL_LIMIT,
+    SPHERICAL_MOTOR,
+)
 
 
 @func
@@ -64,6 +73,8 @@ def joint_constraint_rows(
         row = spherical_limit_rows(model, settings, state, scratch, world, constraint, row)
     elif kind == FRICTION:
         row = friction_row(model, settings, state, scratch, world, constraint, row)
+    elif kind == ACTUATOR:
+        row = actuator_row(model, settings, state, scratch, world, constraint, row)
     return row
 
 
@@ -75,9 +86,11 @@ def joint_constraint_rows(
     wp::float64 rate = delta[rows[first].entry / 4][rows[first].entry % 4];
     for (int i = first, left = count; left > 0; --left) {
         auto& own = rows[i];
-        i += stride;
         const auto before = own.impulse;
         auto change = own.change - rate;
+        if (own.soft != 0)
+            change -= wp::index(softness, world, i) * before;
+        i += stride;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {
             after = after < own.lower ? own.lower : after;
@@ -105,6 +118,7 @@ def joint_constraint_rows(
 """)
 def relax_rows(
     row: ConstraintRows,
+    softness: RealRows,
     delta_velocity: Vector4Rows,
     response: Vector4Rows,
     world: Int32,
@@ -135,8 +149,9 @@ def row_sweep(settings: Settings, scratch: Scratch, world: Int32, count: Int32, 
     inner = Int32(0)
     while inner < settings.inner_iterations:
         residual = relax_rows(
-            scratch.row, scratch.delta_velocity, scratch.block_response, world, first, count, stride
-        )
+            scratch.row, scratch.row_softness, scratch.delta_velocity, scratch.block_response, world, first,
+            count, stride,
+        )  # fmt: skip
         inner += 1
         if residual == 0.0:
             # No row has changed, so further inner sweeps would not change any.
@@ -181,16 +196,20 @@ def keep_row_results(
     state.tree_iterations[world, root] = sweeps
     state.tree_residual[world, root] = residual
     for row in range(count):
-        keep_motor_impulse(model, state, scratch, world, row)
+        keep_motor_impulse(model, settings, state, scratch, world, row)
     gather_constraint_forces(model, settings, scratch, world, 0, count)
 
 
 @func
-def keep_motor_impulse(model: Model, state: State, scratch: Scratch, world: Int32, row: Int32):
-    """Store the impulse of a row in the state if it is a motor's."""
+def keep_motor_impulse(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, row: Int32
+):
+    """Store the impulse of a row in the state if it is a motor's, or the force if it is an actuator's."""
     kind = model.constraint[scratch.row[world, row].constraint].kind
     if kind == MOTOR or kind == SPHERICAL_MOTOR:
         state.dof_motor_impulse[world, row_dof(model, scratch, world, row)] = scratch.row[world, row].impulse
+    elif kind == ACTUATOR:
+        keep_actuator_force(model, settings, state, scratch, world, row)
 
 
 @func

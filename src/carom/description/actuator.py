@@ -1,0 +1,262 @@
+"""Actuators of joints, as descriptions: what drives a joint, by which law, within which bounds."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+from carom.description.pose import Vector3
+from carom.errors import DescriptionError
+from carom.layouts.codes import ActivationDynamics
+from carom.record import record
+
+Range = tuple[float, float]
+UNBOUNDED: Range = (-inf, inf)
+
+
+@record
+class ActuatorSpec:
+    """An actuator of a joint with one degree of freedom, as the engine simulates it.
+
+    Its length is `gear` times the position of the joint, and its velocity `gear` times its rate. Its force is
+    (gain · (1, length, velocity)) · input + bias · (1, length, velocity), within `force_range`; the joint
+    feels `gear` times that. The input is the control, or the activation if there are dynamics.
+
+    Attributes:
+        name: Its name among the actuators of the body.
+        joint: Name of the joint.
+        gain: Force per input; its change per length and per velocity.
+        bias: Force without input; its change per length and per velocity.
+        gear: Length per position of the joint; not 0.
+        control_range: Bounds of the control.
+        force_range: Bounds of the force [N or N m].
+        dynamics: How the activation follows the control.
+        time_constant: Of a filter [s].
+        activation_range: Bounds of the activation.
+    """
+
+    name: str
+    joint: str
+    gain: Vector3 = (1.0, 0.0, 0.0)
+    bias: Vector3 = (0.0, 0.0, 0.0)
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+    dynamics: ActivationDynamics = ActivationDynamics.NONE
+    time_constant: float = 1.0
+    activation_range: Range = UNBOUNDED
+
+    def check(self) -> None:
+        """Raise `DescriptionError` unless the numbers have a meaning."""
+        for name in ("control_range", "force_range", "activation_range"):
+            lower, upper = getattr(self, name)
+            if not lower <= upper:
+                raise DescriptionError(f"actuator {self.name!r}: {name} {lower:g} to {upper:g} is empty")
+        numbers = (self.gear, self.time_constant, *self.gain, *self.bias)
+        if not all(-inf < number < inf for number in numbers):
+            raise DescriptionError(f"actuator {self.name!r}: gear, gain, bias and time must be finite")
+        if self.gear == 0.0:
+            raise DescriptionError(f"actuator {self.name!r}: its gear is 0, so it moves nothing")
+        if not self.time_constant > 0.0:
+            raise DescriptionError(f"actuator {self.name!r}: its time constant must be greater than 0")
+
+
+@record
+class GeneralActuator:
+    """An actuator with any affine gain and bias; attributes as of `ActuatorSpec`."""
+
+    joint: str
+    gain: Vector3 = (1.0, 0.0, 0.0)
+    bias: Vector3 = (0.0, 0.0, 0.0)
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+    dynamics: ActivationDynamics = ActivationDynamics.NONE
+    time_constant: float = 1.0
+    activation_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The same with a name."""
+        return ActuatorSpec(
+            name,
+            self.joint,
+            self.gain,
+            self.bias,
+            self.gear,
+            self.control_range,
+            self.force_range,
+            self.dynamics,
+            self.time_constant,
+            self.activation_range,
+        )
+
+
+@record
+class Motor:
+    """Its force is the control."""
+
+    joint: str
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name."""
+        return ActuatorSpec(
+            name, self.joint, gear=self.gear, control_range=self.control_range, force_range=self.force_range
+        )
+
+
+@record
+class PositionActuator:
+    """A position servo: force = kp (control - length) - kv velocity, implicit in velocity.
+
+    Attributes:
+        joint: Name of the joint.
+        kp: Stiffness [N m/rad or N/m].
+        kv: Damping [N m s/rad or N s/m].
+        gear: Length per position of the joint.
+        control_range: Bounds of the control, a length.
+        force_range: Bounds of the force.
+        time_constant: Of the exact first-order filter of the control [s]; 0 for none.
+    """
+
+    joint: str
+    kp: float = 1.0
+    kv: float = 0.0
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+    time_constant: float = 0.0
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name."""
+        filtered = self.time_constant != 0.0
+        return ActuatorSpec(
+            name,
+            self.joint,
+            (self.kp, 0.0, 0.0),
+            (0.0, -self.kp, -self.kv),
+            self.gear,
+            self.control_range,
+            self.force_range,
+            ActivationDynamics.FILTER_EXACT if filtered else ActivationDynamics.NONE,
+            self.time_constant if filtered else 1.0,
+        )
+
+
+@record
+class VelocityActuator:
+    """A velocity servo: force = kv (control - velocity), implicit in velocity."""
+
+    joint: str
+    kv: float = 1.0
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name."""
+        gain, bias = (self.kv, 0.0, 0.0), (0.0, 0.0, -self.kv)
+        return ActuatorSpec(name, self.joint, gain, bias, self.gear, self.control_range, self.force_range)
+
+
+@record
+class IntegratedVelocityActuator:
+    """A position servo whose target is the integral of the control, within `activation_range`."""
+
+    joint: str
+    kp: float = 1.0
+    kv: float = 0.0
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+    activation_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name."""
+        return ActuatorSpec(
+            name,
+            self.joint,
+            (self.kp, 0.0, 0.0),
+            (0.0, -self.kp, -self.kv),
+            self.gear,
+            self.control_range,
+            self.force_range,
+            ActivationDynamics.INTEGRATOR,
+            activation_range=self.activation_range,
+        )
+
+
+@record
+class Damper:
+    """A damper that the control sets: force = -kv control velocity; the control is not negative."""
+
+    joint: str
+    kv: float = 1.0
+    gear: float = 1.0
+    control_range: Range = (0.0, inf)
+    force_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name; raises `DescriptionError` if controls may be negative."""
+        if self.control_range[0] < 0.0:
+            raise DescriptionError(f"actuator {name!r}: the control of a damper must not be negative")
+        return ActuatorSpec(
+            name,
+            self.joint,
+            (0.0, 0.0, -self.kv),
+            gear=self.gear,
+            control_range=self.control_range,
+            force_range=self.force_range,
+        )
+
+
+@record
+class Cylinder:
+    """A pneumatic or hydraulic cylinder: the control is filtered to a pressure that acts on an area.
+
+    Attributes:
+        joint: Name of the joint.
+        time_constant: Of the pressure [s].
+        area: [m²]; not used if there is a diameter.
+        diameter: [m]; 0 for none.
+        bias: See `ActuatorSpec`.
+        gear: Length per position of the joint.
+        control_range: Bounds of the control.
+        force_range: Bounds of the force.
+    """
+
+    joint: str
+    time_constant: float = 1.0
+    area: float = 1.0
+    diameter: float = 0.0
+    bias: Vector3 = (0.0, 0.0, 0.0)
+    gear: float = 1.0
+    control_range: Range = UNBOUNDED
+    force_range: Range = UNBOUNDED
+
+    def spec(self, name: str) -> ActuatorSpec:
+        """The actuator with a name."""
+        area = 0.25 * pi * self.diameter**2 if self.diameter else self.area
+        return ActuatorSpec(
+            name,
+            self.joint,
+            (area, 0.0, 0.0),
+            self.bias,
+            self.gear,
+            self.control_range,
+            self.force_range,
+            ActivationDynamics.FILTER,
+            self.time_constant,
+        )
+
+
+Actuator = (
+    GeneralActuator
+    | Motor
+    | PositionActuator
+    | VelocityActuator
+    | IntegratedVelocityActuator
+    | Damper
+    | Cylinder
+)

@@ -1,0 +1,113 @@
+"""Actuators of joints: forces that depend on a control, and on position and velocity, within bounds.
+
+Each is a row. The force of a servo falls with position and velocity of its joint, and both are those at the
+end of the substep: it is an implicit spring and damper, a soft row as those of soft contacts, and its bounds
+are those of the force. All other forces are impulses that are known, rows with equal bounds.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.motors import unless_nan
+from carom.kernels.dynamics.rows import LEAST_INVERSE_MASS, add_row, inverse_mass_entry
+from carom.kernels.maths.min_max import within_bounds
+from carom.kernels.structs import Model, Scratch, Settings, State
+from carom.kernels.types import Int32, func, real
+from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, UNFILTERED
+
+
+@func
+def bounded_control(model: Model, state: State, world: Int32, actuator: Int32) -> real:
+    """The control of an actuator within its range."""
+    control = state.actuator_control[world, actuator]
+    lower, upper = (
+        model.actuator_control_lower[world, actuator],
+        model.actuator_control_upper[world, actuator],
+    )
+    return unless_nan(within_bounds(control, lower, upper), control)
+
+
+@func
+def actuator_row(
+    model: Model,
+    settings: Settings,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+) -> Int32:
+    """Add the row of an actuator of a revolute or prismatic joint; returns the next free row."""
+    actuator = model.constraint[constraint].actuator
+    link = model.constraint[constraint].link
+    tree = model.constraint[constraint].tree
+    dof = model.link[link].first_dof
+    place = dof - model.tree[tree].first_dof
+    h = settings.time_step
+    gear = model.actuator_gear[world, actuator]
+    rate = state.dof_velocity[world, dof]
+    length = gear * state.position[world, model.link[link].first_position]
+    speed = gear * rate
+    drive = state.actuator_activation[world, actuator]
+    if model.actuator[actuator].dynamics == UNFILTERED:
+        drive = bounded_control(model, state, world, actuator)
+    gain, bias = model.actuator_gain[world, actuator], model.actuator_bias[world, actuator]
+    terms = gain * drive + bias
+    # Force = terms[0] - stiffness length - damping velocity; what is negative of both is explicit.
+    stiffness, damping = wp.max(-terms[1], real(0.0)), wp.max(-terms[2], real(0.0))
+    force = terms[0] + terms[1] * length + (terms[2] + damping) * speed
+    lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
+    # Impulse on the joint = h gear force - yielding (rate of the joint at the end).
+    yielding = h * gear * gear * (damping + h * stiffness)
+    inverse_mass = inverse_mass_entry(model, scratch, world, tree, place, place)
+    if inverse_mass <= LEAST_INVERSE_MASS:
+        state.actuator_force[world, actuator] = real(0.0)
+        return row
+    first, second = h * gear * lower, h * gear * upper
+    if gear < 0.0:
+        first, second = h * gear * upper, h * gear * lower
+    if yielding == 0.0:
+        impulse = unless_nan(within_bounds(h * gear * force, first, second), force)
+        effective_mass = 1.0 / inverse_mass
+        return add_row(
+            model, scratch, world, constraint, row, dof, impulse * inverse_mass, effective_mass, impulse,
+            impulse,
+        )  # fmt: skip
+    softness = 1.0 / yielding
+    effective_mass = 1.0 / (inverse_mass + softness)
+    change = h * gear * force * softness - rate
+    after = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, first, second)
+    scratch.row[world, row].soft = 1
+    scratch.row_softness[world, row] = softness
+    return after
+
+
+@func
+def keep_actuator_force(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, row: Int32
+):
+    """Store the force of the actuator of a row."""
+    actuator = model.constraint[scratch.row[world, row].constraint].actuator
+    gear = model.actuator_gear[world, actuator]
+    state.actuator_force[world, actuator] = scratch.row[world, row].impulse / (settings.time_step * gear)
+
+
+@func
+def advance_activations(model: Model, settings: Settings, state: State, world: Int32, tree: Int32):
+    """Update the activations of the actuators of a tree, after a substep in which the present ones acted."""
+    h = settings.time_step
+    first = model.tree[tree].first_actuator
+    for actuator in range(first, first + model.tree[tree].actuator_count):
+        dynamics = model.actuator[actuator].dynamics
+        if dynamics != UNFILTERED:
+            control = bounded_control(model, state, world, actuator)
+            activation = state.actuator_activation[world, actuator]
+            constant = model.actuator_time_constant[world, actuator]
+            if dynamics == INTEGRATOR:
+                activation += h * control
+            elif dynamics == FILTER:
+                activation += h * (control - activation) / constant
+            elif dynamics == FILTER_EXACT:
+                activation += (control - activation) * (1.0 - wp.exp(-h / constant))
+            lower = model.actuator_activation_lower[world, actuator]
+            upper = model.actuator_activation_upper[world, actuator]
+            state.actuator_activation[world, actuator] = within_bounds(activation, lower, upper)

@@ -1,0 +1,51 @@
+"""Rows of actuators in the flat arrays: writing them, and making room for one more of a body."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from carom.description.actuator import ActuatorSpec
+
+if TYPE_CHECKING:
+    from carom.model.builder import TreeRows, WorldArrays
+
+_AXIS = "actuator"
+
+
+def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
+    """Write the parameters of an actuator."""
+    model["actuator_dynamics"][row] = spec.dynamics
+    model["actuator_gain"][:, row] = spec.gain
+    model["actuator_bias"][:, row] = spec.bias
+    model["actuator_gear"][:, row] = spec.gear
+    model["actuator_time_constant"][:, row] = spec.time_constant
+    for name in ("control", "force", "activation"):
+        lower, upper = getattr(spec, f"{name}_range")
+        model[f"actuator_{name}_lower"][:, row] = lower
+        model[f"actuator_{name}_upper"][:, row] = upper
+
+
+def insert_actuator(arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows]) -> int:
+    """Make room for one more actuator of a body, after those it has; those of other bodies move down.
+
+    Returns:
+        The new row, all zeros.
+    """
+    used, row = arrays.used[_AXIS], rows.first[_AXIS] + rows.count[_AXIS]
+    arrays.reserve(actuator=1)
+    for table in arrays.tables:
+        for name, array in table.numpy.items():
+            if name.partition("_")[0] == _AXIS:
+                moved = array.swapaxes(0, 1) if table.is_per_world(name) else array
+                moved[row + 1 : used + 1] = moved[row:used].copy()
+                moved[row] = 0
+    rows.count = {**rows.count, _AXIS: rows.count[_AXIS] + 1}
+    first = arrays.model.numpy["tree_first_actuator"]
+    for other in others:
+        if other is not rows and other.tree > rows.tree:
+            other.first = {**other.first, _AXIS: other.first[_AXIS] + 1}
+            first[other.tree] += 1
+    arrays.model.numpy["tree_actuator_count"][rows.tree] += 1
+    arrays.used[_AXIS] = used + 1
+    return row

@@ -1,0 +1,1 @@
+"""Actuators of a body, as handles: controls, forces and parameters by name."""

@@ -1,0 +1,154 @@
+"""One actuator of a body, and all of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, finite, one_or_each
+from carom.description.actuator import ActuatorSpec, Range
+from carom.scene.handles import world_of
+from carom.scene.named import Named
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.joint import Joint
+
+
+class BodyActuator:
+    """One actuator of a body; lengths and forces are its own, `gear` relates them to those of its joint.
+
+    Attributes:
+        body: The body.
+        index: Its number among the actuators of the body.
+    """
+
+    __slots__ = ("body", "index")
+
+    def __init__(self, body: Body, index: int) -> None:
+        self.body: Body = body
+        self.index: int = index
+
+    def __repr__(self) -> str:
+        return f"<Actuator {self.index} {self.name!r} of {self.body.name!r}: joint {self.spec.joint!r}>"
+
+    @property
+    def spec(self) -> ActuatorSpec:
+        """What it was made from."""
+        return self.body.spec.actuators[self.index]
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self.spec.name
+
+    @property
+    def joint(self) -> Joint:
+        """The joint that it drives."""
+        return self.body.joints[self.spec.joint]
+
+    @property
+    def control(self) -> float:
+        """The control, which stays until it is set again; settable. Its range bounds what has an effect."""
+        return float(self._state("actuator_control")[self._row])
+
+    @control.setter
+    def control(self, value: float) -> None:
+        self._state("actuator_control")[self._row] = float(finite(value, "control"))
+
+    @property
+    def activation(self) -> float:
+        """The activation, a state of actuators with dynamics; settable."""
+        return float(self._state("actuator_activation")[self._row])
+
+    @activation.setter
+    def activation(self, value: float) -> None:
+        self._state("actuator_activation")[self._row] = float(finite(value, "activation"))
+
+    @property
+    def force(self) -> float:
+        """Its force in the last substep, within its range [N or N m]; the joint feels `gear` times that."""
+        return float(self._state("actuator_force")[self._row])
+
+    @property
+    def length(self) -> float:
+        """`gear` times the position of its joint."""
+        return self.gear * self.joint.position
+
+    @property
+    def velocity(self) -> float:
+        """`gear` times the velocity of its joint."""
+        return self.gear * self.joint.velocity
+
+    @property
+    def gear(self) -> float:
+        """Length per position of the joint."""
+        return self.spec.gear
+
+    @property
+    def kp(self) -> float:
+        """Stiffness of a servo: by how much its force falls with its length."""
+        return -self.spec.bias[1]
+
+    @property
+    def kv(self) -> float:
+        """Damping of a servo: by how much its force falls with its velocity."""
+        return -self.spec.bias[2]
+
+    @property
+    def control_range(self) -> Range:
+        """Bounds of the control."""
+        return self.spec.control_range
+
+    @property
+    def force_range(self) -> Range:
+        """Bounds of the force [N or N m]."""
+        return self.spec.force_range
+
+    def _state(self, name: str) -> Array:
+        return world_of(self.body).arrays.state.numpy[name][0]
+
+    @property
+    def _row(self) -> int:
+        return self.body.rows.first["actuator"] + self.index
+
+
+class BodyActuators(Named[BodyActuator]):
+    """All actuators of a body: `actuators["elbow"]`, `actuators[0]`, and arrays over all of them."""
+
+    def __init__(self, body: Body) -> None:
+        super().__init__("actuator", [BodyActuator(body, i) for i in range(len(body.spec.actuators))])
+        self._body = body
+
+    def __repr__(self) -> str:
+        return f"<Actuators of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
+
+    @property
+    def controls(self) -> Array:
+        """The controls of all, a copy; settable, by one number for each or one for all."""
+        return self._state("actuator_control").copy()
+
+    @controls.setter
+    def controls(self, values: ArrayLike) -> None:
+        self._state("actuator_control")[:] = one_or_each(finite(values, "controls"), len(self), "controls")
+
+    @property
+    def activations(self) -> Array:
+        """The activations of all, a copy; settable."""
+        return self._state("actuator_activation").copy()
+
+    @activations.setter
+    def activations(self, values: ArrayLike) -> None:
+        numbers = one_or_each(finite(values, "activations"), len(self), "activations")
+        self._state("actuator_activation")[:] = numbers
+
+    @property
+    def forces(self) -> Array:
+        """The forces of all in the last substep, a copy."""
+        return self._state("actuator_force").copy()
+
+    def _state(self, name: str) -> np.ndarray:
+        first = self._body.rows.first["actuator"]
+        return world_of(self._body).arrays.state.numpy[name][0, first : first + len(self)]

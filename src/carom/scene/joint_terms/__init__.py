@@ -1,0 +1,1 @@
+"""What joints do by themselves: armature, damping, springs and friction."""

@@ -1,0 +1,47 @@
+"""Dry friction of joints: what can be read and set during the simulation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from carom.layouts.codes import WITH_FRICTION, ConstraintKind
+from carom.scene.joint_constraints import JointConstraint
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+
+def friction_of(body: Body, joint: int) -> JointConstraint | None:
+    """The friction of a joint, if it ever had some."""
+    for constraint in body.world.constraints.all:
+        if (
+            constraint.body is body
+            and constraint.joint == joint
+            and constraint.kind == ConstraintKind.FRICTION
+        ):
+            return constraint
+    return None
+
+
+def set_friction(body: Body, joint: int, friction: float) -> None:
+    """Set the friction of a joint [N m or N].
+
+    Raises:
+        ValueError: It is negative, or the joint is neither revolute nor prismatic.
+    """
+    if not 0.0 <= friction < float("inf"):
+        raise ValueError(f"friction_loss is {friction}: it must be at least 0 and finite")
+    if body.joint_types[joint] not in WITH_FRICTION:
+        link = body.spec.links[joint]
+        raise ValueError(
+            f"joint {link.joint_name!r} is {link.joint_type.value}: friction is not built for such joints"
+        )
+    constraint = friction_of(body, joint)
+    if constraint is not None:
+        constraint.upper = friction
+    elif friction > 0.0:
+        constraints = body.world.constraints
+        constraints.all.append(JointConstraint(body, joint, ConstraintKind.FRICTION, upper=friction))
+    else:
+        return
+    body.world.scene_changed()
