@@ -50,6 +50,7 @@ def mass_of_mesh(vertices: Points, triangles: Triangles, way: str, hull: Hull) -
     second = sum(
         (around[:, None, None] / 20.0 * p[:, :, None] * p[:, None, :]).sum(axis=0) for p in (a, b, c, total)
     )
+    volume = float(around.sum())
     return MassShape(volume, centre, _tensor(np.asarray(second) / volume))
 
 
