@@ -77,7 +77,8 @@ class Scene(Sequence[Body]):
     def apply_options(self) -> None:
         """Set gravity and the time step of the world to those of the file; other options have no effect."""
         if "gravity" in self.options:
-            self.world.gravity = self.options["gravity"]
+            has_gravity = self.options.get("flag.gravity", True)
+            self.world.gravity = self.options["gravity"] if has_gravity else (0.0, 0.0, 0.0)
         if "timestep" in self.options:
             self.world.parameters.time_step = self.options["timestep"]
             self.world.apply_parameters()

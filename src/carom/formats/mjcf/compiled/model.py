@@ -126,6 +126,7 @@ class CompiledModel:
     """All of a file.
 
     Attributes:
+        name: Its name.
         robots: A robot for each body of the world, and one for all geoms of the world.
         joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
         starts: Positions of joints whose reference is not 0, by name.
@@ -136,6 +137,7 @@ class CompiledModel:
         keyframes: By name.
     """
 
+    name: str = ""
     robots: list[PlacedRobot] = field(default_factory=list)
     joints: list[tuple[str, str, str]] = field(default_factory=list)
     starts: dict[str, float] = field(default_factory=dict)

@@ -11,6 +11,17 @@ from carom.formats.xml_element import Element
 _SCALARS = ("timestep", "density", "viscosity", "impratio")
 _VECTORS = ("gravity", "wind", "magnetic")
 _WORDS = ("integrator", "cone", "solver", "jacobian")
+_FLAGS = {
+    "actuation": "actuators act",
+    "clampctrl": "controls have bounds",
+    "constraint": "contacts, limits and other constraints act",
+    "contact": "bodies collide",
+    "damper": "joints have damping",
+    "equality": "equality constraints act",
+    "frictionloss": "joints have friction",
+    "limit": "joints have limits",
+    "spring": "joints have springs",
+}
 DEFAULTS: dict[str, Any] = {"timestep": 0.002, "gravity": (0.0, 0.0, -9.81)}
 
 
@@ -38,3 +49,5 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
             if text not in ("enable", "disable"):
                 raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
             options[f"flag.{name}"] = text == "enable"
+            if name in _FLAGS and text == "disable":
+                context.leave_out(flags, _FLAGS[name], "flags do not switch it off", name)

@@ -25,6 +25,8 @@ from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element
 
 _FILTER_PARENT = "flag.filterparent"
+# What is in them is reported one by one.
+_BY_CHILDREN = ("actuator", "sensor", "tendon", "equality", "deformable")
 _MOST_MODELS = 64
 _ASSETS = ("mesh", "material", "texture", "hfield", "model")
 
@@ -56,7 +58,7 @@ def compile_mjcf(
     search = search or AssetSearch()
     file = locate(path, search)
     context = _read_document(file, search, hull, cursor, ())
-    model = CompiledModel(options=dict(DEFAULTS))
+    model = CompiledModel(context.root.attributes.get("model", ""), options=dict(DEFAULTS))
     for element in context.root.all("option"):
         read_option(context, element, model.options)
     reader = BodyReader(model, missing_meshes=missing_meshes)
@@ -76,6 +78,9 @@ def compile_mjcf(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
+    for tag in _BY_CHILDREN:
+        for element in context.root.all(tag):
+            element.note()
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)

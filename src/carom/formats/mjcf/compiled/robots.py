@@ -60,7 +60,7 @@ class _Maker:
             is_last = number == len(body.joints) - 1
             place = compose(frame, Pose(joint.anchor))
             is_body = is_last and joint.anchor == _ORIGIN
-            link = _link(body) if is_body else Link(f"{body.name}:{joint.joint.name}", MASSLESS)
+            link = _link(body) if is_body else Link(f"{body.name}@{joint.joint.name}", MASSLESS)
             parent = self._hang(link, joint, parent, place)
             x, y, z = joint.anchor
             frame = Pose((-x, -y, -z))
@@ -71,7 +71,7 @@ class _Maker:
             self.links.append(_link(body))
             own = len(self.links) - 1
             if parent is not None:
-                self.joints.append(Joint(f"{body.name}:fixed", JointType.FIXED, parent, own, frame))
+                self.joints.append(Joint(f"{body.name}@fixed", JointType.FIXED, parent, own, frame))
         for child in body.children:
             self.add(child, own)
 
