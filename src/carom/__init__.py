@@ -16,6 +16,15 @@ from carom.version import __version__
 if TYPE_CHECKING:
     from carom import control
     from carom.camera import Camera
+    from carom.description.actuator import (
+        Cylinder,
+        Damper,
+        GeneralActuator,
+        IntegratedVelocityActuator,
+        Motor,
+        PositionActuator,
+        VelocityActuator,
+    )
     from carom.recording.recorder import Recorder
     from carom.scene.body import Body
     from carom.scene.joint import Joint
@@ -31,11 +40,18 @@ _suggest_names()
 __all__ = [
     "Body",
     "Camera",
+    "Cylinder",
+    "Damper",
+    "GeneralActuator",
+    "IntegratedVelocityActuator",
     "Joint",
     "JointCoupling",
     "Link",
+    "Motor",
+    "PositionActuator",
     "Recorder",
     "Scene",
+    "VelocityActuator",
     "World",
     "Worlds",
     "__version__",
@@ -53,6 +69,18 @@ _HOME = {
     "World": "carom.world.world",
     "Worlds": "carom.worlds.worlds",
 }
+_HOME |= dict.fromkeys(
+    (
+        "Cylinder",
+        "Damper",
+        "GeneralActuator",
+        "IntegratedVelocityActuator",
+        "Motor",
+        "PositionActuator",
+        "VelocityActuator",
+    ),
+    "carom.description.actuator",
+)
 
 
 def __getattr__(name: str) -> Any:

@@ -272,7 +272,7 @@ class RowScratch:
     delta: Int32  # first block of its tree in `delta_velocity`
     response: Int32  # first block of `block_response`
     blocks: Int32
-    soft: Int32  # 1: `Scratch.row_softness` counts
+    soft: Int32  # 1: `Scratch.row_share` and `Scratch.row_softness` count
     change: real  # requested change of the dof's rate
     effective_mass: real
     lower: real  # bounds of the impulse
@@ -304,7 +304,10 @@ class Scratch:
     entry_delta_velocity: RealRows
 
     row: Rows[RowScratch]
-    row_softness: RealRows  # of rows that are soft
+    # Of rows that are soft: share of its rate that a row corrects at once, and of that the part for each
+    # unit of its impulse.
+    row_share: RealRows
+    row_softness: RealRows
     actuator_start: RealRows  # activation at the start of the step
     actuator_force_start: RealRows
 

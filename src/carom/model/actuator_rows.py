@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from carom.description.actuator import ActuatorSpec
@@ -24,6 +25,26 @@ def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
         lower, upper = getattr(spec, f"{name}_range")
         model[f"actuator_{name}_lower"][:, row] = lower
         model[f"actuator_{name}_upper"][:, row] = upper
+
+
+def read_actuator(model: dict[str, Any], row: int, world: int, spec: ActuatorSpec) -> ActuatorSpec:
+    """An actuator with the parameters that it has in a world."""
+
+    def value(name: str) -> Any:
+        array = model[f"actuator_{name}"]
+        return array[world if len(array) > 1 else 0, row].tolist()
+
+    return replace(
+        spec,
+        gain=tuple(value("gain")),
+        bias=tuple(value("bias")),
+        gear=value("gear"),
+        time_constant=value("time_constant"),
+        **{
+            f"{name}_range": (value(f"{name}_lower"), value(f"{name}_upper"))
+            for name in ("control", "force", "activation")
+        },
+    )
 
 
 def insert_actuator(arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows]) -> int:

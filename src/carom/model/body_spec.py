@@ -12,6 +12,7 @@ from struct import pack, unpack
 from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
+from carom.description.actuator import ActuatorSpec
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
 from carom.layouts.codes import POSITION_COUNT, JointCode
@@ -130,6 +131,7 @@ class BodySpec(Reusable):
         link_damping: Share of the velocity of the body's links that air takes away [1/s].
         is_held: As in PyBullet, motors hold all joints until they are commanded, joints have no friction
             and follow no others, and their damping is explicit.
+        actuators: What drives its joints besides their motors.
     """
 
     name: str
@@ -142,6 +144,7 @@ class BodySpec(Reusable):
     soft: SoftSpec | None = None
     link_damping: float = DEFAULT_LINK_DAMPING
     is_held: bool = True
+    actuators: tuple[ActuatorSpec, ...] = ()
 
     @property
     def damping_field(self) -> str:

@@ -28,6 +28,7 @@ from carom.layouts.codes import (
 )
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
+from carom.model.actuator_rows import write_actuator
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
@@ -50,6 +51,7 @@ _INDEX_FIELDS = {
     "tree_first_velocity": "dof",
     "tree_first_dof": "dof",
     "tree_first_block": "block",
+    "tree_first_actuator": "actuator",
     "tree_first_delta": "delta",
     "link_parent": "link",
     "link_first_position": "position",
@@ -87,7 +89,7 @@ class WorldArrays:
         self.model: ArrayTable = ArrayTable(Model, references=_INDEX_FIELDS)
         self.state: ArrayTable = ArrayTable(State, world_count)
         self.used: dict[str, int] = dict.fromkeys(
-            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node"), 0
+            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node", "actuator"), 0
         )
         # The numbers of replacements for which it was made, and it.
         self._row_changes: tuple[tuple[int, int], RowChanges] | None = None
@@ -145,11 +147,14 @@ class WorldArrays:
             "block": dofs * blocks,
             "delta": blocks,
             "node": 0 if spec.soft is None else len(spec.soft.nodes),
+            "actuator": len(spec.actuators),
         }
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
         self._write_tree(rows, spec)
         self._write_links(rows, spec, codes)
+        for row, actuator in enumerate(spec.actuators, start=rows.first["actuator"]):
+            write_actuator(self.model.numpy, row, actuator)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
         if spec.soft is not None:
@@ -184,6 +189,8 @@ class WorldArrays:
         model["tree_first_velocity"][tree] = first["dof"]
         model["tree_first_block"][tree] = first["block"]
         model["tree_first_delta"][tree] = first["delta"]
+        model["tree_first_actuator"][tree] = first["actuator"]
+        model["tree_actuator_count"][tree] = rows.count["actuator"]
         model["tree_sensor_count"][tree] = 0
         model["tree_constraint_count"][tree] = 0
         model["tree_batch"][tree] = tree

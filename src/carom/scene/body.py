@@ -22,6 +22,8 @@ from carom.scene.handles import world_of
 from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
+    from carom.description.actuator import Actuator
+    from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.joint import Joints
     from carom.scene.link import Links
     from carom.world.world import World
@@ -139,6 +141,32 @@ class Body:
         from carom.scene.link import Links
 
         return Links(self)
+
+    @cached_property
+    def actuators(self) -> BodyActuators:
+        """The actuators by index or name."""
+        from carom.scene.actuators.actuator import BodyActuators
+
+        return BodyActuators(self)
+
+    def add_actuator(self, name: str, actuator: Actuator) -> None:
+        """Add an actuator to a joint.
+
+        Motors of the joint stay as they are: bodies that PyBullet's readings have loaded have some, which
+        hold the joints until `joints.disable_motors`.
+
+        Args:
+            name: Its name among the actuators of the body.
+            actuator: A `Motor`, `PositionActuator`, `VelocityActuator`, `IntegratedVelocityActuator`,
+                `Damper`, `Cylinder` or `GeneralActuator`.
+
+        Raises:
+            DescriptionError: There is no such joint, it is neither revolute nor prismatic, the name is taken,
+                or a number has no meaning.
+        """
+        from carom.scene.actuators.changes import add_actuator
+
+        add_actuator(self, name, actuator)
 
     def link_spec(self, link: int) -> LinkSpec:
         """The specification of link `link`; -1 is the base."""

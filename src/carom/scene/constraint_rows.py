@@ -22,6 +22,7 @@ _FIELDS = (
     "constraint_upper",
     "constraint_twist",
     "constraint_max_impulse",
+    "constraint_actuator",
 )
 
 
@@ -164,7 +165,8 @@ class ConstraintRows:
         it = rows[row]
         link = it.body.first_link + 1 + it.joint if it.user is None else user_rows[it.user.id]
         tree, place = it.moving_body.rows.tree, self._places[row]
-        return it.kind, tree, link, place, it.lower, it.upper, it.twist, it.max_impulse
+        actuator = it.body.rows.first["actuator"] + it.actuator
+        return it.kind, tree, link, place, it.lower, it.upper, it.twist, it.max_impulse, actuator
 
 
 def _use(arrays: WorldArrays, count: int) -> None:

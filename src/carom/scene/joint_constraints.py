@@ -9,6 +9,7 @@ from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, Constrain
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
 from carom.record import record
+from carom.scene.actuators.actuated_joint import actuated_joint
 from carom.scene.constraint_rows import ConstraintRows
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 @record(frozen=False, eq=False, hot=True)
 class JointConstraint:
-    """A motor, a limit or the friction of one joint, or a user constraint.
+    """A motor, a limit, the friction or an actuator of one joint, or a user constraint.
 
     Attributes:
         body: The body it acts on.
@@ -30,6 +31,7 @@ class JointConstraint:
         twist: Twist range of a spherical joint [rad].
         user: The user constraint, if it is one.
         max_impulse: Maximum impulse of a limit per substep.
+        actuator: Number among the actuators of the body, if it is one.
     """
 
     body: Body
@@ -40,6 +42,7 @@ class JointConstraint:
     twist: float = 0.0
     user: UserConstraint | None = None
     max_impulse: float = DEFAULT_LIMIT_IMPULSE
+    actuator: int = 0
 
     @property
     def moving_body(self) -> Body:
@@ -63,7 +66,7 @@ class JointConstraints:
         self.rows: ConstraintRows = ConstraintRows()
 
     def add_body(self, body: Body) -> None:
-        """Append the limits, then the motors, then the friction, of a new body.
+        """Append the limits, the motors, the friction, then the actuators, of a new body.
 
         A body that is read as PyBullet reads it has no friction.
         """
@@ -92,6 +95,9 @@ class JointConstraints:
                 if code in WITH_FRICTION and link.friction > 0.0:
                     friction = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=link.friction)
                     self.all.append(friction)
+        for number, actuator in enumerate(body.spec.actuators):
+            joint = actuated_joint(body, actuator)
+            self.all.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
 
     def way_back(self) -> Callable[[], None]:
         """A function that removes everything that is added from now on."""

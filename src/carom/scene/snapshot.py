@@ -42,6 +42,7 @@ class BodyLayout:
         dofs: Number of velocity coordinates.
         shapes: Number of its collision shapes.
         nodes: Number of nodes; 0 unless it is a soft body.
+        actuators: Number of actuators.
     """
 
     id: int
@@ -50,17 +51,19 @@ class BodyLayout:
     dofs: int
     shapes: int
     nodes: int = 0
+    actuators: int = 0
 
     def __str__(self) -> str:
         if self.nodes:
             return f"{self.nodes} nodes"
         joints, freedoms = self.links - 1, self.dofs - BASE_VELOCITIES
-        return f"{joints} joints with {freedoms} freedoms"
+        driven = f" and {self.actuators} actuators" if self.actuators else ""
+        return f"{joints} joints with {freedoms} freedoms{driven}"
 
     def moves_like(self, other: BodyLayout) -> bool:
-        """Whether both have the same numbers of links, coordinates and nodes."""
-        mine = (self.links, self.positions, self.dofs, self.nodes)
-        return mine == (other.links, other.positions, other.dofs, other.nodes)
+        """Whether both have the same numbers of links, coordinates, nodes and actuators."""
+        mine = (self.links, self.positions, self.dofs, self.nodes, self.actuators)
+        return mine == (other.links, other.positions, other.dofs, other.nodes, other.actuators)
 
 
 @record(frozen=False)
@@ -116,7 +119,7 @@ def layout(world: World) -> Layout:
         first, links = rows.first["link"], rows.count["link"]
         shapes = int(shape_count[first : first + links].sum())
         positions, dofs, nodes = (rows.count[axis] for axis in ("position", "dof", "node"))
-        bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, nodes))
+        bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, nodes, rows.count["actuator"]))
     return Layout.of(tuple(bodies))
 
 
@@ -215,6 +218,7 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
         "position": [body.positions for body in was],
         "dof": [body.dofs for body in was],
         "node": [body.nodes for body in was],
+        "actuator": [body.actuators for body in was],
         _DRIVES: [body.dofs - BASE_VELOCITIES for body in was],
     }
     order: dict[Any, np.ndarray] = {}

@@ -15,7 +15,18 @@ from carom.model.soft_spec import SoftSpec
 
 # Fields that may be infinite: bounds, which then have no effect.
 _BOUNDS = frozenset(
-    ("lower", "upper", "effort", "velocity", "twist", "joint_lower_limit", "joint_upper_limit")
+    (
+        "lower",
+        "upper",
+        "effort",
+        "velocity",
+        "twist",
+        "joint_lower_limit",
+        "joint_upper_limit",
+        "control_range",
+        "force_range",
+        "activation_range",
+    )
 )
 _UNIT_TOLERANCE = 1e-3
 
@@ -26,6 +37,8 @@ def check_body(spec: BodySpec) -> None:
         if not -1 <= link.parent < index:
             raise ValueError(f"link {index} has link {link.parent} as its parent, which must come before it")
     check_finite(spec)
+    for actuator in spec.actuators:
+        actuator.check()
     if spec.soft is not None:
         _check_soft(spec, spec.soft)
     for link in (spec.base, *spec.links):

@@ -19,6 +19,7 @@ from carom.formats.files import read_bounded
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, UserConstraintKind
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
+from carom.scene.actuators.actuated_joint import actuated_joint
 from carom.scene.changes import append, note_additions
 from carom.scene.dynamics_changes import change_base_freedom, dynamics_change
 from carom.scene.joint_constraints import JointConstraint
@@ -95,6 +96,7 @@ class SavedConstraint:
     twist: float
     max_impulse: float
     user: int
+    actuator: int = 0
 
 
 @dataclass(slots=True)
@@ -310,7 +312,8 @@ def _saved_body(body: Body, spec: int) -> SavedBody:
 
 def _saved_constraint(it: JointConstraint) -> SavedConstraint:
     user = _NONE if it.user is None else it.user.id
-    return SavedConstraint(it.body.id, it.joint, it.kind, it.lower, it.upper, it.twist, it.max_impulse, user)
+    limits = it.lower, it.upper, it.twist
+    return SavedConstraint(it.body.id, it.joint, it.kind, *limits, it.max_impulse, user, it.actuator)
 
 
 def _saved_tie(tie: UserConstraint) -> SavedTie:
@@ -438,7 +441,8 @@ def _order_constraints(
         if tie is not None:
             used.add(record.user)
         limits = record.lower, record.upper, record.twist
-        own.append(JointConstraint(body, record.joint, record.kind, *limits, tie, record.max_impulse))
+        rest = tie, record.max_impulse, record.actuator
+        own.append(JointConstraint(body, record.joint, record.kind, *limits, *rest))
     if used != ties.keys():
         raise ValueError("a constraint is missing")
     world.constraints.all = own
@@ -457,6 +461,9 @@ def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bo
         kind_and_place = (ConstraintKind.USER, tie.parent, tie.parent_link)
         return (record.kind, body, record.joint) == kind_and_place
     joint = body.joint_types[_index(record.joint, body.spec.links)]
+    if record.kind == ConstraintKind.ACTUATOR:
+        actuator = body.spec.actuators[_index(record.actuator, list(body.spec.actuators))]
+        return record.joint == actuated_joint(body, actuator)
     friction = ConstraintKind.FRICTION if joint in WITH_FRICTION else None
     return record.kind in (MOTOR_KIND.get(joint), LIMIT_KIND.get(joint), friction)
 

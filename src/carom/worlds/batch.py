@@ -38,6 +38,7 @@ class Batch:
         self._coordinates = _following(body.first_position + BASE_POSITIONS, sum(body.position_count))
         self._links = _following(body.first_link + 1, body.joint_count)
         self._nodes = _following(body.rows.first["node"], body.rows.count["node"])
+        self._actuators = _following(body.rows.first["actuator"], body.rows.count["actuator"])
 
     def link_rows(self, link: int | str | None) -> np.ndarray:
         """Rows of a link in the arrays of the engine; None stands for the base and all links."""

@@ -8,12 +8,13 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.scene.body import ROUNDING
+from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
 from carom.worlds.joints import JointBatch
 
 
-class BodyBatch(JointBatch):
+class BodyBatch(JointBatch, ActuatorBatch):
     """The same body in all worlds; get it from `Worlds[body]`.
 
     The first axis of arrays is the world, the second joint coordinates or links. Coordinates leave out fixed

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
+from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 from carom.scene.dynamics_changes import OF_BODY
@@ -65,10 +68,23 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
                 dynamics.joint_spring_reference = tuple(rest.tolist())
             body.set_dynamics(link, dynamics)
     _take_limits(world, engine, number)
+    _take_actuators(world, engine, number)
     for user, row in world.user_constraints.rows.items():
         constraint = world.user_constraints.get(user)
         if constraint is not None:
             constraint.enabled = bool(_row(engine.contact_arrays.users, "user_enabled", number)[row])
+
+
+def _take_actuators(world: World, engine: Engine, number: int) -> None:
+    model = engine.arrays.model.numpy
+    for body in world.bodies.values():
+        rows = range(body.rows.first["actuator"], body.rows.first["actuator"] + body.rows.count["actuator"])
+        if rows:
+            specs = zip(rows, body.spec.actuators, strict=True)
+            taken = tuple(read_actuator(model, row, number, spec) for row, spec in specs)
+            body.spec = replace(body.spec, actuators=taken)
+            for row, spec in zip(rows, taken, strict=True):
+                write_actuator(world.arrays.model.numpy, row, spec)
 
 
 def _take_limits(world: World, engine: Engine, number: int) -> None:

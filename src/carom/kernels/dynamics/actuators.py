@@ -65,19 +65,19 @@ def actuator_row(
     first, second = h * gear * lower, h * gear * upper
     if gear < 0.0:
         first, second = h * gear * upper, h * gear * lower
+    # Rows of one dof share the response to an impulse, so all have the same effective mass.
+    effective_mass = 1.0 / inverse_mass
     if yielding == 0.0:
         impulse = unless_nan(within_bounds(h * gear * force, first, second), force)
-        effective_mass = 1.0 / inverse_mass
-        return add_row(
-            model, scratch, world, constraint, row, dof, impulse * inverse_mass, effective_mass, impulse,
-            impulse,
-        )  # fmt: skip
+        change = impulse * inverse_mass
+        return add_row(model, scratch, world, constraint, row, dof, change, effective_mass, impulse, impulse)
     softness = 1.0 / yielding
-    effective_mass = 1.0 / (inverse_mass + softness)
     change = h * gear * force * softness - rate
+    share = inverse_mass / (inverse_mass + softness)
+    scratch.row_share[world, row] = share
+    scratch.row_softness[world, row] = share * softness
     after = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, first, second)
     scratch.row[world, row].soft = 1
-    scratch.row_softness[world, row] = softness
     return after
 
 

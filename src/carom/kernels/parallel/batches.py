@@ -20,6 +20,7 @@ def scratch_of_batch(model: Model, scratch: Scratch, root: Int32) -> Scratch:
     if model.tree[root].batch_constraints > 0:
         end = first + MAX_ROWS_PER_CONSTRAINT * model.tree[root].batch_constraints
         own.row = scratch.row[:, first:end]
+        own.row_share = scratch.row_share[:, first:end]
         own.row_softness = scratch.row_softness[:, first:end]
     return own
 

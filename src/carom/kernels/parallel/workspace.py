@@ -59,6 +59,7 @@ def scratch_of_island(scratch: Scratch, work: IslandWork, world: Int32, root: In
     own = scratch
     end = window_end(work, world, root, ROW, scratch.row.shape[1])
     own.row = scratch.row[:, first:end]
+    own.row_share = scratch.row_share[:, first:end]
     own.row_softness = scratch.row_softness[:, first:end]
     return own
 

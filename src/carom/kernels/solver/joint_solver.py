@@ -89,7 +89,7 @@ def joint_constraint_rows(
         const auto before = own.impulse;
         auto change = own.change - rate;
         if (own.soft != 0)
-            change -= wp::index(softness, world, i) * before;
+            change = change * wp::index(share, world, i) - wp::index(softness, world, i) * before;
         i += stride;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {
@@ -118,6 +118,7 @@ def joint_constraint_rows(
 """)
 def relax_rows(
     row: ConstraintRows,
+    share: RealRows,
     softness: RealRows,
     delta_velocity: Vector4Rows,
     response: Vector4Rows,
@@ -149,8 +150,8 @@ def row_sweep(settings: Settings, scratch: Scratch, world: Int32, count: Int32, 
     inner = Int32(0)
     while inner < settings.inner_iterations:
         residual = relax_rows(
-            scratch.row, scratch.row_softness, scratch.delta_velocity, scratch.block_response, world, first,
-            count, stride,
+            scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
+            scratch.block_response, world, first, count, stride,
         )  # fmt: skip
         inner += 1
         if residual == 0.0:

@@ -46,8 +46,8 @@ def visit_sweep(
             place += stride
             if row >= 0:
                 square = relax_rows(
-                    scratch.row, scratch.row_softness, scratch.delta_velocity, scratch.block_response, world,
-                    row, 1, stride,
+                    scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
+                    scratch.block_response, world, row, 1, stride,
                 )  # fmt: skip
                 residual = maximum(residual, square)
             else:
