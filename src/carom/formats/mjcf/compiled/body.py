@@ -12,11 +12,11 @@ from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.compiler import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import Elements, Scope
-from carom.formats.mjcf.compiled.geom import Geom, read_geom
-from carom.formats.mjcf.compiled.inertia import BodyInertia, GeomMass, bounded, inertia_of
+from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, joint_type, read_joint
-from carom.formats.mjcf.compiled.meshes import Meshes
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
+from carom.formats.mjcf.compiled.shapes.meshes import Meshes
 from carom.formats.mjcf.compiled.site import read_site
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
@@ -173,7 +173,7 @@ class BodyReader:
         first, last = compiler.group_range
         masses = [geom.mass for geom in geoms if geom.mass is not None and first <= geom.group <= last]
         if compiler.from_geoms == ALWAYS or (stated is None and compiler.from_geoms != NEVER):
-            body.inertia = inertia_of(_known(masses))
+            body.inertia = inertia_of(masses)
             if stated is not None and not masses:
                 body.inertia = BodyInertia.none()
         elif stated is not None:
@@ -190,10 +190,6 @@ class BodyReader:
                 element, f"the name {shown(name)} is taken already, on line {lines[name]}"
             )
         lines[name] = element.line
-
-
-def _known(masses: list[GeomMass | None]) -> list[GeomMass]:
-    return [mass for mass in masses if mass is not None]
 
 
 def _read_inertial(scope: Scope, element: Element) -> BodyInertia:

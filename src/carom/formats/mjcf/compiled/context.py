@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.formats.mjcf.compiled.compiler import Compiler
-from carom.formats.mjcf.compiled.mesh_mass import Hull
+from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.robot.context import shown
 from carom.formats.search import AssetSearch
@@ -37,7 +37,7 @@ class CompiledContext(MjcfContext):
     def __init__(self, file: Path, root: Element, search: AssetSearch, hull: Hull) -> None:
         super().__init__(file, root, search)
         self.hull: Hull = hull
-        self.compiler: Compiler = Compiler()
+        self.compiler: Compiler = Compiler()  # pyright: ignore[reportIncompatibleVariableOverride]
         self.named: NamedAssets = NamedAssets()
         self.attached: dict[str, CompiledContext] = {}
         self.implicit = True

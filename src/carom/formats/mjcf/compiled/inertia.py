@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.compiler import Compiler
-from carom.formats.mjcf.compiled.solids import MassShape
+from carom.formats.mjcf.compiled.shapes.solids import MassShape
 from carom.record import record
 
 Matrix = NDArray[np.float64]

@@ -12,10 +12,10 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframe import read_keyframes
-from carom.formats.mjcf.compiled.mesh_mass import Hull
 from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
+from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, read_root
 from carom.formats.reading.cursor import Cursor

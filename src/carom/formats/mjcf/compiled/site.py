@@ -6,8 +6,8 @@ from carom.description import Pose
 from carom.description.pose import Vector3
 from carom.description.transform import compose
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.geom import frame_between
 from carom.formats.mjcf.compiled.model import Site
+from carom.formats.mjcf.compiled.shapes.geom import frame_between
 from carom.formats.xml_element import Element
 
 _SMALL = 0.005

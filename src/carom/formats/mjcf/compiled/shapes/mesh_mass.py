@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.formats.mjcf.compiled.solids import MassShape
+from carom.formats.mjcf.compiled.shapes.solids import MassShape
 
 Points = NDArray[np.float64]
 Triangles = NDArray[np.int32]

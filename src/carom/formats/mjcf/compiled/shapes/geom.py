@@ -22,13 +22,13 @@ from carom.description.pose import Vector3
 from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.ellipsoid import ellipsoid_points
-from carom.formats.mjcf.compiled.fitting import fitted
-from carom.formats.mjcf.compiled.hfield import read_hfield
 from carom.formats.mjcf.compiled.inertia import GeomMass
-from carom.formats.mjcf.compiled.looks import read_material
-from carom.formats.mjcf.compiled.meshes import MeshAsset, Meshes
-from carom.formats.mjcf.compiled.solids import MassShape, mass_of_primitive
+from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
+from carom.formats.mjcf.compiled.shapes.fitting import fitted
+from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
+from carom.formats.mjcf.compiled.shapes.looks import read_material
+from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
+from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element

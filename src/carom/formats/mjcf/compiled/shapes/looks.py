@@ -37,7 +37,7 @@ def read_material(context: CompiledContext, element: Element, attributes: Attrib
             texture = _texture(context, asset, stated["texture"])
     if "rgba" in attributes:
         rgba = _rgba(context, element, attributes["rgba"])
-    return Material(name, rgba, (specular,) * 3, texture)
+    return Material(name, rgba, (specular, specular, specular), texture)
 
 
 def _rgba(context: CompiledContext, element: Element, text: str) -> tuple[float, float, float, float]:

@@ -39,7 +39,8 @@ def mass_of_primitive(kind: str, size: tuple[float, float, float], *, shell: boo
 
 
 def _solid_sphere(r: float, *_: float) -> tuple[float, Moments]:
-    return 4.0 / 3.0 * pi * r**3, (0.4 * r * r,) * 3
+    moment = 0.4 * r * r
+    return 4.0 / 3.0 * pi * r**3, (moment, moment, moment)
 
 
 def _solid_ellipsoid(a: float, b: float, c: float) -> tuple[float, Moments]:
@@ -65,7 +66,8 @@ def _solid_capsule(r: float, h: float, *_: float) -> tuple[float, Moments]:
 
 
 def _sphere_shell(r: float, *_: float) -> tuple[float, Moments]:
-    return 4.0 * pi * r * r, (2.0 / 3.0 * r * r,) * 3
+    moment = 2.0 / 3.0 * r * r
+    return 4.0 * pi * r * r, (moment, moment, moment)
 
 
 def _box_shell(a: float, b: float, c: float) -> tuple[float, Moments]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import Matrix3, quaternion_from_matrix
-from carom.formats.mjcf.compiled.meshes import MeshAsset
+from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset
 
 
 def fitted(mesh: MeshAsset, kind: str, *, by_bounds: bool) -> tuple[Vector3, Pose] | None:

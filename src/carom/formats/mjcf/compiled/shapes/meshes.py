@@ -11,11 +11,11 @@ from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.errors import DescriptionError
 from carom.formats.mesh import read_mesh
-from carom.formats.mjcf.compiled.builtin_meshes import builtin_mesh
 from carom.formats.mjcf.compiled.context import CompiledContext
-from carom.formats.mjcf.compiled.mesh_mass import WAYS, mass_of_mesh
-from carom.formats.mjcf.compiled.msh import read_msh
-from carom.formats.mjcf.compiled.solids import MassShape
+from carom.formats.mjcf.compiled.shapes.builtin_meshes import builtin_mesh
+from carom.formats.mjcf.compiled.shapes.mesh_mass import WAYS, mass_of_mesh
+from carom.formats.mjcf.compiled.shapes.msh import read_msh
+from carom.formats.mjcf.compiled.shapes.solids import MassShape
 from carom.formats.mjcf.defaults import class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import MissingFile, shown
@@ -35,7 +35,7 @@ class MeshAsset:
         file: Its file, if `vertices` are those of the file times `scale`.
         scale: Factor along x, y and z.
         is_one_piece: The file has only one part.
-        way: How its mass is found, see `carom.formats.mjcf.compiled.mesh_mass`.
+        way: How its mass is found, see `carom.formats.mjcf.compiled.shapes.mesh_mass`.
         mass: The distribution of mass in it; None if it has no volume.
     """
 
