@@ -19,8 +19,8 @@ _TURN = "axisangle euler quat xyaxes zaxis"
 
 _READ = {
     "mujoco": "model",
-    "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate eulerseq "
-    "fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
+    "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
+    "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
     "option": "density gravity impratio integrator cone jacobian magnetic solver timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
