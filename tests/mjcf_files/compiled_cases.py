@@ -2,14 +2,15 @@
 
 L_SHAPE = (
     'vertex="0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0 0 0 1 2 0 1 2 1 1 1 1 1 1 2 1 0 2 1" '
-    'face="0 2 1 0 3 2 0 4 3 0 5 4 6 7 8 6 8 9 6 9 10 6 10 11 0 1 7 0 7 6 1 2 8 1 8 7 2 3 9 2 9 8 3 4 10 3 10 9 '
-    '4 5 11 4 11 10 5 0 6 5 6 11"'
+    'face="0 2 1 0 3 2 0 4 3 0 5 4 6 7 8 6 8 9 6 9 10 6 10 11 0 1 7 0 7 6 1 2 8 1 8 7 2 3 9 2 9 8 3 4 10 '
+    '3 10 9 4 5 11 4 11 10 5 0 6 5 6 11"'
 )
 OPEN = L_SHAPE.removesuffix(' 5 0 6 5 6 11"') + '"'
 
 
 def body(content: str, before: str = "", attributes: str = "") -> str:
-    return f'<mujoco>{before}<worldbody><body name="b" {attributes}><freejoint/>{content}</body></worldbody></mujoco>'
+    inside = f'<body name="b" {attributes}><freejoint/>{content}</body>'
+    return f"<mujoco>{before}<worldbody>{inside}</worldbody></mujoco>"
 
 
 def mesh(attributes: str, geom: str = 'type="mesh" density="7"', compiler: str = "") -> str:
@@ -26,17 +27,24 @@ _GEOMS = (
 )
 _STATED = '<inertial pos=".1 .2 .3" quat="1 1 0 0" mass="2" diaginertia=".1 .2 .25"/>'
 _TREE = """<mujoco><compiler eulerseq="XYZ"/><default><joint damping=".5"/><default class="arm">
-<joint axis="0 1 0" range="-30 60"/><geom size=".1"/></default></default><worldbody><geom type="plane" size="1 1 1"/>
+<joint axis="0 1 0" range="-30 60"/><geom size=".1"/></default></default><worldbody><geom type="plane"
+ size="1 1 1"/>
 <body name="stand" pos="0 0 1" euler="10 20 30"><geom size=".2"/>
  <body name="upper" pos=".3 0 0" childclass="arm"><joint name="one" pos=".1 0 0" ref="20"/>
-  <joint name="two" type="slide" pos="0 .2 0" axis="1 0 1" range="-.1 .2"/><joint name="three" axis="0 0 1"/>
-  <geom/><body name="lower" pos="0 0 .4" quat="1 .1 .2 .3"><joint class="main" name="four" type="ball" pos="0 0 .05"/>
-  <geom fromto="0 0 0 .2 .3 .1" type="capsule"/><body name="tip" pos=".2 0 0"><geom/></body></body></body></body>
+  <joint name="two" type="slide" pos="0 .2 0" axis="1 0 1" range="-.1 .2"/><joint name="three" axis="0 0
+ 1"/>
+  <geom/><body name="lower" pos="0 0 .4" quat="1 .1 .2 .3"><joint class="main" name="four" type="ball"
+ pos="0 0 .05"/>
+  <geom fromto="0 0 0 .2 .3 .1" type="capsule"/><body name="tip" pos=".2 0
+ 0"><geom/></body></body></body></body>
 <body name="cart"><joint name="rail" type="slide" axis="1 0 0"/><geom size=".3"/></body>
 <body name="ball" pos="1 2 3"><freejoint/><geom size=".1" pos=".1 0 0"/></body>
-<body name="hand" mocap="true" pos="3 0 0"><geom size=".1" contype="0" conaffinity="0"/></body></worldbody></mujoco>"""
-_COPIES = """<mujoco><worldbody><frame pos="0 0 1" euler="0 0 30"><body name="in" pos="1 0 0"><geom size=".1"/>
-<frame pos="0 1 0"><body name="deep"><joint axis="1 0 0"/><geom size=".2" pos="0 .1 0"/></body></frame></body></frame>
+<body name="hand" mocap="true" pos="3 0 0"><geom size=".1" contype="0"
+ conaffinity="0"/></body></worldbody></mujoco>"""
+_COPIES = """<mujoco><worldbody><frame pos="0 0 1" euler="0 0 30"><body name="in" pos="1 0 0"><geom
+ size=".1"/>
+<frame pos="0 1 0"><body name="deep"><joint axis="1 0 0"/><geom size=".2" pos="0 .1
+ 0"/></body></frame></body></frame>
 <replicate count="3" offset="1 0 .1" euler="0 0 40" sep="-"><body name="r" pos="0 .5 0"><joint name="j"/>
 <geom size=".1"/></body></replicate></worldbody></mujoco>"""
 

@@ -7,8 +7,10 @@ from numpy.testing import assert_allclose
 from carom import World
 from carom.errors import DescriptionError
 
-KEYS = """<mujoco><option timestep=".004" gravity="0 0 -1"/><worldbody><body name="arm" pos="0 0 1"><joint name="j"/>
-<geom size=".1" pos=".1 0 0"/><site name="tip" pos=".2 0 0"/><camera name="eye" fovy="30" pos="0 0 1"/></body>
+KEYS = """<mujoco><option timestep=".004" gravity="0 0 -1"/><worldbody><body name="arm" pos="0 0
+ 1"><joint name="j"/>
+<geom size=".1" pos=".1 0 0"/><site name="tip" pos=".2 0 0"/><camera name="eye" fovy="30" pos="0 0
+ 1"/></body>
 <body name="ball" pos="3 0 1"><freejoint/><geom size=".1" pos="0 .2 0"/></body></worldbody>
 <keyframe><key name="home" qpos=".5 1 2 3 0 1 0 0" qvel="2 .1 .2 .3 .4 .5 .6"/></keyframe></mujoco>"""
 
@@ -54,8 +56,9 @@ def test_sites_cameras_and_options_have_their_names(load):
 
 def test_a_body_that_is_welded_to_the_world_stays_there_and_one_on_it_moves(load):
     scene = load(
-        '<mujoco><worldbody><body name="stand" pos="0 0 1"><geom size=".1"/><body name="arm"><joint name="j"/>'
-        '<geom size=".1" pos="0 1 0"/></body></body><body name="free"><freejoint/><geom size=".1"/></body></worldbody></mujoco>'
+        '<mujoco><worldbody><body name="stand" pos="0 0 1"><geom size=".1"/><body name="arm">'
+        '<joint name="j"/><geom size=".1" pos="0 1 0"/></body></body><body name="free"><freejoint/>'
+        '<geom size=".1"/></body></worldbody></mujoco>'
     )
     assert [body.fixed_base for body in scene] == [True, False]
     scene.world.gravity = (-10.0, 0.0, 0.0)
@@ -68,12 +71,12 @@ def test_a_body_that_is_welded_to_the_world_stays_there_and_one_on_it_moves(load
 def drops(load, ball, floor, rest=""):
     """Whether a ball falls through a floor."""
     scene = load(
-        f'<mujoco><worldbody><geom type="plane" size="1 1 1" {floor}/><body name="b" pos="0 0 .11"><freejoint/>'
-        f'<geom size=".1" {ball}/></body></worldbody>{rest}</mujoco>'
+        f'<mujoco><worldbody><geom type="plane" size="1 1 1" {floor}/><body name="b" pos="0 0 .11">'
+        f'<freejoint/><geom size=".1" {ball}/></body></worldbody>{rest}</mujoco>'
     )
     scene.world.gravity = (0, 0, -10)
     scene.world.step(100)
-    return scene["b"].links[-1].pose.position[2] < 0
+    return bool(scene["b"].links[-1].pose.position[2] < 0)
 
 
 @pytest.mark.parametrize(
@@ -134,11 +137,12 @@ def test_mistakes_are_named(load, text, problem):
 
 def test_models_are_attached_with_their_own_settings(tmp_path):
     (tmp_path / "part.xml").write_text(
-        '<mujoco><compiler angle="radian"/><default><geom density="10"/></default><worldbody><body name="arm" '
-        'pos="1 0 0"><joint name="j" range="-1 1"/><geom size="1"/></body></worldbody></mujoco>'
+        '<mujoco><compiler angle="radian"/><default><geom density="10"/></default><worldbody>'
+        '<body name="arm" pos="1 0 0"><joint name="j" range="-1 1"/><geom size="1"/></body></worldbody></mujoco>'
     )
     (tmp_path / "whole.xml").write_text(
-        '<mujoco><asset><model name="p" file="part.xml"/></asset><worldbody><frame pos="0 0 1"><attach model="p" '
+        '<mujoco><asset><model name="p" file="part.xml"/></asset><worldbody><frame pos="0 0 1">'
+        '<attach model="p" '
         'body="arm" prefix="left-"/></frame></worldbody></mujoco>'
     )
     with World() as world:

@@ -59,6 +59,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("geom", "priority", "friction is the product of both", _YET),
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
     ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
+    ("key", "plastic", "flexes are not deformed", "flexes are not built"),
     ("key", "act", "activations of actuators are not set", _YET),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),

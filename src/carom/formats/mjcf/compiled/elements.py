@@ -68,6 +68,7 @@ class Elements:
                 raise context.error(child, f"with all copies there are more than {MAX_ELEMENTS} elements")
             if child.tag == "frame":
                 child.note()
+                scope.name(child)
                 child_class = child.attributes.get("childclass", scope.child_class)
                 into = scope.pose(child, child.attributes)
                 yield from self.inside(child, replace(scope, child_class=child_class, into=into))

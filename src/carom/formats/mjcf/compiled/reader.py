@@ -130,6 +130,7 @@ def _add_asset(context: CompiledContext, element: Element) -> None:
 def _read_excluded(context: CompiledContext, model: CompiledModel, names: set[str]) -> None:
     for contact in context.root.all("contact"):
         for element in contact.all("exclude"):
+            element.attributes.get("name")
             pair = (context.required(element, "body1"), context.required(element, "body2"))
             for name in pair:
                 if name not in names and name != "world":
