@@ -138,7 +138,8 @@ def test_mistakes_are_named(load, text, problem):
 def test_models_are_attached_with_their_own_settings(tmp_path):
     (tmp_path / "part.xml").write_text(
         '<mujoco><compiler angle="radian"/><default><geom density="10"/></default><worldbody>'
-        '<body name="arm" pos="1 0 0"><joint name="j" range="-1 1"/><geom size="1"/></body></worldbody></mujoco>'
+        '<body name="arm" pos="1 0 0"><joint name="j" range="-1 1"/><geom size="1"/></body></worldbody>'
+        "</mujoco>"
     )
     (tmp_path / "whole.xml").write_text(
         '<mujoco><asset><model name="p" file="part.xml"/></asset><worldbody><frame pos="0 0 1">'

@@ -45,32 +45,25 @@ def test_attributes_of_elements_that_are_read_are_known(path, name):
 
 
 EVERYTHING = """<mujoco model="all"><compiler angle="radian" autolimits="true" balanceinertia="false"
- boundmass="0"
- boundinertia="0" coordinate="local" eulerseq="xyz" fitaabb="false" inertiafromgeom="auto" inertiagrouprange="0 5"
- settotalmass="-1" strippath="false" meshdir="" texturedir="" alignfree="false"/>
-<option timestep="0.004" gravity="0 0 -1"/><default><default class="c"><geom
- density="10"/></default></default>
-<asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1" scale="1 1 1" refpos="0 0 0" refquat="1 0 0 0"
- inertia="convex"/>
-<material name="red" rgba="1 0 0 1" specular=".3"/><hfield name="h" nrow="2" ncol="2" size="1 1 1 1"
- elevation="0 1 0 1"/>
-</asset><worldbody><geom type="hfield" hfield="h"/><frame name="f" pos="0 0 1" euler="0 0 1"><body
- name="b" pos="0 0 1"
- childclass="c" quat="1 0 0 0"><inertial pos="0 0 0" quat="1 0 0 0" mass="1" diaginertia="1 1 1"/><joint
- name="j"
- type="hinge" axis="0 1 0" pos="0 0 0" range="-1 1" limited="auto" damping="1" armature="1" stiffness="1" ref="0"
- frictionloss="1" springref=".1"/><geom name="g" type="mesh" mesh="m" material="red" mass="1" group="1"
- condim="3"
- contype="1" conaffinity="1" friction="1 .1 .1" zaxis="0 0 1"/><site name="s" pos="0 0 1" size=".1"
- type="box"/>
- <camera name="c" fovy="30" mode="fixed" resolution="4 3" xyaxes="1 0 0 0 1 0"/></body></frame>
-<replicate count="2" offset="0 0 1" sep="_"><body name="d"><freejoint name="free" align="false"/><geom
- class="c"
- type="capsule" fromto="0 0 0 0 0 1" size=".1" rgba="1 1 1 1"
- shellinertia="false"/></body></replicate></worldbody>
-<contact><exclude name="e" body1="b" body2="d_0"/></contact>
-<keyframe><key name="home" time="1" qpos=".5 0 0 2 1 0 0 0 0 0 5 1 0 0 0" qvel="1 0 0 0 0 0 0 0 0 0 0 0
- 0" ctrl=""/>
+boundmass="0" boundinertia="0" coordinate="local" eulerseq="xyz" fitaabb="false"
+inertiafromgeom="auto" inertiagrouprange="0 5" settotalmass="-1" strippath="false"
+meshdir="" texturedir="" alignfree="false"/> <option timestep="0.004" gravity="0 0
+-1"/><default><default class="c"><geom density="10"/></default></default> <asset><mesh
+name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1" scale="1 1 1" refpos="0 0 0" refquat="1 0 0 0"
+inertia="convex"/> <material name="red" rgba="1 0 0 1" specular=".3"/><hfield name="h"
+nrow="2" ncol="2" size="1 1 1 1" elevation="0 1 0 1"/> </asset><worldbody><geom
+type="hfield" hfield="h"/><frame name="f" pos="0 0 1" euler="0 0 1"><body name="b" pos="0
+0 1" childclass="c" quat="1 0 0 0"><inertial pos="0 0 0" quat="1 0 0 0" mass="1"
+diaginertia="1 1 1"/><joint name="j" type="hinge" axis="0 1 0" pos="0 0 0" range="-1 1"
+limited="auto" damping="1" armature="1" stiffness="1" ref="0" frictionloss="1"
+springref=".1"/><geom name="g" type="mesh" mesh="m" material="red" mass="1" group="1"
+condim="3" contype="1" conaffinity="1" friction="1 .1 .1" zaxis="0 0 1"/><site name="s"
+pos="0 0 1" size=".1" type="box"/> <camera name="c" fovy="30" mode="fixed" resolution="4
+3" xyaxes="1 0 0 0 1 0"/></body></frame> <replicate count="2" offset="0 0 1" sep="_"><body
+name="d"><freejoint name="free" align="false"/><geom class="c" type="capsule" fromto="0 0
+0 0 0 1" size=".1" rgba="1 1 1 1" shellinertia="false"/></body></replicate></worldbody>
+<contact><exclude name="e" body1="b" body2="d_0"/></contact> <keyframe><key name="home"
+time="1" qpos=".5 0 0 2 1 0 0 0 0 0 5 1 0 0 0" qvel="1 0 0 0 0 0 0 0 0 0 0 0 0" ctrl=""/>
 </keyframe></mujoco>"""
 
 

@@ -212,7 +212,13 @@ class DescriptionLoading(BodyAdding):
         return self._load_file(Path(path), _ORIGIN, _NO_TURN, choices, FileKind.SDF).bodies
 
     def load_mjcf(self, path: str | Path, *, flags: int = 0, strict: bool = False) -> list[Body]:
-        """Add the bodies that an MJCF file describes, at their poses in the file.
+        """Add the bodies that an MJCF file describes, as MuJoCo compiles it, at their poses in the file.
+
+        So masses and inertia are those of all geoms, by the rules of `<compiler>`; the geoms of the world are
+        one static body, `world`; a body of the world without joints is fixed, and one with a free joint moves
+        freely; links of a body collide with each other unless a joint connects them. Joints are at their
+        `ref`. A body with several joints has a link without mass, `BODY@JOINT`, for each but the last.
+        `World.load` gives sites, cameras, keyframes and options as well.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -220,7 +226,7 @@ class DescriptionLoading(BodyAdding):
             strict: Raise an error if something in the file would not be simulated.
 
         Returns:
-            The bodies, in the order of the file.
+            The body `world` if the world has geoms, then its bodies in the order of the file.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
