@@ -89,11 +89,11 @@ def test_a_servo_is_implicit() -> None:
 
 
 def test_a_stiff_servo_is_stable_and_bounded() -> None:
-    body = driven_rod(PositionActuator("joint0", kp=1e7, kv=1e4, force_range=(-3.0, 3.0)), 0.5)
+    body = driven_rod(PositionActuator("joint0", kp=1e7, kv=2e6, force_range=(-3.0, 3.0)), 0.5)
     body.world.step()
     assert body.joints[0].velocity == pytest.approx(H * 3.0 / INERTIA, rel=1e-9)
-    body.world.step(240)
-    assert body.joints[0].position == pytest.approx(0.5, abs=1e-4)
+    body.world.step(480)
+    assert body.joints[0].position == pytest.approx(0.5, abs=1e-3)
     assert abs(body.actuators["drive"].force) <= 3.0
 
 

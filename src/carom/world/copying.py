@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 # Attributes that a body computes on demand and that refer to its world.
-_COMPUTED = ("joints", "links")
+_COMPUTED = ("joints", "links", "actuators")
 
 
 def copy_world(world: World) -> World:
