@@ -12,8 +12,6 @@ from carom import World
 from carom.description.transform import rotation_matrix
 
 ANSWERS = json.loads(Path(__file__).with_name("mujoco_answers.json").read_text())
-# Meshes are in single precision in MuJoCo.
-CLOSE = {"rtol": 2e-7, "atol": 2e-7}
 
 
 def load(world, folder, name):
@@ -38,10 +36,10 @@ def test_masses_and_inertia_are_those_of_mujoco(tmp_path, name):
         assert set(links) == set(ANSWERS[name]["bodies"])
         for one, expected in ANSWERS[name]["bodies"].items():
             body, _, link = links[one]
-            assert_allclose(link.mass, expected["mass"], **CLOSE)
+            assert_allclose(link.mass, expected["mass"], rtol=2e-7, atol=2e-7)
             if link.mass == 0.0 or (body.fixed_base and link is body.spec.base):
                 continue
-            assert_allclose(link.inertial_frame.position, expected["centre"], **CLOSE)
+            assert_allclose(link.inertial_frame.position, expected["centre"], rtol=2e-7, atol=2e-7)
             turn = np.array(rotation_matrix(link.inertial_frame.orientation))
             tensor = turn @ np.diag(link.inertia) @ turn.T
             assert_allclose(

@@ -41,6 +41,10 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     if kind == "hinge" and not is_limited:
         described = JointType.CONTINUOUS
     damping = _first(scope, element, attributes, "damping")
+    friction = _first(scope, element, attributes, "frictionloss")
+    if kind == "ball" and friction > 0.0:
+        context.leave_out(element, "it has no friction", "friction of balls is not built", "frictionloss")
+        friction = 0.0
     reference = 0.0 if kind == "ball" else _position(scope, element, attributes, "ref", kind)
     joint = Joint(
         scope.name(element),
@@ -50,7 +54,7 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
         axis=axis,
         limit=JointLimit(lower, upper, effort=_effort(scope, element, attributes)),
         damping=damping,
-        friction=_first(scope, element, attributes, "frictionloss"),
+        friction=friction,
         armature=_first(scope, element, attributes, "armature"),
         stiffness=_first(scope, element, attributes, "stiffness"),
         spring_reference=0.0 if kind == "ball" else _position(scope, element, attributes, "springref", kind),
