@@ -95,8 +95,8 @@ class DescriptionLoading(BodyAdding):
             flags: Loading flags of a URDF or MJCF file, see `carom.layouts.flags.LoadFlags`.
             strict: Raise an error if something in the file would not be simulated.
             package_paths: Directories of ROS packages, or that contain them; see `load_urdf`.
-            missing_meshes: `"warn"` leaves out shapes of URDF and MJCF files whose mesh is missing or cannot be
-                read; `"error"` raises an error.
+            missing_meshes: `"warn"` leaves out shapes of URDF and MJCF files whose mesh is missing or cannot
+                be read; `"error"` raises an error.
             default_mass: Mass of links of URDF files without `<inertial>` [kg].
 
         Returns:
