@@ -1,4 +1,4 @@
-"""Elements of MJCF 4.0 by path, with the names of their attributes, from its XML reference."""
+"""Elements of MJCF 4.0 by path, with their attributes: names as in the schema that `mj_printSchema` lists."""
 
 SCHEMA: dict[str, str] = {
     "mujoco": "model",
