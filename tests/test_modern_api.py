@@ -434,7 +434,7 @@ def test_worlds_load_sdf_and_mjcf_files():
         (arm,) = world.load_sdf(ASSETS / "kuka_iiwa" / "model.sdf")
         assert arm.joint_count == 7
         bodies = world.load_mjcf(ASSETS / "mjcf" / "inverted_pendulum.xml")
-        assert [body.name for body in bodies][-1] == "inverted pendulum"
+        assert [body.name for body in bodies][-1] == "cart"
         world.gravity = (0.0, 0.0, -9.8)
         world.step(10)
         assert np.isfinite(world.position).all()

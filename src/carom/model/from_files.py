@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 from carom.description.pose import Pose
 from carom.formats.reading.cursor import Cursor
 from carom.formats.search import AssetSearch
+from carom.geometry.hull import convex_hull
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
 from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.model.shape_pieces import shape_pieces
+
+if TYPE_CHECKING:
+    from carom.formats.mjcf.compiled import CompiledModel
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
@@ -81,6 +89,46 @@ def mjcf_bodies(
         set_mjcf_inertias(spec)
         bodies.append((spec, placed.pose))
     return bodies
+
+
+def compiled_mjcf_bodies(
+    path: Path,
+    search: AssetSearch,
+    *,
+    flags: int,
+    cursor: Cursor | None = None,
+    missing_meshes: bool = False,
+) -> tuple[CompiledModel, list[PlacedBody]]:
+    """All of an MJCF file as MuJoCo understands it, and its bodies in the order of the file.
+
+    Links of a body collide with each other; see `carom.formats.mjcf.compiled.reader.compile_mjcf` for what is
+    read. Raises `DescriptionError`.
+    """
+    from carom.formats.mjcf.compiled import compile_mjcf
+
+    model = compile_mjcf(path, hull=_hull, search=search, cursor=cursor, missing_meshes=missing_meshes)
+    loading = LoadFlags(flags | _ALWAYS_FOR_MJCF)
+    if not flags & LoadFlags.ANY_SELF_COLLISION:
+        loading |= LoadFlags.USE_SELF_COLLISION | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
+    bodies = []
+    for placed in model.robots:
+        spec = assemble(
+            placed.robot, flags=loading, fixed_base=placed.fixed_base, compound_margin=0.0, as_written=True
+        )
+        # A base that is fixed keeps the mass of its body, which has no effect until it is freed.
+        spec.base.mass = placed.robot.links[placed.robot.root].inertial.mass
+        bodies.append((spec, placed.pose))
+    return model, bodies
+
+
+def _hull(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """The convex hull of points (n, 3): vertices (k, 3) and triangles (m, 3)."""
+    hull = convex_hull(points)
+    triangles = []
+    for first, count in zip(hull.first_corner, hull.corner_count, strict=True):
+        loop = hull.corners[first : first + count]
+        triangles += [(loop[0], loop[k], loop[k + 1]) for k in range(1, count - 1)]
+    return hull.vertices, np.array(triangles, np.int32)
 
 
 def make_shapes(bodies: Sequence[PlacedBody]) -> None:

@@ -97,8 +97,8 @@ class DescriptionLoading(BodyAdding):
             flags: Loading flags of a URDF or MJCF file, see `carom.layouts.flags.LoadFlags`.
             strict: Raise an error if something in the file would not be simulated.
             package_paths: Directories of ROS packages, or that contain them; see `load_urdf`.
-            missing_meshes: `"warn"` leaves out shapes of URDF files whose mesh is missing or cannot be read;
-                `"error"` raises an error.
+            missing_meshes: `"warn"` leaves out shapes of URDF and MJCF files whose mesh is missing or cannot
+                be read; `"error"` raises an error.
             default_mass: Mass of links of URDF files without `<inertial>` [kg].
             xacro_args: Values of the arguments that a xacro file declares, by name; macros are expanded
                 without ROS.
@@ -222,7 +222,13 @@ class DescriptionLoading(BodyAdding):
         return self._load_file(Path(path), _ORIGIN, _NO_TURN, choices, FileKind.SDF).bodies
 
     def load_mjcf(self, path: str | Path, *, flags: int = 0, strict: bool = False) -> list[Body]:
-        """Add the bodies that an MJCF file describes, at their poses in the file.
+        """Add the bodies that an MJCF file describes, as MuJoCo compiles it, at their poses in the file.
+
+        So masses and inertia are those of all geoms, by the rules of `<compiler>`; the geoms of the world are
+        one static body, `world`; a body of the world without joints is fixed, and one with a free joint moves
+        freely; links of a body collide with each other unless a joint connects them. Joints are at their
+        `ref`. A body with several joints has a link without mass, `BODY@JOINT`, for each but the last.
+        `World.load` gives sites, cameras, keyframes and options as well.
 
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
@@ -230,7 +236,7 @@ class DescriptionLoading(BodyAdding):
             strict: Raise an error if something in the file would not be simulated.
 
         Returns:
-            The bodies, in the order of the file.
+            The body `world` if the world has geoms, then its bodies in the order of the file.
 
         Raises:
             carom.errors.DescriptionError: The file cannot be used; the world is as before.
@@ -251,6 +257,7 @@ class DescriptionLoading(BodyAdding):
     ) -> Scene:
         """Add everything that a robot file describes; see `World.load`."""
         from carom.checks import vector
+        from carom.world.compiled_files import describe, finish
         from carom.world.robot_files import couple, placed, read_robot_file, report
         from carom.world.scene import Scene
 
@@ -262,9 +269,14 @@ class DescriptionLoading(BodyAdding):
 
         def also(bodies: list[Body]) -> None:
             couplings.extend(couple(bodies))
+            if source.model is not None:
+                finish(bodies, source.model)
 
         bodies = self.load_all(placed(source.bodies, place, turn), also)
-        return Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
+        scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
+        if source.model is not None:
+            describe(scene, source.model)
+        return scene
 
     def load_all(
         self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None

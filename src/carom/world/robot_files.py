@@ -22,6 +22,7 @@ from carom.model.body_spec import BodySpec
 from carom.record import record
 
 if TYPE_CHECKING:
+    from carom.formats.mjcf.compiled import CompiledModel
     from carom.scene.body import Body
     from carom.scene.named_constraints.joint_coupling import JointCoupling
 
@@ -66,12 +67,14 @@ class RobotFile:
         kind: Its format.
         bodies: Bodies, and world poses of the link frames of their bases.
         ignored: What it says and the simulation lacks.
+        model: All of an MJCF file; None for other formats.
     """
 
     path: Path
     kind: FileKind
     bodies: list[tuple[BodySpec, Pose]] = field(default_factory=list)
     ignored: IgnoredList = field(default_factory=IgnoredList)
+    model: CompiledModel | None = None
 
 
 def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) -> RobotFile:
@@ -103,27 +106,25 @@ def read_robot_file(path: Path, choices: Choices, kind: FileKind | None = None) 
             file, search, written, scale=choices.scale, flags=choices.flags, fixed_base=choices.fixed_base
         )
         result.bodies = [(spec, IDENTITY)]
-    else:
-        result.bodies, result.ignored = _read_scene(file, kind, choices, written, search)
-    return result
-
-
-def _read_scene(
-    file: Path, kind: FileKind, choices: Choices, written: Written, search: AssetSearch
-) -> tuple[list[tuple[BodySpec, Pose]], IgnoredList]:
-    if kind is FileKind.SDF:
+    elif kind is FileKind.SDF:
         from carom.formats.sdf.rules import SDF_RULES
         from carom.model.from_files import sdf_bodies
 
         cursor = Cursor(SDF_RULES)
-        bodies = sdf_bodies(file, search, scale=choices.scale, cursor=cursor, xacro_args=written.xacro_args)
+        result.bodies = sdf_bodies(
+            file, search, scale=choices.scale, cursor=cursor, xacro_args=written.xacro_args
+        )
+        result.ignored = cursor.ignored()
     else:
         from carom.formats.mjcf.rules import MJCF_RULES
-        from carom.model.from_files import mjcf_bodies
+        from carom.model.from_files import compiled_mjcf_bodies
 
         cursor = Cursor(MJCF_RULES)
-        bodies = mjcf_bodies(file, search, flags=choices.flags, cursor=cursor)
-    return bodies, cursor.ignored()
+        result.model, result.bodies = compiled_mjcf_bodies(
+            file, search, flags=choices.flags, cursor=cursor, missing_meshes=written.missing_meshes
+        )
+        result.ignored = cursor.ignored()
+    return result
 
 
 def _as_text(value: object) -> str:

@@ -10,7 +10,9 @@ from carom.scene.body import Body
 from carom.scene.named_constraints.joint_coupling import JointCoupling
 
 if TYPE_CHECKING:
+    from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
+    from carom.world.keyframe import Keyframe
     from carom.world.world import World
 
 _MOST_NAMES = 8
@@ -27,9 +29,10 @@ class Scene(Sequence[Body]):
         constraints: Constraints by name, such as couplings of joints.
         actuators: Actuators by name; none are made yet.
         sensors: Sensors by name; none are made yet.
-        keyframes: Keyframes by name; none are made yet.
-        cameras: Cameras by name; none are made yet.
-        options: Options that the file set in the world, by name; none are set yet.
+        sites: Named frames of MJCF files, by name.
+        keyframes: Named states of MJCF files, by name; `reset` puts the bodies into one.
+        cameras: Cameras of MJCF files, by name.
+        options: What an MJCF file states in `<option>`, by name; `apply_options` sets it in the world.
         ignored: What the file says and the simulation lacks; prints as a table.
     """
 
@@ -49,10 +52,36 @@ class Scene(Sequence[Body]):
         self.constraints: dict[str, JointCoupling] = {it.name: it for it in constraints}
         self.actuators: dict[str, Any] = {}
         self.sensors: dict[str, Any] = {}
-        self.keyframes: dict[str, Any] = {}
-        self.cameras: dict[str, Any] = {}
+        self.sites: dict[str, Site] = {}
+        self.keyframes: dict[str, Keyframe] = {}
+        self.cameras: dict[str, FileCamera] = {}
         self.options: dict[str, Any] = {}
         self.ignored: IgnoredList = ignored
+
+    def reset(self, keyframe: str) -> None:
+        """Put the bodies of the scene into a state of the file; the time of the world goes on.
+
+        Motors keep their commands.
+
+        Args:
+            keyframe: Its name.
+
+        Raises:
+            KeyError: There is no keyframe of this name.
+        """
+        if keyframe not in self.keyframes:
+            known = ", ".join(map(repr, self.keyframes)) or "none"
+            raise KeyError(f"no keyframe has the name {keyframe!r}; those of {self.source.name} are {known}")
+        self.keyframes[keyframe].apply()
+
+    def apply_options(self) -> None:
+        """Set gravity and the time step of the world to those of the file; other options have no effect."""
+        if "gravity" in self.options:
+            has_gravity = self.options.get("flag.gravity", True)
+            self.world.gravity = self.options["gravity"] if has_gravity else (0.0, 0.0, 0.0)
+        if "timestep" in self.options:
+            self.world.parameters.time_step = self.options["timestep"]
+            self.world.apply_parameters()
 
     def __repr__(self) -> str:
         names = ", ".join(repr(body.name) for body in self.bodies[:_MOST_NAMES])

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from carom.formats.files import read_bounded
 from carom.formats.mjcf.body import ModelReader, world_elements
 from carom.formats.mjcf.context import MjcfContext
 from carom.formats.mjcf.defaults import read_defaults
+from carom.formats.mjcf.document import Inclusion, read_root
 from carom.formats.placed import PlacedRobot
-from carom.formats.reading.cursor import Cursor, TracedElement
+from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
-from carom.formats.robot.file import MAX_FILE_BYTES, Includes, locate
+from carom.formats.robot.file import locate
 from carom.formats.search import AssetSearch
-from carom.formats.xml_element import MAX_ELEMENTS, Element
-from carom.formats.xml_tree import parse_root
+from carom.formats.xml_element import Element
 from carom.logger import Logger
 
 _log = Logger(__name__)
 
-_ROOTS = ("mujoco", "mujocoinclude")
 _READ = ("compiler", "default", "asset", "worldbody", "body")
 _SILENT = ("option", "size", "visual", "statistic")
 
@@ -46,12 +44,12 @@ def read_mjcf(
     """
     search = search or AssetSearch()
     file = locate(path, search)
-    root = _read_root(file, cursor)
+    root = read_root(file, cursor)
     context = MjcfContext(file, root, search)
     context.colours = colours
     context.implicit = implicit
     context.as_mujoco = as_mujoco
-    _Inclusion(context, cursor).expand(root, file, (file,))
+    Inclusion(context, cursor).expand(root, file, (file,))
     for element in root.all("default"):
         read_defaults(context, element)
     for element in root.all("compiler"):
@@ -71,53 +69,6 @@ def read_mjcf(
             elif element.tag == "geom":
                 robots.append(reader.read_world_geom(element, scope))
     return robots
-
-
-def _read_root(file: Path, cursor: Cursor | None) -> Element:
-    data, _ = read_bounded(file, MAX_FILE_BYTES)
-    root = parse_root(data, file, *_ROOTS)
-    return root if cursor is None else cursor.trace(root, file)
-
-
-class _Inclusion:
-    """Replaces `<include>` elements by the content of the files they include."""
-
-    def __init__(self, context: MjcfContext, cursor: Cursor | None) -> None:
-        self.context = context
-        self.cursor = cursor
-        self.includes = Includes()
-        self.elements = 0
-
-    def expand(self, parent: Element, file: Path, including: tuple[Path, ...]) -> None:
-        """Replaces every `<include>` below an element; `including` are its file and those around that."""
-        children: list[Element] = []
-        for child in parent.children:
-            if child.tag != "include":
-                self.expand(child, file, including)
-                children.append(child)
-                continue
-            other = self._file(child, file, including)
-            root = _read_root(other, self.cursor)
-            self.expand(root, other, (*including, other))
-            for element in root.children:
-                self.context.origins.setdefault(id(element), other)
-            self.elements += _count(root)
-            if self.elements > MAX_ELEMENTS:
-                raise self.context.error(child, f"all includes have more than {MAX_ELEMENTS} elements")
-            children += root.children
-            if isinstance(root, TracedElement):
-                # From now on they are reported below the element that includes them.
-                root.children = []
-        parent.children = children
-
-    def _file(self, element: Element, file: Path, including: tuple[Path, ...]) -> Path:
-        name = self.context.required(element, "file")
-        found = self.context.search.find_referenced(name, file)
-        return self.includes.admit(self.context, element, name, found, including)
-
-
-def _count(element: Element) -> int:
-    return 1 + sum(_count(child) for child in element.children)
 
 
 def _read_compiler(context: MjcfContext, element: Element) -> None:

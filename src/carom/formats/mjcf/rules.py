@@ -1,81 +1,136 @@
-"""What is lost with each element of MJCF files that is left out."""
+"""What is lost with each element and attribute of MJCF files that is left out.
+
+Attributes are in three tables: those that are read, which have no meaning where they are not looked up; those
+that nothing simulates; and those without which nothing is lost.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
 
 from carom.formats.reading.rules import Rule, Rules
 
 _YET = "not read yet"
-_SOFT = "contacts and limits are Carom's own"
-_LOOKS = "none for the dynamics"
+_NO_LOSS = "none for the dynamics"
 _SKETCH = "it is for the window of MuJoCo"
+_SOFT = "contacts and limits are Carom's own"
+_SOLVER = "it is for the solvers of MuJoCo"
+_TURN = "axisangle euler quat xyaxes zaxis"
 
-MJCF_RULES: Rules = Rules(
-    "MJCF",
-    (
-        Rule("mujoco/actuator", "no actuator exists", _YET),
-        Rule("mujoco/sensor", "no sensor exists", _YET),
-        Rule("mujoco/tendon", "no tendon exists", _YET),
-        Rule("mujoco/equality", "these constraints don't hold", _YET),
-        Rule("mujoco/keyframe", "there are no keyframes", _YET),
-        Rule("mujoco/contact", "pairs collide as their groups say", _YET),
-        Rule("mujoco/deformable", "it is missing", "flexes and skins are not built"),
-        Rule("mujoco/extension", "plugins do not run", "plugins are programs of MuJoCo"),
-        Rule("mujoco/custom", "none", "it holds data for programs"),
-        Rule("mujoco/option", "time step, gravity and solver are those of the world", _YET),
-        Rule("mujoco/size", "none: memory grows as needed", "it has no other meaning"),
-        Rule("mujoco/visual", _LOOKS, _SKETCH),
-        Rule("mujoco/statistic", _LOOKS, _SKETCH),
-        Rule("compiler@*", "the compiler's default counts", _YET),
-        Rule("body/site", "the site is missing", _YET),
-        Rule("worldbody/site", "the site is missing", _YET),
-        Rule("body/camera", "the camera is missing", _YET),
-        Rule("worldbody/camera", "the camera is missing", _YET),
-        Rule("body/light", _LOOKS, "lights are set in the window"),
-        Rule("worldbody/light", _LOOKS, "lights are set in the window"),
-        Rule("body/composite", "it is missing", "composites are not built"),
-        Rule("body/flexcomp", "it is missing", "flexes are not built"),
-        Rule("body/attach", "the model is missing", _YET),
-        Rule("body/replicate", "the copies are missing", _YET),
-        Rule("body@mocap", "the body moves as others do", _YET),
-        Rule("body@gravcomp", "gravity acts on it", _YET),
-        Rule("joint@damping", "the joint has no damping", _YET),
-        Rule("joint@armature", "no reflected inertia of the rotor", _YET),
-        Rule("joint@frictionloss", "the joint has no friction", _YET),
-        Rule("joint@stiffness", "the joint has no spring", _YET),
-        Rule("joint@springref", "the joint has no spring", _YET),
-        Rule("joint@ref", "positions count from another zero", _YET),
-        Rule("joint@actuatorfrcrange", "forces on the joint are not limited", _YET),
-        Rule("joint@solreflimit", _SOFT, _YET),
-        Rule("joint@solimplimit", _SOFT, _YET),
-        Rule("joint@solreffriction", _SOFT, _YET),
-        Rule("joint@solimpfriction", _SOFT, _YET),
-        Rule("joint@margin", _SOFT, _YET),
-        Rule("joint@group", _LOOKS, _SKETCH),
-        Rule("geom@density", "another mass", _YET),
-        Rule("geom@mass", "another mass", _YET),
-        Rule("geom@solref", _SOFT, _YET),
-        Rule("geom@solimp", _SOFT, _YET),
-        Rule("geom@margin", _SOFT, _YET),
-        Rule("geom@gap", _SOFT, _YET),
-        Rule("geom@priority", "friction is the product of both", _YET),
-        Rule("geom@solmix", _SOFT, _YET),
-        Rule("geom@group", _LOOKS, _SKETCH),
-        Rule("geom@material", _LOOKS, "colours of files are an option"),
-        Rule("geom@rgba", _LOOKS, "colours of files are an option"),
-        Rule("geom@fluidshape", "there is no fluid", "fluids are not built"),
-        Rule("geom@fluidcoef", "there is no fluid", "fluids are not built"),
-        Rule("asset/texture", _LOOKS, _YET),
-        Rule("asset/material", _LOOKS, "no geom uses it"),
-        Rule("asset/hfield", "the height field is missing", _YET),
-        Rule("asset/mesh", "none: no geom uses it", "it is not needed"),
-        Rule("asset/skin", _LOOKS, _YET),
-        Rule("material@*", _LOOKS, "a shape has a colour"),
-        Rule("default/site", "none: sites are missing", _YET),
-        Rule("default/material", _LOOKS, "a shape has a colour"),
-        Rule("default/camera", "none: cameras are missing", _YET),
-        Rule("default/tendon", "none: tendons are missing", _YET),
-        Rule("default/equality", "none: equalities are missing", _YET),
-        Rule("default/*", "none: no element that is read has these defaults", _YET),
-        Rule("default@class", "none: no element uses it", "it is not needed"),
-    ),
+_READ = {
+    "mujoco": "model",
+    "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
+    "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
+    "option": "density gravity impratio integrator cone jacobian magnetic solver timestep viscosity wind",
+    "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
+    "hfield": "elevation file name ncol nrow size",
+    "texture": "class file name type",
+    "material": "class name rgba specular texture",
+    "model": "file name",
+    "body": f"childclass mocap name pos {_TURN}",
+    "inertial": f"diaginertia fullinertia mass pos {_TURN}",
+    "joint": "armature axis class damping frictionloss limited name pos range ref springref stiffness type "
+    "actuatorfrclimited",
+    "freejoint": "align name",
+    "geom": "class conaffinity condim contype density fitscale friction fromto group hfield mass material "
+    f"mesh name pos rgba shellinertia size type {_TURN}",
+    "site": f"class fromto name pos size type {_TURN}",
+    "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize {_TURN}",
+    "attach": "body frame model prefix",
+    "frame": f"childclass name pos {_TURN}",
+    "replicate": "childclass count euler offset sep",
+    "include": "file",
+    "exclude": "body1 body2 name",
+    "key": "ctrl name qpos qvel time",
+    "default": "class",
+}
+
+_NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
+    ("compiler", "conflict", "settings of attached models do not reach this one", _YET),
+    ("option", "actuatorgroupdisable", "no actuator is switched off", _YET),
+    ("option", "o_friction o_margin o_solimp o_solref", _SOFT, _YET),
+    ("option", "sleep_tolerance", "bodies do not fall asleep", _YET),
+    ("body", "gravcomp", "gravity acts on it", _YET),
+    ("body", "sleep", "it does not fall asleep", _YET),
+    ("joint", "actuatorfrcrange actuatorgravcomp", "forces of actuators on the joint are not changed", _YET),
+    ("joint", "springdamper springyield", "the joint has another spring", _YET),
+    ("joint", "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET),
+    ("geom", "gap margin solimp solref solmix", _SOFT, _YET),
+    ("geom", "priority", "friction is the product of both", _YET),
+    ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
+    ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
+    ("key", "plastic", "flexes are not deformed", "flexes are not built"),
+    ("key", "act", "activations of actuators are not set", _YET),
+    ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
+    ("site", "mesh", "touch sensors would feel another volume", _YET),
 )
+
+_WITHOUT_LOSS = {
+    "compiler": "discardvisual fusestatic passthrough savecanonical savecompiled saveinertial usethread",
+    "option": "ccd_iterations ccd_tolerance iterations ls_iterations ls_tolerance noslip_iterations "
+    "noslip_tolerance sdf_initpoints sdf_iterations tolerance",
+    "mesh": "content_type material maxhullvert normal smoothnormal texcoord",
+    "hfield": "content_type",
+    "model": "content_type",
+    "texture": "builtin colorspace content_type embed fileback filedown filefront fileleft fileright fileup "
+    "gridlayout gridsize height hflip mark markrgb nchannel random rgb1 rgb2 vflip width",
+    "material": "emission metallic reflectance roughness shininess texrepeat texuniform",
+    "body": "fuse simple user",
+    "joint": "group user",
+    "freejoint": "group",
+    "geom": "castshadow user",
+    "site": "group material rgba user",
+    "camera": "ipd output principal principalpixel projection target user",
+    "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
+    "intensity mode name pos range softness specular target texture type",
+}
+
+_ELEMENTS = (
+    Rule("actuator/*", "it does not act", _YET),
+    Rule("sensor/*", "there is no such sensor", _YET),
+    Rule("tendon/*", "it does not pull", _YET),
+    Rule("equality/*", "this constraint does not hold", _YET),
+    Rule("contact/pair", "the pair collides as its groups say", _YET),
+    Rule("deformable/*", "it is missing", "flexes and skins are not built"),
+    Rule("deformable/skin", _NO_LOSS, "skins are not drawn"),
+    Rule("mujoco/extension", "plugins do not run", "plugins are programs of MuJoCo"),
+    Rule("mujoco/custom", "none", "it holds data for programs"),
+    Rule("mujoco/size", "none: memory grows as needed", "it has no other meaning"),
+    Rule("mujoco/visual", _NO_LOSS, _SKETCH),
+    Rule("mujoco/statistic", _NO_LOSS, _SKETCH),
+    Rule("compiler/lengthrange", "none: no actuator needs it", _YET),
+    Rule("light", _NO_LOSS, "lights are set in the window"),
+    Rule("composite", "it is missing", "composites are not built"),
+    Rule("flexcomp", "it is missing", "flexes are not built"),
+    Rule("plugin", "it does not run", "plugins are programs of MuJoCo"),
+    Rule("asset/texture", _NO_LOSS, "no geom uses it"),
+    Rule("asset/material", _NO_LOSS, "no geom uses it"),
+    Rule("asset/hfield", "none: no geom uses it", "it is not needed"),
+    Rule("asset/mesh", "none: no geom uses it", "it is not needed"),
+    Rule("asset/skin", _NO_LOSS, "skins are not drawn"),
+    Rule("material/layer", _NO_LOSS, "a shape has one texture"),
+    Rule("default/*", "none: no element that is read has these defaults", "it is not needed"),
+    # Where nested deeper, `default/...` is the same.
+    Rule("default/default", "none: no element uses it", "it is not needed"),
+)
+
+
+def _rules() -> Iterator[Rule]:
+    yield from _ELEMENTS
+    for element, names in _READ.items():
+        for name in names.split():
+            yield Rule(f"{element}@{name}", "none: it has no meaning here", "another attribute counts")
+            yield Rule(f"default/{element}@{name}", "none: no element uses it", "it is not needed")
+    for element, names, consequence, reason in _NOT_SIMULATED:
+        for name in names.split():
+            yield Rule(f"{element}@{name}", consequence, reason, even_if_taken=True)
+            yield Rule(f"default/{element}@{name}", consequence, reason, even_if_taken=True)
+    for element, names in _WITHOUT_LOSS.items():
+        for name in names.split():
+            yield Rule(
+                f"{element}@{name}", _NO_LOSS, _SOLVER if element == "option" else "it has no other use"
+            )
+            yield Rule(f"default/{element}@{name}", _NO_LOSS, "it has no other use")
+
+
+MJCF_RULES: Rules = Rules("MJCF", _rules())

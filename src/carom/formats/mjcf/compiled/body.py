@@ -1,0 +1,249 @@
+"""`<body>`: its frame, joints, geoms and mass, and the bodies, sites and cameras in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from carom.description import Collision, ContactParameters
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, inverse, rotation_matrix
+from carom.formats.mjcf.compiled.camera import read_camera
+from carom.formats.mjcf.compiled.compiler import ALWAYS, NEVER
+from carom.formats.mjcf.compiled.elements import Elements, Scope
+from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
+from carom.formats.mjcf.compiled.joint import FREE, joint_type, read_joint
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
+from carom.formats.mjcf.compiled.shapes.meshes import Meshes
+from carom.formats.mjcf.compiled.site import read_site
+from carom.formats.mjcf.defaults import Attributes
+from carom.formats.mjcf.frames import read_pose
+from carom.formats.robot.context import MissingFile, shown
+from carom.formats.xml_element import Element
+
+WORLD = "world"
+_FRICTION = (1.0, 0.005, 0.0001)
+_UNBUILT = ("composite", "flexcomp", "plugin", "light")
+
+
+class BodyReader:
+    """Reads the bodies of a file into a `CompiledModel`.
+
+    Attributes:
+        model: What has been read so far, apart from bodies.
+        bodies: All bodies, without the world, in document order.
+        missing_meshes: Geoms whose mesh is missing are left out and reported.
+    """
+
+    def __init__(self, model: CompiledModel, *, missing_meshes: bool) -> None:
+        self.model = model
+        self.bodies: list[CompiledBody] = []
+        self.missing_meshes = missing_meshes
+        self._elements = Elements()
+        self._meshes = Meshes()
+        self._lines: dict[str, dict[str, int]] = {}
+
+    def read_world(self, element: Element, scope: Scope) -> CompiledBody:
+        """The world as a body, with all bodies in it; its mass does not count."""
+        world = CompiledBody(WORLD, element)
+        self._read_content(element, scope, world, is_world=True)
+        world.inertia = BodyInertia.none()
+        return world
+
+    def _read_body(self, element: Element, scope: Scope, *, is_top: bool) -> CompiledBody:
+        context, attributes = scope.context, element.attributes
+        element.note()
+        name = scope.name(element)
+        if not name:
+            name = f"link{len(self.bodies)}_{context.next_number()}"
+        self._name("body", element, scope, name)
+        body = CompiledBody(name, element)
+        self.bodies.append(body)
+        local = read_pose(context, element, attributes)
+        body.pose = compose(scope.into, local)
+        body.is_mocap = context.flag(element, attributes, "mocap", False)
+        if body.is_mocap and not is_top:
+            raise context.error(element, "only bodies of the world can be mocap bodies")
+        child_class = attributes.get("childclass", scope.child_class)
+        # Poses of its contents are given in the body's frame, or in the world frame if all poses are.
+        into = inverse(local) if context.compiler.global_frames else IDENTITY
+        self._read_content(element, replace(scope, child_class=child_class, into=into), body, is_top=is_top)
+        return body
+
+    def _read_content(
+        self,
+        element: Element,
+        scope: Scope,
+        body: CompiledBody,
+        *,
+        is_world: bool = False,
+        is_top: bool = False,
+    ) -> None:
+        geoms: list[Geom] = []
+        stated: BodyInertia | None = None
+        for child, within in self._elements.inside(element, scope):
+            context = within.context
+            match child.tag:
+                case "body":
+                    body.children.append(self._read_body(child, within, is_top=is_world))
+                case "geom":
+                    if (geom := self._read_geom(child, within)) is not None:
+                        geoms.append(geom)
+                        body.contact = _contact(within, child, body.contact)
+                case "joint" | "freejoint":
+                    self._read_joint(child, within, body, is_world=is_world, is_top=is_top)
+                case "inertial":
+                    stated = _read_inertial(within, child)
+                case "site":
+                    site = read_site(within, child, body.name)
+                    if site.name:
+                        self._name("site", child, within, site.name)
+                        self.model.sites[site.name] = site
+                case "camera":
+                    camera = read_camera(within, child, body.name)
+                    if camera.name:
+                        self._name("camera", child, within, camera.name)
+                        self.model.cameras[camera.name] = camera
+                case tag if tag not in _UNBUILT:
+                    raise context.error(child, f"<{tag}> is not known in a body")
+        body.visuals = [geom.visual for geom in geoms]
+        body.collisions = [
+            Collision(geom.geometry, geom.frame, name=geom.name, group=geom.kinds[0], mask=geom.kinds[1])
+            for geom in geoms
+            if geom.kinds != (0, 0)
+        ]
+        if not is_world:
+            self._set_inertia(element, scope, body, geoms, stated)
+
+    def _read_geom(self, element: Element, scope: Scope) -> Geom | None:
+        element.note()
+        name = scope.name(element)
+        if name:
+            self._name("geom", element, scope, name)
+        try:
+            return read_geom(scope, element, self._meshes)
+        except MissingFile as problem:
+            if not self.missing_meshes:
+                raise
+            scope.context.leave_out(element, "the shape is missing", problem.reason)
+            return None
+
+    def _read_joint(
+        self, element: Element, scope: Scope, body: CompiledBody, *, is_world: bool, is_top: bool
+    ) -> None:
+        context = scope.context
+        element.note()
+        if is_world or body.is_mocap:
+            raise context.error(element, "the world and mocap bodies have no joints")
+        name = scope.name(element)
+        if name:
+            self._name("joint", element, scope, name)
+        if element.tag == "freejoint" or joint_type(scope, element) == FREE:
+            if not is_top or body.joints or body.is_free:
+                raise context.error(element, "a free joint is the only joint of a body of the world")
+            if context.compiler.align_free or element.attributes.get("align") == "true":
+                context.leave_out(
+                    element, "the frame of the body is as stated", "frames are not moved to centres", "align"
+                )
+            _report_free_terms(scope, element)
+            body.is_free = True
+            self.model.joints.append((name, body.name, FREE))
+            return
+        if body.is_free:
+            raise context.error(element, "a free joint is the only joint of a body of the world")
+        joint = read_joint(scope, element)
+        name = name or f"joint{len(self.model.joints)}_{context.next_number()}"
+        joint.joint = replace(joint.joint, name=name)
+        body.joints.append(joint)
+        self.model.joints.append((name, body.name, joint.joint.type.value))
+        if joint.reference != 0.0:
+            self.model.starts[name] = joint.reference
+
+    def _set_inertia(
+        self,
+        element: Element,
+        scope: Scope,
+        body: CompiledBody,
+        geoms: list[Geom],
+        stated: BodyInertia | None,
+    ) -> None:
+        context, compiler = scope.context, scope.context.compiler
+        first, last = compiler.group_range
+        masses = [geom.mass for geom in geoms if geom.mass is not None and first <= geom.group <= last]
+        if compiler.from_geoms == ALWAYS or (stated is None and compiler.from_geoms != NEVER):
+            body.inertia = inertia_of(masses)
+            if stated is not None and not masses:
+                body.inertia = BodyInertia.none()
+        elif stated is not None:
+            body.inertia = stated
+        problem = bounded(body.inertia, compiler)
+        if problem is not None:
+            raise context.error(element, f'{problem}; balanceinertia="true" in <compiler> makes them equal')
+
+    def _name(self, kind: str, element: Element, scope: Scope, name: str) -> None:
+        """Record a name; raises `DescriptionError` if it is taken."""
+        lines = self._lines.setdefault(kind, {"world": 0} if kind == "body" else {})
+        if name in lines:
+            raise scope.context.error(
+                element, f"the name {shown(name)} is taken already, on line {lines[name]}"
+            )
+        lines[name] = element.line
+
+
+def _read_inertial(scope: Scope, element: Element) -> BodyInertia:
+    context, attributes = scope.context, element.attributes
+    element.note()
+    pose = compose(scope.into, read_pose(context, element, attributes))
+    mass = context.non_negative(element, "mass")
+    if "fullinertia" in attributes:
+        xx, yy, zz, xy, xz, yz = context.numbers(element, "fullinertia", attributes["fullinertia"], 6, 6)
+        tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    elif "diaginertia" in attributes:
+        tensor = np.diag(context.numbers(element, "diaginertia", attributes["diaginertia"], 3, 3))
+    else:
+        tensor = np.zeros((3, 3))
+    turn = np.array(rotation_matrix(pose.orientation))
+    return BodyInertia(mass, np.array(pose.position), turn @ tensor @ turn.T)
+
+
+def _contact(scope: Scope, element: Element, earlier: ContactParameters) -> ContactParameters:
+    """Friction of a body: that of its first geom that collides; another of a later one is reported."""
+    context, attributes = scope.context, scope.attributes(element)
+    values = context.singles(element, "friction", attributes.get("friction", ""))
+    sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
+    dimensions = int(context.number(element, attributes, "condim", 3.0))
+    collides = any(
+        context.number(element, attributes, name, 1.0) != 0.0 for name in ("contype", "conaffinity")
+    )
+    if not collides:
+        return earlier
+    found = ContactParameters(
+        lateral_friction=sliding if dimensions > 1 else 0.0,
+        spinning_friction=spinning if dimensions > 3 else None,
+        rolling_friction=rolling if dimensions > 4 else None,
+    )
+    if earlier.lateral_friction is None:
+        return found
+    if found != earlier:
+        context.leave_out(
+            element, "it has the friction of the first geom", "a body has one", "friction", "condim"
+        )
+    return earlier
+
+
+def _report_free_terms(scope: Scope, element: Element) -> None:
+    """Report joint terms of a free joint that its class of defaults or itself states."""
+    if element.tag == "freejoint":
+        return
+    attributes: Attributes = scope.attributes(element)
+    terms = [
+        name
+        for name in ("damping", "armature", "frictionloss", "stiffness")
+        if any(scope.context.singles(element, name, attributes.get(name, "")))
+    ]
+    if terms:
+        scope.context.leave_out(
+            element, "the body moves without them", "free bodies have no such terms", *terms
+        )

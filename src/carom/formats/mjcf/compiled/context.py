@@ -1,0 +1,85 @@
+"""State of a reading of MJCF as MuJoCo compiles it: double precision, all options of the compiler."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from carom.formats.mjcf.compiled.compiler import Compiler
+from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
+from carom.formats.mjcf.context import MjcfContext
+from carom.formats.robot.context import shown
+from carom.formats.search import AssetSearch
+from carom.formats.xml_element import Element
+
+
+@dataclass
+class NamedAssets:
+    """Elements of `<asset>` by name: meshes, materials, textures, height fields and models to attach."""
+
+    mesh: dict[str, Element] = field(default_factory=dict)
+    material: dict[str, Element] = field(default_factory=dict)
+    texture: dict[str, Element] = field(default_factory=dict)
+    hfield: dict[str, Element] = field(default_factory=dict)
+    model: dict[str, Element] = field(default_factory=dict)
+
+
+class CompiledContext(MjcfContext):
+    """State of one reading of an MJCF file, or of one that it attaches.
+
+    Attributes:
+        compiler: Options of `<compiler>`.
+        named: Assets by name.
+        attached: Contexts of the models that it attaches, by name of the asset.
+        hull: Makes convex hulls.
+    """
+
+    def __init__(self, file: Path, root: Element, search: AssetSearch, hull: Hull) -> None:
+        super().__init__(file, root, search)
+        self.hull: Hull = hull
+        self.compiler: Compiler = Compiler()  # pyright: ignore[reportIncompatibleVariableOverride]
+        self.named: NamedAssets = NamedAssets()
+        self.attached: dict[str, CompiledContext] = {}
+        self.implicit = True
+
+    def singles(self, element: Element, attribute: str, text: str) -> list[float]:
+        """The numbers in a text, in double precision."""
+        return [self.parse_number(element, attribute, word) for word in text.split()]
+
+    def numbers(self, element: Element, attribute: str, text: str, least: int, most: int) -> list[float]:
+        """The numbers in a text; raises `DescriptionError` unless there are `least` to `most` of them."""
+        found = self.singles(element, attribute, text)
+        if not least <= len(found) <= most:
+            expected = str(least) if least == most else f"{least} to {most}"
+            raise self.error(element, f"{attribute}={shown(text)} needs {expected} numbers")
+        return found
+
+    def number(self, element: Element, attributes: dict[str, str], name: str, default: float) -> float:
+        """The first number of an attribute."""
+        text = attributes.get(name)
+        return default if text is None else self.numbers(element, name, text, 1, 1000)[0]
+
+    def flag(self, element: Element, attributes: dict[str, str], name: str, default: bool) -> bool:
+        """An attribute that is `true` or `false`."""
+        text = attributes.get(name)
+        if text is None:
+            return default
+        if text not in ("true", "false"):
+            raise self.error(element, f"{name}={shown(text)} must be true or false")
+        return text == "true"
+
+    def asset_file(self, element: Element, name: str, directory: str) -> Path | None:
+        """The file of an asset: beside the main file, that which states it, or in a folder above.
+
+        `directory` is that of the compiler's options.
+        """
+        base = Path(name.replace("\\", "/"))
+        name = base.name if self.compiler.strip_path else str(base)
+        below = Path(directory.replace("\\", "/")) / name
+        stating = next(
+            (self.origins[id(e)] for e in self.root.path_to(element) if id(e) in self.origins), None
+        )
+        for folder in (self.file.parent, *([] if stating is None else [stating.parent])):
+            if (folder / below).is_file():
+                return folder / below
+        return self.find_file(str(below)) or self.find_file(name)

@@ -1,0 +1,133 @@
+"""The elements of bodies: those in `<frame>`, copies by `<replicate>`, and attached models included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.transform import compose
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.mjcf.defaults import Attributes, class_defaults
+from carom.formats.mjcf.frames import read_pose
+from carom.formats.reading.cursor import layered
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import MAX_ELEMENTS, Element
+
+_MOST_COPIES = 100_000
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What an element takes from those around it.
+
+    Attributes:
+        context: The model that it belongs to.
+        child_class: Class of defaults that the enclosing bodies and frames set for it.
+        into: Pose, in the enclosing body, of the frame in which its own pose is given.
+        prefix: Added in front of its name.
+        suffix: Added after its name.
+    """
+
+    context: CompiledContext
+    child_class: str | None = None
+    into: Pose = IDENTITY
+    prefix: str = ""
+    suffix: str = ""
+
+    def name(self, element: Element) -> str:
+        """The full name of an element; empty if it has none."""
+        own = element.attributes.get("name", "")
+        return f"{self.prefix}{own}{self.suffix}" if own else ""
+
+    def attributes(self, element: Element) -> Attributes:
+        """The attributes of an element over those of its class of defaults."""
+        return layered(class_defaults(self.context, element, self.child_class), element.attributes)
+
+    def pose(self, element: Element, attributes: Attributes) -> Pose:
+        """The pose of an element in the enclosing body."""
+        return compose(self.into, read_pose(self.context, element, attributes))
+
+    def point(self, point: Vector3) -> Vector3:
+        """A point of an element, in the enclosing body."""
+        return point if self.into is IDENTITY else compose(self.into, Pose(point)).position
+
+
+class Elements:
+    """Goes through the elements of a file; counts them, since copies multiply."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def inside(self, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
+        """The elements of a body, the world or a frame, and their scopes, in document order."""
+        context = scope.context
+        for child in parent.children:
+            self.count += 1
+            if self.count > MAX_ELEMENTS:
+                raise context.error(child, f"with all copies there are more than {MAX_ELEMENTS} elements")
+            if child.tag == "frame":
+                child.note()
+                scope.name(child)
+                child_class = child.attributes.get("childclass", scope.child_class)
+                into = scope.pose(child, child.attributes)
+                yield from self.inside(child, replace(scope, child_class=child_class, into=into))
+            elif child.tag == "replicate":
+                child.note()
+                yield from self._copies(child, scope)
+            elif child.tag == "attach":
+                yield from self._attached(child, scope)
+            else:
+                yield child, scope
+
+    def _copies(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
+        context, attributes = scope.context, element.attributes
+        count = int(context.parse_number(element, "count", context.required(element, "count")))
+        if not 0 < count <= _MOST_COPIES:
+            raise context.error(element, f"count={count} must be from 1 to {_MOST_COPIES}")
+        separator = attributes.get("sep", "")
+        placing = {"pos": attributes.get("offset", "0 0 0")}
+        if "euler" in attributes:
+            placing["euler"] = attributes["euler"]
+        step = read_pose(context, element, placing)
+        into, digits = scope.into, len(str(count - 1))
+        child_class = attributes.get("childclass", scope.child_class)
+        for number in range(count):
+            suffix = f"{separator}{number:0{digits}d}{scope.suffix}"
+            yield from self.inside(element, replace(scope, child_class=child_class, into=into, suffix=suffix))
+            into = compose(into, step)
+
+    def _attached(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
+        context, attributes = scope.context, element.attributes
+        name = context.required(element, "model")
+        other = context.attached.get(name)
+        if other is None:
+            raise context.error(element, f"there is no model {shown(name)}")
+        prefix = scope.prefix + attributes.get("prefix", "")
+        inner = Scope(other, None, scope.into, prefix, scope.suffix)
+        kind = "frame" if "frame" in attributes else "body"
+        wanted = attributes.get(kind)
+        worlds = list(other.root.all("worldbody"))
+        if wanted is None:
+            for world in worlds:
+                yield from self.inside(world, inner)
+            return
+        for world in worlds:
+            for found, at in _of_name(world, kind, wanted, inner):
+                if kind == "body":
+                    yield found, at
+                else:
+                    yield from self.inside(found, at)
+                return
+        raise context.error(element, f"model {shown(name)} has no {kind} {shown(wanted)}")
+
+
+def _of_name(parent: Element, tag: str, name: str, scope: Scope) -> Iterator[tuple[Element, Scope]]:
+    """Elements of a name below an element, with the classes that those around them set."""
+    for child in parent.children:
+        if child.tag == tag and child.attributes.get("name") == name:
+            child.note()
+            yield child, scope
+        if child.tag in ("body", "frame", "replicate"):
+            child_class = child.attributes.get("childclass", scope.child_class)
+            yield from _of_name(child, tag, name, replace(scope, child_class=child_class))

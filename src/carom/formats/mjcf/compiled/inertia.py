@@ -1,0 +1,93 @@
+"""Inertia of bodies from their geoms, and what the compiler's options make of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description.pose import IDENTITY, Pose
+from carom.description.transform import rotation_matrix
+from carom.formats.mjcf.compiled.compiler import Compiler
+from carom.formats.mjcf.compiled.shapes.solids import MassShape
+from carom.record import record
+
+Matrix = NDArray[np.float64]
+_ROUNDING = 1e-12
+
+
+@record(frozen=False, eq=False)
+class BodyInertia:
+    """Mass and inertia of a body.
+
+    Attributes:
+        mass: [kg].
+        centre: Centre of mass in the frame of the body [m].
+        tensor: (3, 3) inertia about it along the axes of the body [kg m²].
+    """
+
+    mass: float
+    centre: Matrix
+    tensor: Matrix
+
+    @classmethod
+    def none(cls) -> BodyInertia:
+        """No mass."""
+        return cls(0.0, np.zeros(3), np.zeros((3, 3)))
+
+
+@record
+class GeomMass:
+    """Mass of a geom, its distribution, and the pose of its frame in the body."""
+
+    mass: float
+    shape: MassShape
+    frame: Pose = IDENTITY
+
+
+def inertia_of(geoms: Iterable[GeomMass]) -> BodyInertia:
+    """The inertia of all geoms of a body together."""
+    parts = []
+    for geom in geoms:
+        turn = np.array(rotation_matrix(geom.frame.orientation))
+        centre = np.array(geom.frame.position) + turn @ geom.shape.centre
+        parts.append((geom.mass, centre, geom.mass * (turn @ geom.shape.tensor @ turn.T)))
+    mass = sum(part[0] for part in parts)
+    if mass == 0.0:
+        return BodyInertia.none()
+    middle = np.asarray(sum(m * centre for m, centre, _ in parts)) / mass
+    tensor = np.zeros((3, 3))
+    for m, centre, own in parts:
+        away = centre - middle
+        tensor += own + m * (away @ away * np.eye(3) - np.outer(away, away))
+    return BodyInertia(mass, middle, tensor)
+
+
+def bounded(inertia: BodyInertia, compiler: Compiler) -> str | None:
+    """Apply the compiler's bounds to a body in place, and its balance of moments.
+
+    Returns:
+        What is wrong with moments that no body has; None if nothing is.
+    """
+    inertia.mass = max(inertia.mass, compiler.least_mass)
+    moments, axes = np.linalg.eigh(inertia.tensor)
+    changed = np.maximum(moments, compiler.least_inertia) if compiler.least_inertia > 0.0 else moments
+    if changed.max(initial=0.0) * 2.0 > changed.sum() * (1.0 + _ROUNDING) + _ROUNDING**2:
+        if not compiler.balance:
+            x, y, z = changed
+            return f"no body has the moments of inertia {x:g}, {y:g} and {z:g}"
+        changed = np.full(3, changed.mean())
+    if (changed != moments).any():
+        inertia.tensor = axes @ np.diag(changed) @ axes.T
+    return None
+
+
+def scaled_to_total(inertias: list[BodyInertia], total: float) -> None:
+    """Scale masses and inertia of bodies in place, so that their masses add up to `total` [kg]."""
+    mass = sum(inertia.mass for inertia in inertias)
+    if mass <= 0.0:
+        return
+    for inertia in inertias:
+        inertia.mass *= total / mass
+        inertia.tensor = inertia.tensor * (total / mass)

@@ -1,0 +1,141 @@
+"""`<joint>`: one of the joints of a body, in double precision and with MuJoCo's defaults."""
+
+from __future__ import annotations
+
+from math import hypot, inf
+
+from carom.description import Joint, JointLimit, JointType
+from carom.description.pose import Vector3
+from carom.description.transform import rotate
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.model import CompiledJoint
+from carom.formats.mjcf.defaults import Attributes
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+FREE = "free"
+_TYPES = {"hinge": JointType.REVOLUTE, "slide": JointType.PRISMATIC, "ball": JointType.SPHERICAL}
+_UNLIMITED = (0.0, -1.0)
+
+
+def joint_type(scope: Scope, element: Element) -> str:
+    """The type of a `<joint>`."""
+    kind = scope.attributes(element).get("type", "hinge")
+    if kind != FREE and kind not in _TYPES:
+        raise scope.context.error(element, f"unknown joint type {shown(kind)}")
+    return kind
+
+
+def read_joint(scope: Scope, element: Element) -> CompiledJoint:
+    """The joint that a `<joint>` other than a free one describes; raises `DescriptionError`."""
+    context, attributes = scope.context, scope.attributes(element)
+    kind = joint_type(scope, element)
+    anchor = scope.point(_triple(scope, element, attributes, "pos", (0.0, 0.0, 0.0)))
+    axis = _axis(scope, element, attributes)
+    lower, upper = _range(scope, element, attributes, kind)
+    if kind == "ball" and lower <= upper:
+        context.leave_out(element, "the joint turns without limit", "limits of balls are not built", "range")
+        lower, upper = _UNLIMITED
+    is_limited = lower <= upper
+    described = _TYPES[kind]
+    if kind == "hinge" and not is_limited:
+        described = JointType.CONTINUOUS
+    damping = _first(scope, element, attributes, "damping")
+    friction = _first(scope, element, attributes, "frictionloss")
+    if kind == "ball" and friction > 0.0:
+        context.leave_out(element, "it has no friction", "friction of balls is not built", "frictionloss")
+        friction = 0.0
+    reference = 0.0 if kind == "ball" else _position(scope, element, attributes, "ref", kind)
+    joint = Joint(
+        scope.name(element),
+        described,
+        0,
+        0,
+        axis=axis,
+        limit=JointLimit(lower, upper, effort=_effort(scope, element, attributes)),
+        damping=damping,
+        friction=friction,
+        armature=_first(scope, element, attributes, "armature"),
+        stiffness=_first(scope, element, attributes, "stiffness"),
+        spring_reference=0.0 if kind == "ball" else _position(scope, element, attributes, "springref", kind),
+    )
+    return CompiledJoint(joint, anchor, reference, element)
+
+
+def _triple(scope: Scope, element: Element, attributes: Attributes, name: str, default: Vector3) -> Vector3:
+    text = attributes.get(name)
+    if text is None:
+        return default
+    x, y, z = scope.context.numbers(element, name, text, 3, 3)
+    return (x, y, z)
+
+
+def _axis(scope: Scope, element: Element, attributes: Attributes) -> Vector3:
+    """Unit axis in the body's frame; along z where there is none."""
+    x, y, z = rotate(scope.into.orientation, _triple(scope, element, attributes, "axis", (0.0, 0.0, 1.0)))
+    length = hypot(x, y, z)
+    if length == 0.0:
+        raise scope.context.error(element, "the axis has no length")
+    return (x / length, y / length, z / length)
+
+
+def _position(scope: Scope, element: Element, attributes: Attributes, name: str, kind: str) -> float:
+    value = scope.context.number(element, attributes, name, 0.0)
+    return scope.context.angle(value) if kind == "hinge" else value
+
+
+def _range(scope: Scope, element: Element, attributes: Attributes, kind: str) -> tuple[float, float]:
+    """Lower and upper limit [rad or m]; lower > upper if there are none."""
+    if not is_limited(scope, element, attributes, "limited", "range"):
+        return _UNLIMITED
+    text = attributes.get("range")
+    if text is None:
+        raise scope.context.error(element, "a limited joint needs a range")
+    lower, upper = scope.context.numbers(element, "range", text, 2, 2)
+    if kind in ("hinge", "ball"):
+        lower, upper = scope.context.angle(lower), scope.context.angle(upper)
+    if lower > upper:
+        raise scope.context.error(
+            element, f"range={shown(text)}: the first number must be less than the second"
+        )
+    return lower, upper
+
+
+def is_limited(scope: Scope, element: Element, attributes: Attributes, name: str, bounds: str) -> bool:
+    """Whether `limited` or the like holds: stated, or, with `autolimits`, there is a range."""
+    context = scope.context
+    stated = attributes.get(name, "auto")
+    if stated not in ("true", "false", "auto"):
+        raise context.error(element, f"{name}={shown(stated)} must be true, false or auto")
+    if stated != "auto":
+        return stated == "true"
+    text = attributes.get(bounds)
+    if text is None:
+        return False
+    if not context.compiler.auto_limits:
+        raise context.error(element, f'with autolimits="false", {bounds} needs {name}')
+    lower, upper = context.numbers(element, bounds, text, 2, 2)
+    return lower < upper
+
+
+def _effort(scope: Scope, element: Element, attributes: Attributes) -> float:
+    """The bound of actuators' forces on the joint, in the description only; 0 for none."""
+    if not is_limited(scope, element, attributes, "actuatorfrclimited", "actuatorfrcrange"):
+        return 0.0
+    lower, upper = scope.context.numbers(
+        element, "actuatorfrcrange", attributes.get("actuatorfrcrange", ""), 2, 2
+    )
+    return min(max(-lower, upper), inf)
+
+
+def _first(scope: Scope, element: Element, attributes: Attributes, name: str) -> float:
+    """The first number of an attribute; others are coefficients of higher powers."""
+    text = attributes.get(name)
+    if text is None:
+        return 0.0
+    numbers = scope.context.numbers(element, name, text, 1, 100)
+    if any(numbers[1:]):
+        scope.context.leave_out(element, "only the linear term counts", "polynomials are not built", name)
+    if numbers[0] < 0.0:
+        raise scope.context.error(element, f"{name}={shown(text)} must not be negative")
+    return numbers[0]

@@ -1,0 +1,148 @@
+"""What the reader of compiled MJCF hands over."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import Any
+
+from carom.description import Collision, Joint, Pose, Visual
+from carom.description.link import ContactParameters
+from carom.description.pose import IDENTITY, Vector3
+from carom.formats.mjcf.compiled.inertia import BodyInertia
+from carom.formats.placed import PlacedRobot
+from carom.formats.xml_element import Element
+from carom.record import record
+
+
+@record(frozen=False, eq=False)
+class CompiledJoint:
+    """A joint of a body; its frame, parent and child are set later.
+
+    Attributes:
+        joint: Type, axis in the body's frame, limits, damping and so on.
+        anchor: Its position in the body's frame [m].
+        reference: Its position where the body is as the file states it [rad or m].
+        element: The element that states it.
+    """
+
+    joint: Joint
+    anchor: Vector3
+    reference: float
+    element: Element
+
+
+@record(frozen=False, eq=False)
+class CompiledBody:
+    """A body and all bodies in it.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        element: The element that states it.
+        pose: Of its frame in that of its parent.
+        joints: Its joints, in order.
+        is_free: It has a free joint.
+        is_mocap: It is moved by users only.
+        inertia: Its mass.
+        collisions: Its shapes that collide.
+        visuals: Its shapes that are seen.
+        contact: Friction of its geoms.
+        children: Bodies in it.
+    """
+
+    name: str
+    element: Element
+    pose: Pose = IDENTITY
+    joints: list[CompiledJoint] = field(default_factory=list)
+    is_free: bool = False
+    is_mocap: bool = False
+    inertia: BodyInertia = field(default_factory=BodyInertia.none)
+    collisions: list[Collision] = field(default_factory=list)
+    visuals: list[Visual] = field(default_factory=list)
+    contact: ContactParameters = ContactParameters()
+    children: list[CompiledBody] = field(default_factory=list)
+
+
+@record
+class Site:
+    """A named frame on a body.
+
+    Attributes:
+        name: Its name.
+        body: Name of the body that has it; `world` for the world.
+        frame: Its pose in the frame of that body.
+        kind: Its shape, which marks it and bounds what touch sensors feel.
+        size: Sizes of that shape, as MJCF states them [m].
+    """
+
+    name: str
+    body: str
+    frame: Pose
+    kind: str
+    size: Vector3
+
+
+@record
+class FileCamera:
+    """A camera on a body.
+
+    Attributes:
+        name: Its name.
+        body: Name of the body that has it; `world` for the world.
+        frame: Its pose in the frame of that body; it looks along -z, y is up.
+        field_of_view: Vertical angle [degrees].
+        resolution: Width and height [pixels].
+        mode: `fixed` to the body, or one of MJCF's modes that follow it.
+    """
+
+    name: str
+    body: str
+    frame: Pose
+    field_of_view: float
+    resolution: tuple[int, int]
+    mode: str
+
+
+@record
+class FileKeyframe:
+    """A named state, as MJCF lists it: all joints of the file in its order.
+
+    Attributes:
+        name: Its name.
+        time: [s].
+        positions: `qpos`; quaternions have w first. Empty if it states none: the initial positions.
+        velocities: `qvel`. Empty for zero.
+        controls: `ctrl`. Empty for zero.
+    """
+
+    name: str
+    time: float
+    positions: tuple[float, ...]
+    velocities: tuple[float, ...]
+    controls: tuple[float, ...]
+
+
+@record(frozen=False, eq=False)
+class CompiledModel:
+    """All of a file.
+
+    Attributes:
+        name: Its name.
+        robots: A robot for each body of the world, and one for all geoms of the world.
+        joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
+        starts: Positions of joints whose reference is not 0, by name.
+        excluded: Pairs of bodies that don't collide with each other.
+        options: Gravity, time step and other numbers and words of `<option>`, by name.
+        sites: By name.
+        cameras: By name.
+        keyframes: By name.
+    """
+
+    name: str = ""
+    robots: list[PlacedRobot] = field(default_factory=list)
+    joints: list[tuple[str, str, str]] = field(default_factory=list)
+    starts: dict[str, float] = field(default_factory=dict)
+    excluded: list[tuple[str, str]] = field(default_factory=list)
+    options: dict[str, Any] = field(default_factory=dict)
+    sites: dict[str, Site] = field(default_factory=dict)
+    cameras: dict[str, FileCamera] = field(default_factory=dict)
+    keyframes: dict[str, FileKeyframe] = field(default_factory=dict)

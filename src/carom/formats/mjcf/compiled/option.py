@@ -1,0 +1,53 @@
+"""`<option>`: gravity, time step and the like, as data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_SCALARS = ("timestep", "density", "viscosity", "impratio")
+_VECTORS = ("gravity", "wind", "magnetic")
+_WORDS = ("integrator", "cone", "solver", "jacobian")
+_FLAGS = {
+    "actuation": "actuators act",
+    "clampctrl": "controls have bounds",
+    "constraint": "contacts, limits and other constraints act",
+    "contact": "bodies collide",
+    "damper": "joints have damping",
+    "equality": "equality constraints act",
+    "frictionloss": "joints have friction",
+    "limit": "joints have limits",
+    "spring": "joints have springs",
+}
+DEFAULTS: dict[str, Any] = {"timestep": 0.002, "gravity": (0.0, 0.0, -9.81)}
+
+
+def read_option(context: CompiledContext, element: Element, options: dict[str, Any]) -> None:
+    """Add what an `<option>` states to `options`; flags are under `flag.NAME`, as truth values.
+
+    Raises:
+        DescriptionError: A number or a flag is not one.
+    """
+    attributes = element.attributes
+    for name in _SCALARS:
+        if name in attributes:
+            options[name] = context.number(element, attributes, name, 0.0)
+    for name in _VECTORS:
+        if name in attributes:
+            options[name] = tuple(context.numbers(element, name, attributes[name], 3, 3))
+    for name in _WORDS:
+        if name in attributes:
+            options[name] = attributes[name]
+    if options.get("timestep", 1.0) <= 0.0:
+        raise context.error(element, f"timestep={shown(attributes['timestep'])} must be positive")
+    for flags in element.all("flag"):
+        for name in list(flags.attributes):
+            text = flags.attributes[name]
+            if text not in ("enable", "disable"):
+                raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
+            options[f"flag.{name}"] = text == "enable"
+            if name in _FLAGS and text == "disable":
+                context.leave_out(flags, _FLAGS[name], "flags do not switch it off", name)

@@ -1,0 +1,138 @@
+"""Reading an MJCF file as MuJoCo compiles it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from carom.formats.mjcf.compiled.body import BodyReader
+from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
+from carom.formats.mjcf.compiled.compiler import read_compiler
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.families import connected_pairs
+from carom.formats.mjcf.compiled.inertia import scaled_to_total
+from carom.formats.mjcf.compiled.keyframe import read_keyframes
+from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
+from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
+from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
+from carom.formats.mjcf.defaults import read_defaults
+from carom.formats.mjcf.document import Inclusion, read_root
+from carom.formats.reading.cursor import Cursor
+from carom.formats.robot.context import shown
+from carom.formats.robot.file import locate
+from carom.formats.search import AssetSearch
+from carom.formats.xml_element import Element
+
+_FILTER_PARENT = "flag.filterparent"
+# What is in them is reported one by one.
+_BY_CHILDREN = ("actuator", "sensor", "tendon", "equality", "deformable")
+_MOST_MODELS = 64
+_ASSETS = ("mesh", "material", "texture", "hfield", "model")
+
+
+def compile_mjcf(
+    path: Path,
+    *,
+    hull: Hull,
+    search: AssetSearch | None = None,
+    cursor: Cursor | None = None,
+    missing_meshes: bool = False,
+) -> CompiledModel:
+    """Reads and checks an MJCF file as MuJoCo understands it, in double precision.
+
+    Inertia comes from geoms and meshes by the rules of `<compiler>`; bodies without joints are fixed to what
+    is around them; the geoms of the world are one robot, `world`. Actuators, sensors, tendons, equalities and
+    soft bodies are not read.
+
+    Args:
+        path: The file, looked up with `AssetSearch.find`.
+        hull: Makes convex hulls.
+        search: The search for files.
+        cursor: Records what is taken.
+        missing_meshes: Geoms whose mesh is missing are left out and reported; otherwise they are errors.
+
+    Raises:
+        DescriptionError: The file is missing, broken, or something in it is.
+    """
+    search = search or AssetSearch()
+    file = locate(path, search)
+    context = _read_document(file, search, hull, cursor, ())
+    model = CompiledModel(context.root.attributes.get("model", ""), options=dict(DEFAULTS))
+    for element in context.root.all("option"):
+        read_option(context, element, model.options)
+    reader = BodyReader(model, missing_meshes=missing_meshes)
+    for world in context.root.all("worldbody"):
+        whole = reader.read_world(world, Scope(context))
+        everything = [whole, *reader.bodies]
+        if set_collision_groups(everything):
+            context.leave_out(
+                world,
+                "all geoms of a body collide with what one of them collides with",
+                "a body has one group",
+            )
+        if context.compiler.total_mass is not None:
+            scaled_to_total([body.inertia for body in reader.bodies], context.compiler.total_mass)
+        if model.options.get(_FILTER_PARENT, True):
+            model.excluded += connected_pairs(whole)
+        static = robot_of_world(whole)
+        model.robots += [] if static is None else [static]
+        model.robots += [robot_of_body(body) for body in whole.children]
+    for tag in _BY_CHILDREN:
+        for element in context.root.all(tag):
+            element.note()
+    _read_excluded(context, model, {body.name for body in reader.bodies})
+    for element in context.root.all("keyframe"):
+        read_keyframes(context, element, model)
+    return model
+
+
+def _read_document(
+    file: Path, search: AssetSearch, hull: Hull, cursor: Cursor | None, around: tuple[Path, ...]
+) -> CompiledContext:
+    """A file with all that it includes, its options, defaults, assets and the models that it attaches."""
+    root = read_root(file, cursor)
+    context = CompiledContext(file, root, search, hull)
+    context.cursor = cursor
+    Inclusion(context, cursor).expand(root, file, (file,))
+    for element in root.all("compiler"):
+        read_compiler(context, element)
+    for element in root.all("default"):
+        read_defaults(context, element)
+    for assets in root.all("asset"):
+        for child in assets.children:
+            if child.tag in _ASSETS:
+                _add_asset(context, child)
+    for name, element in context.named.model.items():
+        element.note()
+        other = context.asset_file(element, context.required(element, "file"), "")
+        if other is None:
+            raise context.not_found(element, element.attributes["file"])
+        if other in (*around, file) or len(around) > _MOST_MODELS:
+            raise context.error(element, f"{shown(str(other))} attaches itself")
+        context.attached[name] = _read_document(other.absolute(), search, hull, cursor, (*around, file))
+    return context
+
+
+def _add_asset(context: CompiledContext, element: Element) -> None:
+    named = getattr(context.named, element.tag)
+    attributes = element.attributes
+    name = attributes.get("name") or Path(attributes.get("file", "")).stem
+    if not name and element.tag == "texture":
+        return
+    if not name:
+        raise context.error(element, "it needs a name")
+    if name in named:
+        raise context.error(element, f"the name {shown(name)} is taken already, on line {named[name].line}")
+    named[name] = element
+
+
+def _read_excluded(context: CompiledContext, model: CompiledModel, names: set[str]) -> None:
+    for contact in context.root.all("contact"):
+        for element in contact.all("exclude"):
+            element.attributes.get("name")
+            pair = (context.required(element, "body1"), context.required(element, "body2"))
+            for name in pair:
+                if name not in names and name != "world":
+                    raise context.error(element, f"there is no body {shown(name)}")
+            model.excluded.append(pair)

@@ -1,0 +1,113 @@
+"""Robots from compiled bodies: links, and joints between them.
+
+All joints of a body share its frame: each moves the body about an anchor in it. A link has its joint at its
+own origin, so all but the last joint of a body get a massless link in between, and the last one as well if
+its anchor is not at the origin of the body, which is then fixed to that link.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
+from carom.description.pose import IDENTITY, Vector3
+from carom.description.transform import compose
+from carom.formats.mjcf.compiled.body import WORLD
+from carom.formats.mjcf.compiled.inertia import BodyInertia
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
+from carom.formats.placed import PlacedRobot
+from carom.formats.robot.link import MASSLESS
+from carom.native.trigonometry import cos, sin
+
+_ORIGIN = (0.0, 0.0, 0.0)
+
+
+def robot_of_world(world: CompiledBody) -> PlacedRobot | None:
+    """The geoms of the world as one static robot; None if there are none."""
+    if not world.collisions and not world.visuals:
+        return None
+    link = Link(WORLD, MASSLESS, tuple(world.collisions), tuple(world.visuals), world.contact)
+    return PlacedRobot(Robot(WORLD, (link,), ()), fixed_base=True)
+
+
+def robot_of_body(body: CompiledBody) -> PlacedRobot:
+    """The robot whose root is a body of the world.
+
+    A body with joints hangs from a massless link, fixed in the world, with the frame of the world.
+    """
+    maker = _Maker()
+    if body.joints:
+        maker.links.append(Link(WORLD, MASSLESS))
+        maker.add(body, 0)
+        pose = IDENTITY
+    else:
+        maker.add(body, None)
+        pose = body.pose
+    robot = Robot(body.name, tuple(maker.links), tuple(maker.joints))
+    return PlacedRobot(robot, pose, fixed_base=not body.is_free)
+
+
+class _Maker:
+    def __init__(self) -> None:
+        self.links: list[Link] = []
+        self.joints: list[Joint] = []
+
+    def add(self, body: CompiledBody, parent: int | None) -> None:
+        """Add a body and all bodies in it; `parent` is the link of the body around it."""
+        frame = body.pose
+        for number, joint in enumerate(body.joints):
+            assert parent is not None, "only the root has no parent, and it has no joints then"
+            is_last = number == len(body.joints) - 1
+            place = compose(frame, Pose(joint.anchor))
+            is_body = is_last and joint.anchor == _ORIGIN
+            link = _link(body) if is_body else Link(f"{body.name}@{joint.joint.name}", MASSLESS)
+            parent = self._hang(link, joint, parent, place)
+            x, y, z = joint.anchor
+            frame = Pose((-x, -y, -z))
+            if is_body:
+                frame = IDENTITY
+        own = parent
+        if not body.joints or frame is not IDENTITY:
+            self.links.append(_link(body))
+            own = len(self.links) - 1
+            if parent is not None:
+                self.joints.append(Joint(f"{body.name}@fixed", JointType.FIXED, parent, own, frame))
+        for child in body.children:
+            self.add(child, own)
+
+    def _hang(self, link: Link, joint: CompiledJoint, parent: int, place: Pose) -> int:
+        """Add a link on a joint whose frame in the parent is `place` where the joint is at its reference."""
+        self.links.append(link)
+        index = len(self.links) - 1
+        described = joint.joint
+        frame = compose(place, _moved_back(described, joint.reference))
+        self.joints.append(replace(described, parent=parent, child=index, frame=frame))
+        return index
+
+
+def _moved_back(joint: Joint, reference: float) -> Pose:
+    """The pose at position 0 of a joint, in the frame that it has at a reference position."""
+    if reference == 0.0:
+        return IDENTITY
+    x, y, z = joint.axis
+    if joint.type is JointType.PRISMATIC:
+        return Pose((-reference * x, -reference * y, -reference * z))
+    s = sin(-0.5 * reference)
+    return Pose(_ORIGIN, (s * x, s * y, s * z, cos(-0.5 * reference)))
+
+
+def _link(body: CompiledBody) -> Link:
+    return Link(
+        body.name,
+        _inertial(body.inertia),
+        tuple(body.collisions),
+        tuple(body.visuals),
+        body.contact,
+    )
+
+
+def _inertial(inertia: BodyInertia) -> Inertial:
+    x, y, z = (float(value) for value in inertia.centre)
+    position: Vector3 = (x, y, z)
+    t = [[float(value) for value in row] for row in inertia.tensor]
+    return Inertial(inertia.mass, Pose(position), (t[0][0], t[0][1], t[0][2], t[1][1], t[1][2], t[2][2]))

@@ -1,0 +1,1 @@
+"""Geoms of MJCF files: their shapes, looks and masses, and the meshes and height fields that they use."""

@@ -1,0 +1,48 @@
+"""Primitive shapes fitted to meshes: by the box of the same inertia, or by bounds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.description.pose import Pose, Vector3
+from carom.description.transform import Matrix3, quaternion_from_matrix
+from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset
+
+
+def fitted(mesh: MeshAsset, kind: str, *, by_bounds: bool) -> tuple[Vector3, Pose] | None:
+    """MJCF sizes of a shape and its pose in the frame of the mesh; None for a mesh without volume.
+
+    The axes of the shape are the principal axes of the mesh, the greatest moment first.
+    """
+    if mesh.mass is None:
+        return None
+    moments, axes = np.linalg.eigh(mesh.mass.tensor)
+    moments, axes = moments[::-1], axes[:, ::-1].copy()
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 2] *= -1.0
+    centre = mesh.mass.centre
+    if by_bounds:
+        local = (mesh.vertices - centre) @ axes
+        low, high = local.min(axis=0), local.max(axis=0)
+        centre = centre + axes @ (0.5 * (low + high))
+        a, b, c = (float(x) for x in 0.5 * (high - low))
+    else:
+        squares = np.maximum(3.0 * (0.5 * moments.sum() - moments), 0.0)
+        a, b, c = (float(x) for x in np.sqrt(squares))
+    rows: Matrix3 = tuple(tuple(float(x) for x in row) for row in axes)  # pyright: ignore
+    x, y, z = (float(value) for value in centre)
+    return _size(kind, (a, b, c), by_bounds), Pose((x, y, z), quaternion_from_matrix(rows))
+
+
+def _size(kind: str, half: Vector3, by_bounds: bool) -> Vector3:
+    a, b, c = half
+    across = max(a, b) if by_bounds else 0.5 * (a + b)
+    match kind:
+        case "sphere":
+            return (max(half) if by_bounds else (a + b + c) / 3.0, 0.0, 0.0)
+        case "capsule":
+            return (across, max(0.0, c - (across if by_bounds else 0.5 * across)), 0.0)
+        case "cylinder":
+            return (across, c, 0.0)
+        case _:
+            return half

@@ -1,0 +1,198 @@
+"""`<geom>`: shapes that collide and that are seen, and their mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+from carom.description import (
+    Box,
+    Capsule,
+    ConvexHull,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Plane,
+    Pose,
+    Sphere,
+    TriangleMesh,
+    Visual,
+)
+from carom.description.pose import Vector3
+from carom.description.transform import compose, turn_of_z
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.inertia import GeomMass
+from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
+from carom.formats.mjcf.compiled.shapes.fitting import fitted
+from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
+from carom.formats.mjcf.compiled.shapes.looks import read_material
+from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
+from carom.formats.mjcf.compiled.shapes.solids import MassShape, mass_of_primitive
+from carom.formats.mjcf.defaults import Attributes
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_DENSITY = 1000.0
+_SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}
+_FROM_TO = ("capsule", "cylinder", "box", "ellipsoid")
+
+
+@dataclass(frozen=True, slots=True)
+class Geom:
+    """A geom of a body.
+
+    Attributes:
+        name: Its name, or nothing.
+        geometry: The shape that collides.
+        frame: The pose of that shape in the body.
+        visual: What is seen of it.
+        mass: Its mass; None if it has none.
+        group: The number of its group, for `inertiagrouprange`.
+        kinds: Bits `contype` and `conaffinity`.
+    """
+
+    name: str
+    geometry: Geometry
+    frame: Pose
+    visual: Visual
+    mass: GeomMass | None
+    group: int
+    kinds: tuple[int, int]
+
+
+def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
+    """What a `<geom>` describes; None for kinds that are reported as left out. Raises `DescriptionError`."""
+    context, attributes = scope.context, scope.attributes(element)
+    kind = attributes.get("type", "sphere")
+    if kind == "sphere" and "type" not in attributes and "mesh" in attributes:
+        kind = "mesh"
+    name = scope.name(element)
+    if kind == "sdf":
+        context.leave_out(element, "the shape is missing", "distance fields of plugins are not built")
+        return None
+    pose = scope.pose(element, attributes)
+    mesh = meshes.find(context, element, attributes["mesh"]) if "mesh" in attributes else None
+    hull: Geometry | None = None
+    seen: Geometry | None = None
+    if kind == "plane":
+        geometry, mass = Plane(), None
+    elif kind == "hfield":
+        geometry, raised = read_hfield(context, element, attributes)
+        pose, mass = compose(pose, raised), None
+    elif kind == "mesh":
+        if mesh is None:
+            raise context.error(element, "a geom of type mesh needs the name of a mesh")
+        hull, seen = _geometries(mesh)
+        geometry, mass = hull, _mass(scope, element, attributes, pose, mesh.mass)
+    elif kind in _SIZES:
+        size, pose = _size_and_pose(scope, element, attributes, kind, pose, mesh)
+        geometry = _primitive(kind, size)
+        shell = context.flag(element, attributes, "shellinertia", False)
+        shape = mass_of_primitive(kind, size, shell=shell)
+        if shape is None:
+            context.leave_out(
+                element,
+                "its inertia is that of a solid",
+                "shells that are ellipsoids are not built",
+                "shellinertia",
+            )
+            shape = mass_of_primitive(kind, size, shell=False)
+        mass = _mass(scope, element, attributes, pose, shape)
+    else:
+        raise context.error(element, f"unknown type of geom {shown(kind)}")
+    return Geom(
+        name,
+        geometry,
+        pose,
+        Visual(seen or geometry, pose, name, read_material(context, element, attributes)),
+        mass,
+        int(context.number(element, attributes, "group", 0.0)),
+        (_bits(scope, element, attributes, "contype"), _bits(scope, element, attributes, "conaffinity")),
+    )
+
+
+def _bits(scope: Scope, element: Element, attributes: Attributes, name: str) -> int:
+    return int(scope.context.number(element, attributes, name, 1.0))
+
+
+def _mass(
+    scope: Scope, element: Element, attributes: Attributes, pose: Pose, shape: MassShape | None
+) -> GeomMass | None:
+    """The mass of a geom: stated, or by its density."""
+    context = scope.context
+    density = context.number(element, attributes, "density", _DENSITY)
+    if shape is None:
+        if "mass" in attributes or density == 0.0:
+            return None
+        context.leave_out(element, "it has no mass", "its mesh has no volume")
+        return None
+    mass = context.number(element, attributes, "mass", density * shape.measure)
+    if mass < 0.0:
+        if "mass" in attributes or density < 0.0:
+            raise context.error(element, "mass and density must not be negative")
+        raise context.error(element, 'the volume of its mesh is negative; inertia="convex" takes its hull')
+    return GeomMass(mass, shape, pose) if mass > 0.0 else None
+
+
+def _size_and_pose(
+    scope: Scope, element: Element, attributes: Attributes, kind: str, pose: Pose, mesh: MeshAsset | None
+) -> tuple[Vector3, Pose]:
+    """Sizes as MJCF has them, and the pose of the shape in the body."""
+    context = scope.context
+    if mesh is not None:
+        scale = context.number(element, attributes, "fitscale", 1.0)
+        found = fitted(mesh, kind, by_bounds=context.compiler.fit_bounds)
+        if found is None:
+            raise context.error(element, "its mesh has no volume, so no shape can be fitted to it")
+        (x, y, z), frame = found
+        return (scale * x, scale * y, scale * z), compose(pose, frame)
+    text = attributes.get("size", "")
+    numbers = context.singles(element, "size", text)
+    needed = _SIZES[kind]
+    if kind in _FROM_TO and "fromto" in attributes:
+        own, half = frame_between(context, element, attributes["fromto"])
+        pose = compose(scope.into, own)
+        if numbers and kind in ("capsule", "cylinder"):
+            numbers = [numbers[0], half]
+        elif numbers:
+            numbers = [numbers[0], numbers[1] if len(numbers) > 1 else numbers[0], half]
+    if len(numbers) < needed or any(number <= 0.0 for number in numbers[:needed]):
+        raise context.error(element, f"size={shown(text)}: a {kind} needs {needed} positive numbers")
+    x, y, z = (*numbers[:needed], 0.0, 0.0)[:3]
+    return (x, y, z), pose
+
+
+def frame_between(context: CompiledContext, element: Element, text: str) -> tuple[Pose, float]:
+    """A frame midway between two ends, its z axis along them, and half their distance."""
+    ax, ay, az, bx, by, bz = context.numbers(element, "fromto", text, 6, 6)
+    x, y, z = bx - ax, by - ay, bz - az
+    length = hypot(x, y, z)
+    if length == 0.0:
+        raise context.error(element, "fromto: both ends are the same point")
+    middle = (0.5 * (ax + bx), 0.5 * (ay + by), 0.5 * (az + bz))
+    return Pose(middle, turn_of_z((x / length, y / length, z / length))), 0.5 * length
+
+
+def _primitive(kind: str, size: Vector3) -> Geometry:
+    x, y, z = size
+    match kind:
+        case "sphere":
+            return Sphere(x)
+        case "capsule":
+            return Capsule(x, 2.0 * y)
+        case "cylinder":
+            return Cylinder(x, 2.0 * y)
+        case "box":
+            return Box((x, y, z))
+        case _:
+            return ConvexHull(ellipsoid_points((x, y, z)))
+
+
+def _geometries(mesh: MeshAsset) -> tuple[Geometry, Geometry]:
+    """The shape of a mesh that collides, its hull, and the one that is seen."""
+    if mesh.file is not None and mesh.file.suffix.lower() != ".msh":
+        whole = Mesh(mesh.file, mesh.scale)
+        return (whole if mesh.is_one_piece else ConvexHull(mesh.vertices)), whole
+    hull = ConvexHull(mesh.vertices)
+    return hull, TriangleMesh(mesh.vertices, mesh.triangles) if len(mesh.triangles) else hull

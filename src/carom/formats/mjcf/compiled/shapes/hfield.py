@@ -1,0 +1,76 @@
+"""`<hfield>` assets: terrain from numbers in the document, images or binary files."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description import Heightfield, Pose
+from carom.formats.files import read_bounded
+from carom.formats.mesh.reader import MAX_FILE_BYTES
+from carom.formats.mjcf.compiled.context import CompiledContext
+from carom.formats.mjcf.defaults import Attributes
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_HEADER = 8
+
+
+def read_hfield(
+    context: CompiledContext, element: Element, attributes: Attributes
+) -> tuple[Heightfield, Pose]:
+    """The terrain of a geom, and its pose in the frame of the geom.
+
+    Raises:
+        DescriptionError: There is no such asset, or its heights cannot be had.
+    """
+    name = attributes.get("hfield", "")
+    asset = context.named.hfield.get(name)
+    if asset is None:
+        raise context.error(element, f"there is no hfield {shown(name)}")
+    asset.note()
+    half_x, half_y, top, _ = context.numbers(asset, "size", context.required(asset, "size"), 4, 4)
+    heights = _heights(context, asset)
+    rows, columns = heights.shape
+    low, high = heights.min(), heights.max()
+    scaled = (heights - low) / (high - low) if high > low else np.zeros_like(heights)
+    scale = (2.0 * half_x / (columns - 1), 2.0 * half_y / (rows - 1), top)
+    return Heightfield(scaled, scale, 0.0), Pose()
+
+
+def _heights(context: CompiledContext, asset: Element) -> NDArray[np.float64]:
+    """Heights (rows along y, columns along x), of any scale."""
+    attributes = asset.attributes
+    if "file" in attributes:
+        return _from_file(context, asset, attributes["file"])
+    rows = int(context.number(asset, attributes, "nrow", 0.0))
+    columns = int(context.number(asset, attributes, "ncol", 0.0))
+    if rows < 2 or columns < 2:
+        raise context.error(asset, "a height field needs a file, or nrow and ncol of 2 or more")
+    if "elevation" not in attributes:
+        context.leave_out(asset, "it is flat", "programs set its heights in MuJoCo")
+        return np.zeros((rows, columns))
+    numbers = context.singles(asset, "elevation", attributes["elevation"])
+    if len(numbers) != rows * columns:
+        raise context.error(asset, f"elevation has {len(numbers)} numbers; nrow times ncol are needed")
+    # The first row of the text is the one with the greatest y.
+    return np.array(numbers).reshape(rows, columns)[::-1]
+
+
+def _from_file(context: CompiledContext, asset: Element, name: str) -> NDArray[np.float64]:
+    path = context.asset_file(asset, name, context.compiler.mesh_directory)
+    if path is None:
+        raise context.not_found(asset, name)
+    if path.suffix.lower() == ".png":
+        from PIL import Image
+
+        with Image.open(path) as image:
+            grey = np.asarray(image.convert("L"), dtype=np.float64)
+        return grey[::-1]
+    data, _ = read_bounded(path, MAX_FILE_BYTES)
+    if len(data) < _HEADER:
+        raise context.error(asset, f"{shown(name)} is too short for a height field")
+    rows, columns = (int(n) for n in np.frombuffer(data, "<i4", 2))
+    if rows < 2 or columns < 2 or len(data) != _HEADER + 4 * rows * columns:
+        raise context.error(asset, f"{shown(name)} does not hold the {rows} x {columns} heights it states")
+    return np.frombuffer(data, "<f4", rows * columns, _HEADER).reshape(rows, columns).astype(np.float64)

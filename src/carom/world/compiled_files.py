@@ -1,0 +1,47 @@
+"""What an MJCF file means for the bodies made from it: positions, pairs that do not collide, names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from carom.model.body_spec import BASE
+from carom.world.keyframe import Keyframe
+
+if TYPE_CHECKING:
+    from carom.formats.mjcf.compiled.model import CompiledModel
+    from carom.scene.body import Body
+    from carom.world.scene import Scene
+
+
+def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
+    """Put joints where the file has them, and let no links collide that MuJoCo keeps apart."""
+    for body in bodies:
+        for index, link in enumerate(body.spec.links):
+            start = model.starts.get(link.joint_name)
+            if start is not None:
+                body.set_joint_state(index, [start], None)
+    for a, b in sorted(set(_kept_apart(bodies, model))):
+        bodies[0].world.contact_arrays.shapes.filters.set(a, b, enabled=False)
+
+
+def describe(scene: Scene, model: CompiledModel) -> None:
+    """Give a scene the sites, cameras, keyframes and options of its file."""
+    scene.sites = dict(model.sites)
+    scene.cameras = dict(model.cameras)
+    scene.options = dict(model.options)
+    scene.keyframes = {name: Keyframe(state, scene, model.joints) for name, state in model.keyframes.items()}
+
+
+def _kept_apart(bodies: Sequence[Body], model: CompiledModel) -> Iterator[tuple[int, int]]:
+    """Rows of links with shapes that do not collide."""
+    rows: dict[str, int] = {}
+    for body in bodies:
+        for index in range(BASE, len(body.spec.links)):
+            link = body.spec.link(index)
+            if link.collisions:
+                rows[link.name] = body.first_link + 1 + index
+    for first, second in model.excluded:
+        if first in rows and second in rows and first != second:
+            a, b = rows[first], rows[second]
+            yield (min(a, b), max(a, b))

@@ -1,0 +1,91 @@
+"""Height fields, mesh files and looks of MJCF files."""
+
+import struct
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from carom import World
+from carom.errors import DescriptionError
+from carom.geometry.heightfield import heightfield_surface
+
+CORNERS = ((0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 3))
+FACES = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
+
+
+@pytest.fixture
+def load(tmp_path):
+    with World() as world:
+
+        def load(assets, geom, compiler=""):
+            (tmp_path / "file.xml").write_text(
+                f'<mujoco>{compiler}<asset>{assets}</asset><worldbody><body name="b"><freejoint/>'
+                f"<geom {geom}/></body></worldbody></mujoco>"
+            )
+            return world.load(tmp_path / "file.xml", missing_meshes="warn")
+
+        yield load
+
+
+def msh(corners=CORNERS, faces=FACES):
+    floats = struct.pack(f"<{3 * len(corners)}f", *np.ravel(corners))
+    return struct.pack("<4i", len(corners), 0, 0, len(faces)) + floats + np.array(faces, "<i4").tobytes()
+
+
+def test_an_msh_file_is_the_mesh_that_its_numbers_state(load, tmp_path):
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "a.msh").write_bytes(msh())
+    scene = load('<mesh file="a.msh"/>', 'type="mesh" mesh="a"', '<compiler meshdir="meshes"/>')
+    link = scene["b"].spec.base
+    assert_allclose(link.mass, 1000.0)
+    assert_allclose(link.inertial_frame.position, (0.25, 0.5, 0.75))
+
+
+def test_an_msh_file_that_is_cut_off_is_refused(load, tmp_path):
+    (tmp_path / "a.msh").write_bytes(msh()[:-4])
+    with pytest.raises(DescriptionError, match="need 112 bytes; it has 108"):
+        load('<mesh file="a.msh"/>', 'type="mesh" mesh="a"')
+
+
+def test_a_missing_mesh_is_left_out_if_one_wants_that(load):
+    scene = load('<mesh file="no.stl"/>', 'type="mesh" mesh="no"')
+    assert [(one.element, one.consequence) for one in scene.ignored.that_matter] == [
+        ("body/geom", "the shape is missing")
+    ]
+
+
+def surface(scene):
+    return heightfield_surface(scene["b"].spec.base.collisions[0].geometry).vertices
+
+
+def test_heights_begin_at_the_greatest_y_and_fill_the_size(load):
+    field = '<hfield name="h" nrow="2" ncol="3" size="2 1 3 1" elevation="1 2 3 4 5 7"/>'
+    # As MuJoCo 4.0 has them in `hfield_data`.
+    heights = (1.5, 2.0, 3.0, 0.0, 0.5, 1.0)
+    found = surface(load(field, 'type="hfield" hfield="h"'))
+    assert_allclose(found[:, 2], heights, atol=1e-15)
+    assert_allclose(found[0, :2], (-2, -1))
+    assert_allclose(found[-1, :2], (2, 1))
+
+
+def test_a_file_of_heights_begins_at_the_least_y(load, tmp_path):
+    heights = np.array([0, 1, 2, 4], "<f4")
+    (tmp_path / "h.bin").write_bytes(struct.pack("<2i", 2, 2) + heights.tobytes())
+    found = surface(load('<hfield name="h" file="h.bin" size="1 1 8 1"/>', 'type="hfield" hfield="h"'))
+    assert_allclose(found[:, 2], (0, 2, 4, 8))
+
+
+@pytest.mark.parametrize(
+    ("geom", "rgba"),
+    [
+        ('size="1"', (0.5, 0.5, 0.5, 1)),
+        ('size="1" material="red"', (1, 0, 0, 1)),
+        ('size="1" material="red" rgba="0 0 1 1"', (0, 0, 1, 1)),
+    ],
+)
+def test_the_colour_of_a_geom_comes_before_that_of_its_material(load, geom, rgba):
+    scene = load('<material name="red" rgba="1 0 0 1"/>', geom)
+    material = scene["b"].spec.base.visuals[0].material
+    assert material is not None
+    assert material.rgba == rgba

@@ -1,0 +1,153 @@
+"""Keyframes, sites, cameras, options and collisions of MJCF files."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from carom import World
+from carom.errors import DescriptionError
+
+KEYS = """<mujoco><option timestep=".004" gravity="0 0 -1"/><worldbody><body name="arm" pos="0 0
+ 1"><joint name="j"/>
+<geom size=".1" pos=".1 0 0"/><site name="tip" pos=".2 0 0"/><camera name="eye" fovy="30" pos="0 0
+ 1"/></body>
+<body name="ball" pos="3 0 1"><freejoint/><geom size=".1" pos="0 .2 0"/></body></worldbody>
+<keyframe><key name="home" qpos=".5 1 2 3 0 1 0 0" qvel="2 .1 .2 .3 .4 .5 .6"/></keyframe></mujoco>"""
+
+
+@pytest.fixture
+def load(tmp_path):
+    with World() as world:
+
+        def load(text):
+            (tmp_path / "file.xml").write_text(text)
+            return world.load(tmp_path / "file.xml")
+
+        yield load
+
+
+def test_a_keyframe_puts_all_bodies_in_their_places(load):
+    scene = load(KEYS)
+    scene.reset("home")
+    assert scene["arm"].joints["j"].position == 0.5
+    assert scene["arm"].joints["j"].velocity == 2.0
+    base = scene["ball"].links[-1]
+    assert_allclose(base.pose.position, (1, 2, 3), atol=1e-15)
+    assert_allclose(np.abs(base.pose.orientation), (1, 0, 0, 0), atol=1e-15)
+    # The angular velocity is about axes of the body, which is turned by half a turn about x.
+    linear, angular = base.velocity
+    assert_allclose(angular, (0.4, -0.5, -0.6), atol=1e-15)
+    offset = np.array((0.0, -0.2, 0.0))
+    assert_allclose(linear, np.array((0.1, 0.2, 0.3)) + np.cross(angular, offset), atol=1e-15)
+    with pytest.raises(KeyError, match="home"):
+        scene.reset("away")
+
+
+def test_sites_cameras_and_options_have_their_names(load):
+    scene = load(KEYS)
+    assert scene.sites["tip"].body == "arm"
+    assert scene.sites["tip"].frame.position == (0.2, 0.0, 0.0)
+    assert scene.cameras["eye"].field_of_view == 30.0
+    assert scene.world.parameters.time_step != 0.004
+    scene.apply_options()
+    assert scene.world.parameters.time_step == 0.004
+    assert tuple(scene.world.gravity) == (0.0, 0.0, -1.0)
+
+
+def test_a_body_that_is_welded_to_the_world_stays_there_and_one_on_it_moves(load):
+    scene = load(
+        '<mujoco><worldbody><body name="stand" pos="0 0 1"><geom size=".1"/><body name="arm">'
+        '<joint name="j"/><geom size=".1" pos="0 1 0"/></body></body><body name="free"><freejoint/>'
+        '<geom size=".1"/></body></worldbody></mujoco>'
+    )
+    assert [body.fixed_base for body in scene] == [True, False]
+    scene.world.gravity = (-10.0, 0.0, 0.0)
+    scene.world.step(20)
+    assert_allclose(scene["stand"].links[-1].pose.position, (0, 0, 1))
+    assert scene["stand"].joints["j"].position > 0.01
+    assert scene["free"].links[-1].pose.position[0] < -0.01
+
+
+def drops(load, ball, floor, rest=""):
+    """Whether a ball falls through a floor."""
+    scene = load(
+        f'<mujoco><worldbody><geom type="plane" size="1 1 1" {floor}/><body name="b" pos="0 0 .11">'
+        f'<freejoint/><geom size=".1" {ball}/></body></worldbody>{rest}</mujoco>'
+    )
+    scene.world.gravity = (0, 0, -10)
+    scene.world.step(100)
+    return bool(scene["b"].links[-1].pose.position[2] < 0)
+
+
+@pytest.mark.parametrize(
+    ("ball", "floor", "falls"),
+    [
+        ("", "", False),
+        ('contype="2" conaffinity="0"', 'contype="0" conaffinity="2"', False),
+        ('contype="2" conaffinity="4"', 'contype="4" conaffinity="0"', False),
+        ('contype="2" conaffinity="2"', "", True),
+        ('contype="0" conaffinity="0"', "", True),
+    ],
+)
+def test_geoms_collide_if_the_type_of_either_meets_the_affinity_of_the_other(load, ball, floor, falls):
+    assert drops(load, ball, floor) is falls
+
+
+def test_excluded_bodies_do_not_collide(load):
+    assert drops(load, "", "", '<contact><exclude body1="b" body2="world"/></contact>')
+
+
+def overlapping(joint, flag=""):
+    return (
+        f'<mujoco>{flag}<worldbody><body name="a"><freejoint/><geom size=".2"/><body name="c" pos=".1 0 0">'
+        f'<joint type="slide" axis="1 0 0"/><geom size=".2"/>{joint}</body></body></worldbody></mujoco>'
+    )
+
+
+def test_bodies_that_a_joint_connects_do_not_collide_and_others_of_the_tree_do(load):
+    deep = '<body name="d"><joint type="slide" axis="1 0 0"/><geom size=".1" contype="2"/></body>'
+    scene = load(overlapping(""))
+    scene.world.step(5)
+    assert_allclose(scene[0].joints[0].position, 0.0, atol=1e-12)
+    scene = load(overlapping("", '<option><flag filterparent="disable"/></option>'))
+    scene.world.step(5)
+    assert abs(scene[0].joints[0].position) > 1e-6
+    scene = load(overlapping(deep))
+    scene.world.step(5)
+    assert abs(scene[0].joints[1].position) > 1e-6
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        ('<body><joint/><freejoint/><geom size="1"/></body>', "free joint"),
+        ('<body><inertial pos="0 0 0" mass="1" diaginertia="1 1 9"/><freejoint/></body>', "balanceinertia"),
+        ('<geom type="mesh" mesh="no"/>', "no mesh 'no'"),
+        ('<geom type="box" size="1 1"/>', "needs 3 positive numbers"),
+        ('<body childclass="no"><geom size="1"/></body>', "no default class"),
+        ('<attach model="no"/>', "no model 'no'"),
+        ('<body name="a"/><body name="a"/>', "taken already"),
+        ('<replicate count="0"/>', "count=0"),
+    ],
+)
+def test_mistakes_are_named(load, text, problem):
+    with pytest.raises(DescriptionError, match=problem):
+        load(f"<mujoco><worldbody>{text}</worldbody></mujoco>")
+
+
+def test_models_are_attached_with_their_own_settings(tmp_path):
+    (tmp_path / "part.xml").write_text(
+        '<mujoco><compiler angle="radian"/><default><geom density="10"/></default><worldbody>'
+        '<body name="arm" pos="1 0 0"><joint name="j" range="-1 1"/><geom size="1"/></body></worldbody>'
+        "</mujoco>"
+    )
+    (tmp_path / "whole.xml").write_text(
+        '<mujoco><asset><model name="p" file="part.xml"/></asset><worldbody><frame pos="0 0 1">'
+        '<attach model="p" '
+        'body="arm" prefix="left-"/></frame></worldbody></mujoco>'
+    )
+    with World() as world:
+        (arm,) = world.load(tmp_path / "whole.xml", strict=True)
+        assert arm.joints["left-j"].limits == (-1.0, 1.0)
+        assert_allclose(arm.links["left-arm"].mass, 41.8879020478639)
+        assert_allclose(arm.links["left-arm"].pose.position, (1, 0, 1))
