@@ -36,7 +36,9 @@ def again(viewer: Viewer) -> Callable[[], None]:
     def start() -> None:
         p.connect(p.GUI, options=f"--port={port}")
         p.createMultiBody(1, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3))
-        p.createMultiBody(1, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3), basePosition=[1, 0, 0])
+        p.createMultiBody(
+            1, p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1] * 3), basePosition=[1, 0, 0]
+        )
 
     return start
 
