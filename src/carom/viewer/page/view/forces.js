@@ -41,7 +41,7 @@ export function addContacts(overlays) {
 
 /** The signs of a contact's force for the bodies that move: 1 for the first body of the pair, -1 for the other. */
 function waysOf(scene, { a, b }) {
-  const moves = ([body, link]) => scene.bodies.get(body)?.links[link + 1]?.moves;
+  const moves = ([body, link]) => scene.bodies.get(body)?.links[link]?.moves;
   return [moves(a) && 1, moves(b) && -1].filter(Boolean);
 }
 
