@@ -10,7 +10,8 @@ from carom.viewer.viewer import Viewer
 
 DATA = pybullet_data.getDataPath()
 GREEN, YELLOW, RED, BLUE = [60, 186, 84], [244, 194, 13], [219, 50, 54], [72, 133, 237]
-ROBOT = """<robot name="r"><link name="a">{body}<collision>{box}</collision></link><link name="b">{body}</link>
+ROBOT = """<robot name="r"><link name="a">{body}<collision>{box}</collision></link>
+<link name="b">{body}</link>
 <link name="c">{body}<visual>{box}</visual></link>
 <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
 <joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint></robot>"""

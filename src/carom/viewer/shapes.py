@@ -165,7 +165,8 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
 def _colour_in_turn(body: Body, link: int) -> Rgba:
     """The colour that PyBullet's window gives to a link without visual shapes.
 
-    Every link that is loaded takes the next of four colours, whether it needs one or not; the first is yellow.
+    Every link that is loaded takes the next of four colours, whether it needs one or not.
+    The first is yellow.
     """
     return WINDOW_COLOURS[(body.links_before + link - BASE + 1) % len(WINDOW_COLOURS)]
 
