@@ -125,6 +125,24 @@ def test_keys_are_down_triggered_and_released(page: Page, key: str, code: int):
     assert p.getKeyboardEvents() == {}
 
 
+def test_a_clicked_slider_does_not_keep_the_keyboard(page: Page):
+    gain = p.addUserDebugParameter("gain", 0, 10, 2)
+    button = p.addUserDebugParameter("press", 1, 0, 0)
+    slider = page.page.get_by_label("gain", exact=True)
+    slider.click()
+    wait_for(lambda: p.readUserDebugParameter(gain) == pytest.approx(5, abs=0.5), page)
+    value = p.readUserDebugParameter(gain)
+    page.page.keyboard.press("ArrowRight")
+    assert p.B3G_RIGHT_ARROW in key_events(page)
+    page.page.get_by_role("button", name="press").click()
+    wait_for(lambda: p.readUserDebugParameter(button) == 1, page)
+    p.getKeyboardEvents()
+    page.page.keyboard.press(" ")
+    assert ord(" ") in key_events(page)
+    page.page.wait_for_timeout(100)
+    assert (p.readUserDebugParameter(gain), p.readUserDebugParameter(button)) == (value, 1)
+
+
 def test_the_mouse_is_told_to_the_script(page: Page):
     seen: list[tuple] = []
     wait_for(lambda: p.getDebugVisualizerCamera()[:2] == (WIDTH, HEIGHT), page)

@@ -116,15 +116,26 @@ def test_contacts_forces_and_cones_are_drawn(page: Page):
     until_lines(page, 4 * 4)
     page.page.locator("input[name=contacts]").uncheck()
     show(page, "forces")
-    until_lines(page, 4 * 5)
-    page.page.get_by_text("force: 1 m =").wait_for()
+    page.until("app.overlays.solids.count === 4")
     scale = page.page.evaluate("app.overlays.scales.force")
     total = page.page.evaluate("app.readings.contacts.reduce((sum, c) => sum + c.pressure, 0)")
     weight = p.getDynamicsInfo(1, -1)[0] * 10
     assert total == pytest.approx(weight, rel=0.02)
     assert scale > 0
+    # The plane is the first body of each pair; the arrows are those of the cube, which moves.
+    starts_and_vectors = "[...app.overlays.solids.used]"
+    solids = page.page.evaluate(starts_and_vectors)
+    assert all(solids[at + 5] > 0 for at in range(0, len(solids), 13))
+    lengths = sum(solids[at + 5] for at in range(0, len(solids), 13))
+    assert lengths * scale == pytest.approx(weight, rel=0.02)
+    page.page.locator("#legend .force").wait_for()
+    bar = page.page.evaluate("document.querySelector('#legend .force i').offsetWidth")
+    told = float(page.page.locator("#legend .force").inner_text().split()[0])
+    metre = page.page.evaluate("app.camera.height / (2 * app.camera.distance)")
+    assert bar == pytest.approx(told / scale * metre, abs=1)
     show(page, "cones")
-    until_lines(page, 4 * 5 + 4 * 20)
+    page.until("app.overlays.solids.count === 8 && app.overlays.solids.opaque === 4")
+    until_lines(page, 4 * 16)
 
 
 def test_joints_and_masses_are_drawn(page: Page, arm: int):
@@ -138,10 +149,29 @@ def test_joints_and_masses_are_drawn(page: Page, arm: int):
     page.until("document.querySelectorAll('#labels .reading:not([hidden])').length === 9")
     p.resetJointState(arm, 1, math.radians(30))
     page.page.get_by_text("30.0°").first.wait_for()
-    for name in ("torques", "limits"):
+    for name, drawn in (("torques", "solids"), ("limits", "lines")):
         show(page, name)
-        page.until("app.overlays.lines.count > 20")
+        page.until(f"app.overlays.{drawn}.count > 20")
         page.page.locator(f"input[name={name}]").uncheck()
+
+
+def test_forces_are_seen_through_the_bodies_they_are_in(page: Page):
+    p.setGravity(0, 0, -10)
+    p.loadURDF(f"{DATA}/plane.urdf")
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.5, 0.5, 0.5])
+    p.createMultiBody(20, box, basePosition=[0, 0, 0.5])
+    for _ in range(60):
+        p.stepSimulation()
+    p.resetDebugVisualizerCamera(2.5, 30, -20, [0, 0, 0.5])
+    page.until("app.scene.bodies.size === 2 && app.camera.distance === 2.5")
+
+    def red(picture):
+        return ((picture[..., 0] > 130) & (picture[..., 1] < 80) & (picture[..., 2] < 70)).sum()
+
+    p.changeVisualShape(1, -1, rgbaColor=[1, 1, 1, 1])
+    page.wait_for_picture(lambda picture: red(picture) == 0)
+    show(page, "forces")
+    page.wait_for_picture(lambda picture: red(picture) > 300)
 
 
 def test_masses_of_removed_bodies_are_forgotten(page: Page, arm: int):

@@ -56,13 +56,17 @@ class Collision:
 
 @record
 class Visual:
-    """A visual shape; `frame` is its pose in the link frame."""
+    """A visual shape; `frame` is its pose in the link frame.
+
+    It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape.
+    """
 
     geometry: Geometry
     frame: Pose = IDENTITY
     name: str = ""
     material: Material | None = None
     user_data: dict[str, str] = field(default_factory=dict)
+    stands_in: bool = False
 
 
 @record

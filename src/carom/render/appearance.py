@@ -35,12 +35,13 @@ WHITE: Rgba = (1.0, 1.0, 1.0, 1.0)
 GREY: Rgba = (0.8, 0.8, 0.8, 1.0)
 """Colour of a material without a colour."""
 
-_GOOGLY: tuple[Rgba, ...] = (
+WINDOW_COLOURS: tuple[Rgba, ...] = (
     (60 / 256, 186 / 256, 84 / 256, 1.0),
     (244 / 256, 194 / 256, 13 / 256, 1.0),
     (219 / 256, 50 / 256, 54 / 256, 1.0),
     (72 / 256, 133 / 256, 237 / 256, 1.0),
 )
+"""Green, yellow, red and blue, for shapes without a colour."""
 
 
 @record(frozen=False)
@@ -56,6 +57,8 @@ class ShapeLook:
         specular: Present colour of its highlights.
         texture: Number of its present texture, -1 if it has none.
         two_sided: Whether its back faces are drawn, too.
+        coloured: Whether a file or a script has said its colour. PyBullet's window draws other shapes in four
+            colours in turn; its images, and `rgba`, show them white.
     """
 
     geometry: Geometry
@@ -65,6 +68,7 @@ class ShapeLook:
     specular: tuple[float, float, float] = (1.0, 1.0, 1.0)
     texture: int = NO_TEXTURE
     two_sided: bool = False
+    coloured: bool = True
 
 
 @record(frozen=False)
@@ -108,6 +112,7 @@ class Appearance:
             self.textures.image(texture)
         for look in looks if shape is None else [looks[shape]]:
             look.rgba = look.rgba if rgba is None else rgba
+            look.coloured = look.coloured or rgba is not None
             look.specular = look.specular if specular is None else specular
             look.texture = look.texture if texture is None else texture
             look.two_sided = look.two_sided if two_sided is None else two_sided
@@ -149,12 +154,16 @@ class Appearance:
         # A link without visual shapes is drawn with its collision shapes.
         if not spec.visuals:
             undefined = _undefined_colour(link, flags)
-            return [self._look(shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions]
+            looks = [self._look(shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions]
+            for look in looks:
+                look.coloured = undefined is not WHITE
+            return looks
         looks = []
         for visual in spec.visuals:
             look = self._look(visual.geometry, visual.frame, _colour(visual.material, link, flags), flags)
             if visual.material is not None and visual.material.specular is not None:
                 look.specular = visual.material.specular
+            look.coloured = not visual.stands_in or look.rgba is not WHITE
             looks.append(look)
         return looks
 
@@ -192,7 +201,7 @@ def _colour(material: Material | None, link: int, flags: LoadFlags) -> Rgba:
 
 def _undefined_colour(link: int, flags: LoadFlags) -> Rgba:
     if LoadFlags.GOOGLY_UNDEFINED_COLORS in flags:
-        return _GOOGLY[max(link, 0) % len(_GOOGLY)]
+        return WINDOW_COLOURS[max(link, 0) % len(WINDOW_COLOURS)]
     return WHITE
 
 

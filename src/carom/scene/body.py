@@ -61,6 +61,7 @@ class Body:
         fixed_base: The base is fixed in the world.
         derived: Data that algorithms cache until masses or inertias change, or the base is fixed or freed.
         first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
+        links_before: Number of links that the world had loaded before this body.
         first_position: Row of the first coordinate in `World.position`.
         first_velocity: Row of the first coordinate in `World.velocity`.
         position_index: Row of the first position of each joint, -1 for fixed joints.
@@ -85,6 +86,7 @@ class Body:
         self.position_index: tuple[int, ...] = ()
         self.velocity_index: tuple[int, ...] = ()
         self.fixed_base: bool = spec.fixed_base
+        self.links_before = 0
         self._encoded_names: tuple[bytes, bytes] | None = None
         self.derived: dict[Any, Any] = {}
         self._dynamics = mine.dynamics if outline is None else [it.copy() for it in mine.dynamics]

@@ -38,11 +38,13 @@ def note_additions(world: World, undo: Undo) -> None:
     ):
         undo.note(part.way_back())
     count, free_ids, next_id = len(world.bodies), world.free_ids, world.next_id
+    links_loaded = world.links_loaded
 
     def forget() -> None:
         while len(world.bodies) > count:
             world.listing.pop(world.bodies.popitem()[0], None)
         world.free_ids, world.next_id = free_ids, next_id
+        world.links_loaded = links_loaded
 
     undo.note(forget)
 
@@ -82,6 +84,8 @@ def append(world: World, spec: BodySpec, pose: Pose) -> Body:
         if spec.soft is not None:
             world.contact_arrays.soft.append(spec.soft, rows)
     world.free_ids, world.next_id = free_ids, max(world.next_id, body_id + 1)
+    body.links_before = world.links_loaded
+    world.links_loaded += 1 + body.joint_count
     world.bodies[body_id] = world.listing[body_id] = body
     world.constraints.add_body(body)
     world.user_data.add_stated(body_id, spec)

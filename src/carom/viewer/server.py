@@ -261,7 +261,7 @@ class PageServer:
         """Handles a message from a page."""
         try:
             self._receive(page, received(text))
-        except (KeyError, TypeError, ValueError) as problem:
+        except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as problem:
             _log.debug("A page sent an invalid message: %s", problem)
 
     async def _talk(self, connection: ServerConnection) -> None:

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description import Box, Cylinder, Geometry, Plane, Pose, Sphere
+from carom.description.link import Rgba
 from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.model.body_spec import BASE
-from carom.render.appearance import Appearance, ShapeLook
+from carom.render.appearance import WINDOW_COLOURS, Appearance, ShapeLook
 from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
@@ -145,6 +146,8 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
             seen = replace(look, mesh=surface_mesh(body)) if isinstance(body, SoftBody) else look
+            if not look.coloured and look.texture == NO_TEXTURE:
+                seen = replace(seen, rgba=_colour_in_turn(body, link))
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
@@ -157,6 +160,15 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         ],
         "shapes": shapes,
     }
+
+
+def _colour_in_turn(body: Body, link: int) -> Rgba:
+    """The colour that PyBullet's window gives to a link without visual shapes.
+
+    Every link that is loaded takes the next of four colours, whether it needs one or not.
+    The first is yellow.
+    """
+    return WINDOW_COLOURS[(body.links_before + link - BASE + 1) % len(WINDOW_COLOURS)]
 
 
 def _link(body: Body, link: int) -> dict[str, Any]:

@@ -105,7 +105,7 @@ class Viewer:
         self.on_pause: Callable[[bool], None] = lambda paused: None
         self.on_profile: Callable[[bool], None] = lambda running: None
         self._board = Board()
-        self._board.put("title", {"type": "title", "title": title})
+        self._board.put("title", {"type": "title", "title": title, "run": fresh_token()})
         self.controls: Controls = Controls(self._board)
         self.drawings: Drawings = Drawings(self._board)
         self._handles = Handles(self._board)

@@ -30,6 +30,7 @@ def copy_world(world: World) -> World:
     other.user_constraints = deepcopy(world.user_constraints, memo)
     other.user_data = deepcopy(world.user_data, memo)
     other.free_ids, other.next_id = world.free_ids.copy(), world.next_id
+    other.links_loaded = world.links_loaded
     other.time, other.unspent_time = world.time, world.unspent_time
     copy_appearance(world, other)
     return other

@@ -56,6 +56,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
     Attributes:
         parameters: Parameters of the engine; call `apply_parameters` after a change.
         bodies: The bodies by their numbers, in the order they were added.
+        links_loaded: Number of links loaded since the world was empty, those of removed bodies included.
         listing: The same in the order in which PyBullet counts them: the last one takes the place of one that
             is removed.
         user_data: Texts attached to bodies.
@@ -96,6 +97,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
         self.user_data: UserData = UserData()
         self.free_ids: list[int] = []
         self.next_id: int = 0
+        self.links_loaded: int = 0
         self.unspent_time = 0.0
 
     def list_bodies(self, listing: dict[int, Body]) -> None:

@@ -226,7 +226,7 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
 
 
 def _placed(geometry: Geometry, pose: Pose) -> CollisionShape:
-    return CollisionShape((Collision(geometry, pose),), (Visual(geometry, pose),))
+    return CollisionShape((Collision(geometry, pose),), (Visual(geometry, pose, stands_in=True),))
 
 
 def _mesh_from_data(
@@ -263,7 +263,7 @@ def _mesh_from_file(
         if is_part and isinstance(geometry, TriangleMesh):
             geometry = replace(geometry, margin=_MARGIN)
         collisions.append(Collision(geometry, pose))
-    return CollisionShape(tuple(collisions), (Visual(replace(mesh, concave=False), pose),))
+    return CollisionShape(tuple(collisions), (Visual(replace(mesh, concave=False), pose, stands_in=True),))
 
 
 def _heights(client: Client, name: str | None, data: Any, rows: Any, columns: Any) -> NDArray[np.float64]:

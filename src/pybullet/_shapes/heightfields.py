@@ -108,7 +108,7 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
         fail(problem, f"The heightfield has {rows} x {columns} points, not {new_rows} x {new_columns}.")
     new = Heightfield(heights, old.scale, old.middle)
     shape.collisions = (Collision(new, shape.collisions[0].frame),)
-    shape.visuals = (Visual(new, shape.visuals[0].frame),)
+    shape.visuals = (Visual(new, shape.visuals[0].frame, stands_in=True),)
     with client.lock:
         _renew_bodies(client, old, new)
 

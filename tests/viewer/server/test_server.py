@@ -211,6 +211,9 @@ def test_nonsense_from_a_page_does_no_harm(viewer: Viewer):
             '{"type": "what"}',
             '{"type": "slider"}',
             b"\xff\x00",
+            "[" * 5000,
+            '{"type": "key", "key": ' + "[" * 5000,
+            '{"type": "size", "width": 1e999, "height": 1}',
         ):
             page.send_raw(text)
         for value in ("x", None, [], float("nan"), float("inf")):

@@ -9,6 +9,7 @@ import { Help } from "./panel/help.js";
 import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
 import { Labels, labelJoints, labelLinks } from "./view/labels.js";
+import { Legend } from "./panel/legend.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
@@ -47,13 +48,14 @@ export class App {
     this.drawings = new Drawings(this.renderer.gl, labels);
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
-    this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles);
+    this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
     this.panel = new Panel(send, this.options);
     this.toggles = new Toggles(this.options, () => this.optionsChanged());
     this.timeline = new Timeline(this.player, send);
     this.plots = new Plots(this.scene, this.history, this.player, () => this.tellWants());
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
+    this.legend = new Legend();
     this.previews = new Previews();
     this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), say);
     this.help = new Help();
@@ -182,6 +184,7 @@ export class App {
     this.scene.place(header, payload);
     this.readings.take(header, payload);
     this.panel.showTime(header);
+    this.overlays.time = header.time;
     if (document.getElementById("bodies").open) this.bodies.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.told) this.awaited = this.told = header.picture;
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.undecided = false;
@@ -295,7 +298,7 @@ export class App {
     this.viewpoint.follow();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
     const lines = this.overlays.draw(drawings, this.grasp.line(), named);
-    this.renderer.draw(scene, camera, options, { lines, clouds: drawings.clouds, signs: drawings.signs });
+    this.renderer.draw(scene, camera, options, { lines, solids: this.overlays.solids, clouds: drawings.clouds, signs: drawings.signs });
     drawings.placeLabels(scene, camera);
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
@@ -303,10 +306,17 @@ export class App {
     if (options.linkNames) labelLinks(this.labels, camera, scene);
     this.handles.addLabels(this.labels);
     this.labels.end();
-    this.toggles.showScales(this.overlays.scales);
+    this.legend.show(this.shownScales(), camera.height / (2 * camera.distance));
     this.viewpoint.show();
     this.plots.draw();
     this.saving.drawn();
+  }
+
+  /** Scales of the arrows that are drawn; 0 for those that are not. */
+  shownScales() {
+    const { options, overlays } = this;
+    const { force, torque } = overlays.scales;
+    return { force: options.forces || options.cones ? force : 0, torque: options.torques ? torque : 0 };
   }
 
   underMouse() {

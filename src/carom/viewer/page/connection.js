@@ -50,6 +50,8 @@ export class Connection {
     const name = Math.random().toString(36).slice(2);
     let number = null;
     this.untold = [];
+    /** The name under which the page polls now; null to stop. */
+    this.asked = name;
     try {
       for (;;) {
         const answer = await fetch(`${this.folder}poll${location.search}&page=${name}${this.takeUntold()}`, { cache: "no-store" });
@@ -59,6 +61,7 @@ export class Connection {
         const known = view.getUint32(0, true);
         if (known !== number) this.changed(true);
         number = known;
+        if (this.asked === null) break;
         for (let at = 4; at < buffer.byteLength; ) {
           const length = view.getUint32(at, true);
           this.receive(...decoded(buffer.slice(at + 4, at + 4 + length)));
@@ -83,6 +86,12 @@ export class Connection {
       this.untold.shift();
     }
     return text;
+  }
+
+  /** Closes the connection; it is opened again, and the simulation sends everything anew. */
+  reopen() {
+    this.asked = null;
+    this.socket.close();
   }
 
   send(message) {

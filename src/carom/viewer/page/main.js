@@ -2,14 +2,12 @@
 
 import { App } from "./app.js";
 import { Connection } from "./connection.js";
+import { Notices } from "./panel/notices.js";
 import { playRecording } from "./replay.js";
+import { Runs } from "./runs.js";
 
-const notice = document.getElementById("notice");
-
-function say(text) {
-  notice.textContent = text ?? "";
-  notice.hidden = !text;
-}
+const notices = new Notices();
+const say = (text, lasts = false) => notices.say(text, lasts);
 
 /**
  * Reloads the page after a lost WebGL context, because the restored context is empty. Browsers drop the
@@ -19,7 +17,7 @@ function surviveLostGraphics() {
   const canvas = document.getElementById("view");
   canvas.addEventListener("webglcontextlost", (event) => {
     event.preventDefault();
-    say("The browser has lost the graphics context. Waiting for it to be restored…");
+    say("The browser has lost the graphics context. Waiting for it to be restored…", true);
   });
   canvas.addEventListener("webglcontextrestored", () => location.reload());
 }
@@ -27,12 +25,10 @@ function surviveLostGraphics() {
 function watch() {
   const send = (message) => connection.send(message);
   const app = (window.app = new App(send, say));
+  const runs = new Runs(app, notices, () => connection.reopen());
   const connection = new Connection(
-    (header, payload) => app.receive(header, payload),
-    (connected) => {
-      say(connected ? null : "The simulation has ended. Waiting for the next one…");
-      if (connected) app.begin();
-    },
+    (header, payload) => runs.receive(header, payload),
+    (connected) => (connected ? app.saving.prepare() : runs.leave()),
   );
 }
 
@@ -44,6 +40,6 @@ async function start() {
 }
 
 start().catch((error) => {
-  say(error.message);
+  say(error.message, true);
   throw error;
 });

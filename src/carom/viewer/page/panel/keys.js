@@ -14,6 +14,8 @@ const SHORTCUTS = {
 };
 /** Keys whose default action in the browser is suppressed, because scripts use them. */
 const KEPT_FROM_THE_BROWSER = /^(Arrow.*|Page.*|Home|End|Tab|Backspace| |F([1-46-9]|1[03-5]))$/;
+/** Controls that are done with once they are clicked. */
+const CLICKED = "button, input[type=range], input[type=checkbox], summary";
 const TYPING = "input:not([type=range]):not([type=checkbox]), textarea, select";
 
 export class Keys {
@@ -30,6 +32,9 @@ export class Keys {
     };
     window.addEventListener("keydown", (event) => this.down(event));
     window.addEventListener("keyup", (event) => this.up(event));
+    window.addEventListener("pointerup", () => this.giveBack());
+    // A click by the keyboard leaves the focus to who walks through the panel with it.
+    window.addEventListener("click", (event) => event.detail > 0 && this.giveBack());
     // A page without the focus gets no key releases.
     window.addEventListener("blur", () => this.leave());
   }
@@ -58,6 +63,11 @@ export class Keys {
   up(event) {
     this.app.send({ type: "key", key: event.key, code: event.code, down: false });
     if (event.key === "p") this.app.send({ type: "profile", running: false });
+  }
+
+  /** What was clicked does not keep the keyboard: the script alone gets the keys, as in PyBullet's window. */
+  giveBack() {
+    if (document.activeElement?.matches(CLICKED)) this.app.canvas.focus({ preventScroll: true });
   }
 
   leave() {

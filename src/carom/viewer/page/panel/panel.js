@@ -72,8 +72,16 @@ export class Panel {
 
   addSlider(message) {
     const known = this.controls.get(message.slider);
-    if (known) known.show(message);
-    else this.controls.set(message.slider, this.makeControl(message));
+    if (known) return known.show(message);
+    const control = this.makeControl(message);
+    this.insert(message.slider, control.element);
+    this.controls.set(message.slider, control);
+  }
+
+  /** Puts a control where its number belongs: they arrive in the order in which they were last moved. */
+  insert(number, element) {
+    const later = [...this.controls.keys()].filter((other) => other > number);
+    this.sliders.insertBefore(element, later.length ? this.controls.get(Math.min(...later)).element : null);
   }
 
   removeSlider({ slider }) {
@@ -110,7 +118,6 @@ export class Panel {
     label.append(...(className === "check" ? [control, message.name] : [message.name, control]));
     const element = Object.assign(document.createElement("div"), { className: "slider" });
     element.append(label);
-    this.sliders.append(element);
     show(message);
     return { element, show };
   }
@@ -120,7 +127,6 @@ export class Panel {
     const button = Object.assign(document.createElement("button"), { textContent: name });
     button.addEventListener("click", () => this.send({ type: "press", slider }));
     element.append(button);
-    this.sliders.append(element);
     return { element, show() {} };
   }
 
@@ -128,7 +134,6 @@ export class Panel {
     const control = makeSlider(`slider-${message.slider}`, message.name, (value) => {
       this.send({ type: "slider", slider: message.slider, value });
     });
-    this.sliders.append(control.element);
     control.show(message);
     return control;
   }

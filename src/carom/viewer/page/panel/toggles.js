@@ -49,8 +49,6 @@ export class Toggles {
       for (const [name, text, key] of switches) group.append(this.makeSwitch(name, text, key, optionsChanged));
       root.append(group);
     }
-    this.scale = Object.assign(document.createElement("small"), { id: "scale" });
-    root.append(this.scale);
     this.show();
   }
 
@@ -69,14 +67,5 @@ export class Toggles {
 
   show() {
     for (const [name, box] of this.boxes) box.checked = this.options[name];
-  }
-
-  /** Shows the scales of arrows: force and torque per metre of length. */
-  showScales({ force, torque }) {
-    const parts = [];
-    if ((this.options.forces || this.options.cones) && force) parts.push(`force: 1 m = ${force} N`);
-    if (this.options.torques && torque) parts.push(`torque: 1 m = ${torque} N·m or N`);
-    const text = parts.join(", ");
-    if (this.scale.textContent !== text) this.scale.textContent = text;
   }
 }

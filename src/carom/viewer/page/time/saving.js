@@ -21,6 +21,8 @@ export class Saving {
   constructor(canvas, history, title, facts, say) {
     Object.assign(this, { canvas, history, title, facts, say });
     this.pictureWanted = false;
+    /** The page that replays a history, without one; null until it has come. */
+    this.player = null;
     this.film = null;
     this.filmButton = document.getElementById("film");
     document.getElementById("picture").addEventListener("click", () => this.askForPicture());
@@ -82,14 +84,25 @@ export class Saving {
     this.changed();
   }
 
+  /** Fetches the page that replays a history, while there is a server: scripts end before their users save. */
+  async prepare() {
+    if (this.player !== null) return;
+    try {
+      const response = await fetch(`replay.html${location.search}`);
+      if (response.ok) this.player ??= await response.text();
+    } catch {
+      // `saveReplay` asks once more, and says what is wrong.
+    }
+  }
+
   /** Saves a page that replays the history, without a network. */
   async saveReplay() {
     if (this.history.count === 0) return;
-    this.say("Saving…");
+    this.say("Saving…", true);
     try {
-      const response = await fetch("replay.html");
-      if (!response.ok) throw new Error(`the server answered ${response.status}`);
-      const page = await response.text();
+      await this.prepare();
+      if (this.player === null) throw new Error("there is no server that has the player");
+      const page = this.player;
       const bytes = await encoded(this.history, { title: this.title(), ...this.facts() }, removalOf);
       download(new Blob([page.replace(PLACE, () => base64(bytes))], { type: "text/html" }), `${this.title()}.html`);
       this.say(null);

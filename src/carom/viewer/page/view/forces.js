@@ -14,46 +14,58 @@ const POINT_SIZE = 0.012;
 const NORMAL_LENGTH = 0.06;
 const AXIS_LENGTH = 0.12;
 const ARC_RADIUS = 0.08;
-/** Maximum length of an arrow [m]. */
-const LONGEST = 0.4;
+/** Radius of a torque's arc, as a share of the camera's distance. */
+const ARC_SHARE = 0.06;
 const CONE_LINES = 16;
+const CONE_ALPHA = 0.3;
 
-/** Adds contact points, their forces and their friction cones. */
+/** Adds contact points, their forces and their friction cones, on the bodies that move. */
 export function addContacts(overlays) {
-  const { lines, options, readings, scales } = overlays;
+  const { lines, solids, options, readings, scales, thickness } = overlays;
   if (!options.contacts && !options.forces && !options.cones) return;
-  for (const contact of readings.contacts) {
-    const { point, normal, pressure, friction, distance } = contact;
+  const forces = readings.contacts.map(({ normal, pressure, friction }) => add(scale(normal, pressure), friction));
+  if (options.forces || options.cones) overlays.fit("force", Math.max(0, ...forces.map((force) => Math.hypot(...force))));
+  readings.contacts.forEach((contact, index) => {
+    const { point, normal, pressure, distance } = contact;
     if (options.contacts) {
       lines.star(point, POINT_SIZE, distance > 0 ? APART : POINT, 2.5);
       lines.line(point, add(point, scale(normal, NORMAL_LENGTH)), distance > 0 ? APART : POINT, 1.5);
     }
-    const force = add(scale(normal, pressure), friction);
-    scales.force = Math.max(scales.force, niceScale(Math.hypot(...force)));
-    if (options.forces && scales.force > 0) lines.arrow(point, scale(force, 1 / scales.force), FORCE);
-    if (options.cones && pressure > 0) addCone(lines, contact, pressure / scales.force);
-  }
+    if (!(scales.force > 0)) return;
+    for (const way of waysOf(overlays.scene, contact)) {
+      if (options.forces) solids.arrow(point, scale(forces[index], way / scales.force), FORCE, thickness);
+      if (options.cones && pressure > 0) addCone(overlays, contact, (way * pressure) / scales.force);
+    }
+  });
+}
+
+/** The signs of a contact's force for the bodies that move: 1 for the first body of the pair, -1 for the other. */
+function waysOf(scene, { a, b }) {
+  const moves = ([body, link]) => scene.bodies.get(body)?.links[link]?.moves;
+  return [moves(a) && 1, moves(b) && -1].filter(Boolean);
 }
 
 /** Adds a friction cone: a contact sticks while its force is inside, and slides at the edge of the cone. */
-function addCone(lines, { point, normal, coefficient }, height) {
+function addCone({ lines, solids }, { point, normal, coefficient }, height) {
   const [side, other] = across(normal);
   const centre = add(point, scale(normal, height));
-  const radius = height * coefficient;
+  const radius = Math.abs(height) * coefficient;
   const rim = (i) => {
     const angle = (2 * Math.PI * i) / CONE_LINES;
     return add(centre, add(scale(side, radius * Math.cos(angle)), scale(other, radius * Math.sin(angle))));
   };
-  for (let i = 0; i < CONE_LINES; i++) {
-    lines.line(rim(i), rim(i + 1), CONE, 1);
-    if (i % 4 === 0) lines.line(point, rim(i), CONE, 1);
-  }
+  solids.cone(point, scale(normal, height), radius, CONE, CONE_ALPHA);
+  for (let i = 0; i < CONE_LINES; i++) lines.line(rim(i), rim(i + 1), CONE, 1.5);
 }
 
 /** Adds the axes, torques and limits of joints. */
 export function addJoints(overlays) {
   const { options } = overlays;
   if (!options.axes && !options.torques && !options.limits) return;
+  if (options.torques) {
+    const torques = [...overlays.readings.joints.values()].map(({ torque }) => Math.abs(torque));
+    overlays.fit("torque", Math.max(0, ...torques.filter(Number.isFinite)));
+  }
   overlays.eachLink((body, index, link) => {
     if (!link.axis || !/revolute|continuous|prismatic/.test(link.kind)) return;
     const pose = overlays.scene.linkPose(body.body, index);
@@ -72,20 +84,17 @@ function addAxis(lines, origin, axis) {
 }
 
 /** Adds the force of a prismatic joint as an arrow along its axis, a torque as an arc about the axis. */
-function addTorque({ lines, scales }, origin, axis, torque, kind) {
-  scales.torque = Math.max(scales.torque, niceScale(Math.abs(torque)));
-  if (!(scales.torque > 0)) return;
+function addTorque({ solids, scales, thickness, reach }, origin, axis, torque, kind) {
+  if (!(scales.torque > 0) || torque === 0) return;
+  const length = torque / scales.torque;
   if (kind === "prismatic") {
-    lines.arrow(origin, scale(axis, torque / scales.torque), TORQUE, 3);
+    solids.arrow(origin, scale(axis, length), TORQUE, thickness);
     return;
   }
-  const angle = ((torque / scales.torque) * 1.5 * Math.PI) / LONGEST;
   const [zero] = across(axis);
-  lines.arc(origin, axis, zero, ARC_RADIUS, 0, angle, TORQUE, 3);
-  const other = cross(axis, zero);
-  const tip = add(origin, add(scale(zero, ARC_RADIUS * Math.cos(angle)), scale(other, ARC_RADIUS * Math.sin(angle))));
-  const onward = add(scale(zero, -Math.sin(angle)), scale(other, Math.cos(angle)));
-  lines.arrow(tip, scale(onward, Math.sign(angle) * 0.04), TORQUE, 3);
+  const radius = ARC_SHARE * reach;
+  // The arc is as long as an arrow would be.
+  solids.arc(origin, axis, zero, radius, length / radius, TORQUE, thickness);
 }
 
 /** Adds the range of motion of a joint, relative to its present position. */
@@ -108,12 +117,4 @@ function addLimits(lines, pose, axis, { kind, limits: [lower, upper] }, position
     const tip = add(scale(zero, ARC_RADIUS * Math.cos(angle)), scale(other, ARC_RADIUS * Math.sin(angle)));
     lines.line(origin, add(origin, tip), colour, 2);
   }
-}
-
-/** The smallest scale of 1, 2, 5, 10, 20... [N or N m per metre] for which an arrow is not too long. */
-function niceScale(amount) {
-  if (!(amount > 0) || !Number.isFinite(amount)) return 0;
-  const wanted = amount / LONGEST;
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  return power * [1, 2, 5, 10].find((step) => step * power >= wanted * (1 - 1e-9));
 }

@@ -2,8 +2,10 @@
 
 import { add, scale, turned } from "./maths.js";
 import { boundsOfBody, boundsOfLink } from "./bounds.js";
+import { ArrowScale } from "./arrow_scale.js";
 import { addContacts, addJoints } from "./forces.js";
 import { Lines } from "./lines.js";
+import { Solids } from "./solids.js";
 
 const AXES = [
   [1, 0, 0],
@@ -15,6 +17,8 @@ const AXIS_COLOURS = [
   [0.13, 0.62, 0.22],
   [0.16, 0.36, 0.86],
 ];
+/** Radius of arrows, as a share of the camera's distance. */
+const THICKNESS = 0.007;
 const FRAME_LENGTH = 0.1;
 const PULL = [0.95, 0.62, 0.1];
 const BOUNDS = [0.9, 0.45, 0.1];
@@ -30,9 +34,11 @@ const BONE = [0.95, 0.75, 0.15];
 const TRAIL = [0.9, 0.3, 0.55];
 
 export class Overlays {
-  constructor(scene, options, readings, handles) {
-    Object.assign(this, { scene, options, readings, handles });
+  constructor(scene, options, readings, handles, camera) {
+    Object.assign(this, { scene, options, readings, handles, camera });
     this.lines = new Lines();
+    this.solids = new Solids();
+    this.fitted = { force: new ArrowScale(), torque: new ArrowScale() };
     this.constraints = [];
     this.rays = new Float32Array(0);
     /** Four near and four far corners of the view frustum of the script's camera; empty without a camera. */
@@ -43,9 +49,27 @@ export class Overlays {
     this.selection = null;
     /** Scales of arrows: force [N] and torque [N m] per metre of length. */
     this.scales = { force: 0, torque: 0 };
+    /** Simulated time of what is drawn [s]. */
+    this.time = 0;
+  }
+
+  /** Radius of arrows, and the distance that their lengths are measured by [m]. */
+  get thickness() {
+    return THICKNESS * this.reach;
+  }
+
+  get reach() {
+    return this.camera.distance;
+  }
+
+  /** Fits the scale of forces or torques to the largest one. */
+  fit(kind, largest) {
+    this.fitted[kind].fit(largest, this.reach, this.time);
+    this.scales[kind] = this.fitted[kind].perMetre;
   }
 
   clear() {
+    for (const each of Object.values(this.fitted)) each.clear();
     this.constraints = [];
     this.rays = new Float32Array(0);
     this.pyramid = [];
@@ -66,6 +90,7 @@ export class Overlays {
   draw(drawings, pull, named) {
     const { lines, scene, options } = this;
     lines.clear();
+    this.solids.clear();
     if (pull) lines.line(...pull, PULL, 2.5);
     if (named) this.addFrame(named.body, named.link);
     drawings.addLines(lines, scene);
@@ -82,6 +107,7 @@ export class Overlays {
     if (options.skeleton) this.addSkeleton();
     addJoints(this);
     this.handles.addLines(lines);
+    this.solids.end();
     return lines;
   }
 

@@ -5,6 +5,7 @@ import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
 import { Pace } from "./pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
+import { SolidBatch } from "./solid_batch.js";
 import { Surfaces } from "./surfaces.js";
 
 const GRID_EXTENT = 60;
@@ -45,6 +46,7 @@ export class Renderer {
     this.sign = new Program(gl, SIGN);
     this.nothing = gl.createVertexArray();
     this.lineBatch = new LineBatch(gl);
+    this.solidBatch = new SolidBatch(gl);
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
     this.byProcessor = slow;
@@ -66,7 +68,7 @@ export class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Lines, clouds: object[], signs: Sign[]}} drawings
+   * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[]}} drawings
    */
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
@@ -109,6 +111,7 @@ export class Renderer {
     if (!options.wireframe) this.drawClear(shown, scene, camera);
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
+    this.solidBatch.draw(drawings.solids, camera);
     gl.disable(gl.DEPTH_TEST);
   }
 
