@@ -53,6 +53,7 @@ class _Build:
     zig: Zig
     warp: Path
     progress: ProgressLine
+    own_flags: tuple[str, ...]
 
 
 def build(
@@ -63,11 +64,13 @@ def build(
     *,
     modules: Sequence[str] = KERNEL_MODULES,
     cache: Path | None = None,
+    own_flags: tuple[str, ...] = OWN_FLAGS,
 ) -> Path:
     """Build the native library, or find it in the cache.
 
-    `root` contains the package `carom`; `modules` are the Python modules whose kernels are included. Without
-    a stream there is no progress display; without a cache folder it is `cache_folder()`.
+    `root` contains the package `carom`; `modules` are the Python modules whose kernels are included, and
+    `own_flags` those of the compiler for hand-written C++; with others than usual, the cache has to be
+    another. Without a stream there is no progress display; without a cache folder it is `cache_folder()`.
 
     Returns:
         The library, in the cache; `manifest.json` is beside it.
@@ -88,10 +91,8 @@ def build(
                 try:
                     # Zig's cache does not depend on our sources, so all builds share it.
                     zig = find_zig(cache_folder() / "zig")
-                    _make(
-                        _Build(root, tuple(modules), target, level, digest, cache, zig, _warp_folder(), line),
-                        library,
-                    )
+                    of_machine = target, level, digest, cache, zig, _warp_folder()
+                    _make(_Build(root, tuple(modules), *of_machine, line, own_flags), library)
                     prune(cache)
                 finally:
                     line.end()
@@ -169,7 +170,7 @@ def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
         own.append(_HERE / "windows.cpp")
     kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
     objects = _objects(parts, "kernels", "c++", CPP_FLAGS, kernels, headers, work)
-    objects += _objects(parts, "the rest", "c++", OWN_FLAGS, own, [*headers, folder], work)
+    objects += _objects(parts, "the rest", "c++", parts.own_flags, own, [*headers, folder], work)
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
     return objects + _objects(parts, "maths", "cc", C_FLAGS, maths, folders, work)
