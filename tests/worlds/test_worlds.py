@@ -402,7 +402,8 @@ def boxes() -> World:
 )
 def test_worlds_of_arms_and_boxes_take_little_memory(arm: tuple[World, Body]) -> None:
     assert _bytes_per_world(arm[0]) < 30_000
-    assert _bytes_per_world(boxes()) < 60_000
+    # Memory in use has a granularity of pages: 50 to 67 kB were measured.
+    assert _bytes_per_world(boxes()) < 75_000
 
 
 def _bytes_per_world(scene: World, count: int = 500) -> float:

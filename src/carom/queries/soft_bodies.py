@@ -33,7 +33,7 @@ _RAY_GROUP = 1
 # A node counts as touching up to this gap beyond its margin [m].
 _GAP = 1.0e-4
 # What belongs to the impulses of the last substep on faces.
-_OF_LAST_SUBSTEP = ("face_touches", "touch_shape", "touch_weights")
+_OF_LAST_SUBSTEP = ("node_touches", "face_touches", "touch_shape", "touch_weights")
 # Forces up to this are rounding errors [N].
 _ROUNDING = 1.0e-9
 # Number of ray-face pairs handled at a time, to save memory.
@@ -116,11 +116,11 @@ class SoftQueries:
         minus the margin, or minus the thickness if the surface is that of a soft body. The forces are those
         of the last substep.
         """
-        pushes = self._pushes_on_nodes(time_step)
         kept = {name: self._work[name][0].copy() for name in _OF_LAST_SUBSTEP}
         with self._present_poses():
             self._find_touches()
         same_shape = kept["touch_shape"] == self._work["touch_shape"][0]
+        pushes = self._pushes_on_nodes(kept, same_shape, time_step)
         rows: list[tuple[Any, ...]] = []
         for soft in self._soft.bodies:
             own = self._places[self._link_row(soft)][0]
@@ -143,23 +143,28 @@ class SoftQueries:
                 rows.append(_row(sides, places[pair.node], pair.foot, pair.normal, pair.gap, force))
         return ContactColumns(len(rows), tuple(zip(*rows, strict=True)))
 
-    def _pushes_on_nodes(self, time_step: float) -> np.ndarray:
-        """(n, 3) forces on nodes by their own touches [N]: without their shares of those on faces.
+    def _pushes_on_nodes(
+        self, last: dict[str, np.ndarray], same_shape: np.ndarray, time_step: float
+    ) -> np.ndarray:
+        """(n, 3) forces on nodes [N], without their shares of those on faces that are listed themselves.
 
-        The shares stay where the workspace of the last substep is not there: in scenes of `Worlds`.
+        `last` has the touches of the last substep. The shares stay where a face has no such touch any more,
+        and in scenes of `Worlds`, where the workspace of the last substep is not there.
         """
         work = self._work
         pushes = self._state["node_push"][0].copy()
-        behind_nodes = TOUCHES_PER_NODE * work["node_touches"].shape[1]
+        behind_nodes = TOUCHES_PER_NODE * len(last["node_touches"])
         for soft in self._soft.bodies:
             first = soft.first["face"]
-            counts = work["face_touches"][0, first : first + soft.count["face"]]
+            faces = slice(first, first + soft.count["face"])
+            counts = np.minimum(work["face_touches"][0, faces], last["face_touches"][faces])
             for face in np.flatnonzero(counts).tolist():
                 start = behind_nodes + TOUCHES_PER_FACE * (first + face)
                 corners = soft.spec.faces[face] + soft.first["node"]
                 for touch in range(start, start + int(counts[face])):
-                    force = work["touch_impulse"][0, touch] / time_step
-                    pushes[corners] -= work["touch_weights"][0, touch][:, None] * force
+                    if same_shape[touch]:
+                        force = work["touch_impulse"][0, touch] / time_step
+                        pushes[corners] -= _shares(last, corners, touch)[:, None] * force
         # What is left of a force that was all on faces is rounding.
         pushes[np.abs(pushes).max(axis=1) < _ROUNDING] = 0.0
         return pushes
@@ -218,6 +223,18 @@ class SoftQueries:
             if (nodes.min(axis=0) - margin <= upper).all() and (nodes.max(axis=0) + margin >= lower).all():
                 found.append(self._link_row(soft))
         return found
+
+
+def _shares(last: dict[str, np.ndarray], corners: np.ndarray, touch: int) -> np.ndarray:
+    """(3,) shares of the force of a face's touch, as those of `shares_of_corners` in `kernels.soft.feedback`."""
+    weights, shape = last["touch_weights"][touch], last["touch_shape"][touch]
+    firsts, counts = TOUCHES_PER_NODE * corners, last["node_touches"][corners]
+    touching = [
+        shape in last["touch_shape"][first : first + count]
+        for first, count in zip(firsts.tolist(), counts.tolist(), strict=True)
+    ]
+    shares = np.where(touching, weights, 0.0)
+    return shares / shares.sum() if shares.sum() > 0.0 else weights
 
 
 def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separation: float) -> RayHit:

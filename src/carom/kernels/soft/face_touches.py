@@ -22,7 +22,7 @@ from carom.kernels.shapes.triangles import (
     triangle_corners,
     triangle_from,
 )
-from carom.kernels.soft.feedback import wake_touched
+from carom.kernels.soft.feedback import has_touch, wake_touched
 from carom.kernels.soft.nearest import away_from, face_normal, on_triangle
 from carom.kernels.soft.neighbours import face_frame, weights_at
 from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
@@ -171,16 +171,6 @@ def nearest_of_face_on_shape(
             shapes, pairs, work, world, shape, corners, max_distance
         )
     return distance, normal, point
-
-
-@func
-def has_touch(work: SoftWork, world: Int32, node: Int32, shape: Int32) -> bool:
-    """Whether a node has a touch with a shape."""
-    first = TOUCHES_PER_NODE * node
-    for touch in range(first, first + work.node_touches[world, node]):
-        if work.touch_shape[world, touch] == shape:
-            return True
-    return False
 
 
 @func

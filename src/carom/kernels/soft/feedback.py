@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.feedback import add_link_force
 from carom.kernels.solver.activity import is_asleep
 from carom.kernels.structs import Model, Scratch, Settings, Shapes, SoftModel, SoftWork, State
-from carom.kernels.types import Int32, Vector3, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.soft import ANCHORS, BODIES, TOUCHES_PER_FACE, TOUCHES_PER_NODE
 
 
@@ -75,6 +75,29 @@ def report_push(
 
 
 @func
+def has_touch(work: SoftWork, world: Int32, node: Int32, shape: Int32) -> bool:
+    """Whether a node has a touch with a shape."""
+    first = TOUCHES_PER_NODE * node
+    for touch in range(first, first + work.node_touches[world, node]):
+        if work.touch_shape[world, touch] == shape:
+            return True
+    return False
+
+
+@func
+def shares_of_corners(work: SoftWork, world: Int32, nodes: Index4, weights: Vector3, shape: Int32) -> Vector3:
+    """The shares of a force on a face of its corners: those that touch the shape, if any."""
+    shares = weights
+    for i in range(3):
+        if not has_touch(work, world, nodes[i], shape):
+            shares[i] = 0.0
+    total = shares[0] + shares[1] + shares[2]
+    if total <= 0.0:
+        return weights
+    return shares / total
+
+
+@func
 def report_face_pushes(
     settings: Settings,
     shapes: Shapes,
@@ -86,7 +109,7 @@ def report_face_pushes(
     world: Int32,
     body: Int32,
 ):
-    """As `report_pushes`, those of a body's faces: each node has its share of the forces on its faces."""
+    """As `report_pushes`, those of a body's faces: each node has a share of the forces on its faces."""
     first = soft.soft[body].first_face
     rows = TOUCHES_PER_NODE * work.node_touches.shape[1]
     for face in range(first, first + soft.soft[body].face_count):
@@ -94,10 +117,10 @@ def report_face_pushes(
         start = rows + TOUCHES_PER_FACE * face
         for touch in range(start, start + work.face_touches[world, face]):
             force = work.touch_impulse[world, touch] / settings.time_step
-            weights = work.touch_weights[world, touch]
-            for i in range(3):
-                state.node_push[world, nodes[i]] += force * weights[i]
             shape = work.touch_shape[world, touch]
+            shares = shares_of_corners(work, world, nodes, work.touch_weights[world, touch], shape)
+            for i in range(3):
+                state.node_push[world, nodes[i]] += force * shares[i]
             report_push(
                 model, state, scratch, world, shapes.shape_tree[shape], shapes.shape_link[shape],
                 work.touch_point[world, touch], -force,
