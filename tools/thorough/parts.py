@@ -1,6 +1,6 @@
 """The parts of the long checks, and their pieces.
 
-A new part, for example one with sanitizers, is a function here that gives its pieces, and a line in `PARTS`.
+A new part is a function here that gives its pieces, and a line in `PARTS`.
 Pieces should take a few minutes at most: what is limited to twenty minutes never ends a longer one.
 """
 
@@ -12,6 +12,7 @@ from pathlib import Path
 from tests.fuzz.files import SEEDS
 from tests.workers.episodes import METHODS
 from tools.differ.pair import ORACLE
+from tools.sanitize import FLAGS
 from tools.thorough.pieces import SEED, Piece
 
 from carom.native.kernel_modules import CUDA_MODULES
@@ -99,6 +100,11 @@ def storms() -> list[Piece]:
     ]
 
 
+def sanitizers() -> list[Piece]:
+    """Calls and threads while the hand-written C++ is checked, where there is GCC."""
+    return [Piece("sanitizers", kind, ("-m", "tools.sanitize", kind)) for kind in sorted(FLAGS)]
+
+
 def soak() -> list[Piece]:
     """Long work, and long lives of workers, whose memory must not grow."""
     work = ("-m", "tests.conformance.soak")
@@ -118,9 +124,8 @@ def mutations() -> list[Piece]:
     return [Piece("mutations", f"sample {number}", sample, number) for number in range(MUTATION_PIECES)]
 
 
-PARTS: dict[str, Callable[[], Sequence[Piece]]] = {
-    part.__name__: part for part in (properties, gpu, platforms, fuzz, storms, differ, soak, mutations)
-}
+_ALL = (properties, gpu, platforms, fuzz, storms, sanitizers, differ, soak, mutations)
+PARTS: dict[str, Callable[[], Sequence[Piece]]] = {part.__name__: part for part in _ALL}
 
 
 def all_pieces(names: Sequence[str]) -> list[Piece]:
