@@ -21,7 +21,7 @@ PINCHED_RECOVERY = real(200.0)
 _FACING = real(-0.5)
 # Determinant of the inverse masses of two touches, relative to the product of the diagonal, up to which the
 # matrix counts as singular.
-SINGULAR = real(1.0e-9)
+_SINGULAR = real(1.0e-9)
 
 
 @func
@@ -94,6 +94,27 @@ def relax_touch(
 
 
 @func
+def are_immovable(weight_a: real, weight_b: real, cross: real) -> bool:
+    """Whether two pushes, each of which moves the other's place by `cross` [1/kg], cannot be solved together."""
+    return weight_a * weight_b - cross * cross <= _SINGULAR * weight_a * weight_b
+
+
+@func
+def joint_pushes(lack_a: real, lack_b: real, weight_a: real, weight_b: real, cross: real, h: real):
+    """The two impulses [N s], none negative, that together make up for what is lacking at two places [m]."""
+    determinant = weight_a * weight_b - cross * cross
+    push_a = (lack_a * weight_b - lack_b * cross) / (h * determinant)
+    push_b = (lack_b * weight_a - lack_a * cross) / (h * determinant)
+    if push_a < 0.0:
+        push_a = real(0.0)
+        push_b = lack_b / (h * weight_b)
+    elif push_b < 0.0:
+        push_b = real(0.0)
+        push_a = lack_a / (h * weight_a)
+    return push_a, push_b
+
+
+@func
 def relax_pinched(
     scratch: Scratch,
     pair_rows: PairRows,
@@ -115,22 +136,14 @@ def relax_pinched(
     weight_a = mass + row_mass(pair_rows, world, work.touch_row[world, a])
     weight_b = mass + row_mass(pair_rows, world, work.touch_row[world, b])
     cross = mass * wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
-    determinant = weight_a * weight_b - cross * cross
-    if determinant <= SINGULAR * weight_a * weight_b:
+    if are_immovable(weight_a, weight_b, cross):
         # Neither shape can be moved.
         relax_touch(scratch, pair_rows, soft, state, work, world, node, a, h)
         relax_touch(scratch, pair_rows, soft, state, work, world, node, b, h)
     else:
         lack_a = lacking(scratch, pair_rows, state, work, world, node, a, PINCHED_RECOVERY, h)
         lack_b = lacking(scratch, pair_rows, state, work, world, node, b, PINCHED_RECOVERY, h)
-        push_a = (lack_a * weight_b - lack_b * cross) / (h * determinant)
-        push_b = (lack_b * weight_a - lack_a * cross) / (h * determinant)
-        if push_a < 0.0:
-            push_a = real(0.0)
-            push_b = lack_b / (h * weight_b)
-        elif push_b < 0.0:
-            push_b = real(0.0)
-            push_a = lack_a / (h * weight_a)
+        push_a, push_b = joint_pushes(lack_a, lack_b, weight_a, weight_b, cross, h)
         push_touch(scratch, pair_rows, state, work, world, node, a, mass, push_a, h)
         push_touch(scratch, pair_rows, state, work, world, node, b, mass, push_b, h)
 

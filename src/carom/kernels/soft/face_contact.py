@@ -4,7 +4,15 @@ import warp as wp
 
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.maths.rotation import column
-from carom.kernels.soft.contact import PINCHED_RECOVERY, RECOVERY, SINGULAR, facing, moved_on, other_row
+from carom.kernels.soft.contact import (
+    PINCHED_RECOVERY,
+    RECOVERY,
+    are_immovable,
+    facing,
+    joint_pushes,
+    moved_on,
+    other_row,
+)
 from carom.kernels.soft.face_touches import at_weights, first_face_touch
 from carom.kernels.soft.pushes import push_along, row_mass, row_velocity
 from carom.kernels.soft.tangents import tangents
@@ -127,21 +135,13 @@ def relax_pinched_face(
     weight_b = mass_b + row_mass(pair_rows, world, work.touch_row[world, b])
     cross = shared_mass(soft, nodes, at_a, at_b)
     cross *= wp.dot(work.touch_normal[world, a], work.touch_normal[world, b])
-    determinant = weight_a * weight_b - cross * cross
-    if determinant <= SINGULAR * weight_a * weight_b:
+    if are_immovable(weight_a, weight_b, cross):
         relax_face(scratch, pair_rows, soft, state, work, world, nodes, a, h)
         relax_face(scratch, pair_rows, soft, state, work, world, nodes, b, h)
     else:
         lack_a = face_lacking(scratch, pair_rows, state, work, world, nodes, a, PINCHED_RECOVERY, h)
         lack_b = face_lacking(scratch, pair_rows, state, work, world, nodes, b, PINCHED_RECOVERY, h)
-        push_a = (lack_a * weight_b - lack_b * cross) / (h * determinant)
-        push_b = (lack_b * weight_a - lack_a * cross) / (h * determinant)
-        if push_a < 0.0:
-            push_a = real(0.0)
-            push_b = lack_b / (h * weight_b)
-        elif push_b < 0.0:
-            push_b = real(0.0)
-            push_a = lack_a / (h * weight_a)
+        push_a, push_b = joint_pushes(lack_a, lack_b, weight_a, weight_b, cross, h)
         push_face(scratch, pair_rows, soft, state, work, world, nodes, a, mass_a, push_a, h)
         push_face(scratch, pair_rows, soft, state, work, world, nodes, b, mass_b, push_b, h)
 
