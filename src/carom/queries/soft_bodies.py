@@ -226,7 +226,7 @@ class SoftQueries:
 
 
 def _shares(last: dict[str, np.ndarray], corners: np.ndarray, touch: int) -> np.ndarray:
-    """(3,) shares of the force of a face's touch, as those of `shares_of_corners` in `kernels.soft.feedback`."""
+    """(3,) shares of the force of a touch of a face: `shares_of_corners` in `kernels.soft.feedback`."""
     weights, shape = last["touch_weights"][touch], last["touch_shape"][touch]
     firsts, counts = TOUCHES_PER_NODE * corners, last["node_touches"][corners]
     touching = [

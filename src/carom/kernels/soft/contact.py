@@ -95,7 +95,7 @@ def relax_touch(
 
 @func
 def are_immovable(weight_a: real, weight_b: real, cross: real) -> bool:
-    """Whether two pushes, each of which moves the other's place by `cross` [1/kg], cannot be solved together."""
+    """Whether two pushes cannot be solved together: each moves the place of the other by `cross` [1/kg]."""
     return weight_a * weight_b - cross * cross <= _SINGULAR * weight_a * weight_b
 
 
