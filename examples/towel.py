@@ -126,9 +126,8 @@ def squeeze_cube(duration, window):
             command(panda, place, opening)
             p.stepSimulation()
         nodes = nodes_of(cube)
-        across = sorted(node[1] for node in nodes)
-        side = len(nodes) // 12
-        record["width"].append((sum(across[-side:]) - sum(across[:side])) / side)
+        between = sum(p.getJointState(panda, finger)[0] for finger in FINGERS)
+        record["width"].append(min(size, between))
         record["height"].append(sum(node[2] for node in nodes) / len(nodes))
         record["press"].append(grip_force(panda, cube))
     return record

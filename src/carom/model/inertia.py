@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import reduce
-from math import sqrt
 from typing import NamedTuple
 
 from carom.description import (
@@ -22,6 +21,7 @@ from carom.description import (
     Sphere,
     TriangleMesh,
 )
+from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
     NO_ROTATION,
@@ -44,8 +44,6 @@ TWELFTH = 0.08333333
 """1/12 as PyBullet writes it for capsules and hulls, so that results agree to the last digit."""
 
 _IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
-
-_EPSILON = 2.220446049250313e-16
 
 
 def inertia_from_shapes(link: LinkSpec, *, implicit_cylinder: bool) -> Vector3:
@@ -237,45 +235,3 @@ def inertia_from_file(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose
         return moments, inertial.frame
     turned = matrix_product(rotation_matrix(inertial.frame.orientation), axes)
     return moments, Pose(inertial.frame.position, quaternion_from_matrix(turned))
-
-
-def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vector3, Matrix3]:
-    """Eigenvalues of a symmetric matrix, and a matrix with the eigenvectors as columns, by Jacobi rotations.
-
-    Each rotation makes the largest off-diagonal entry zero. The eigenvalues are in the order in which they
-    appear on the diagonal, and the matrix of eigenvectors is a rotation, not a reflection. Once the largest
-    off-diagonal entry is at most `threshold` times the sum of magnitudes on the diagonal, one last rotation
-    is made.
-    """
-    a = [list(row) for row in tensor]
-    v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-    step = most_steps
-    while step > 0:
-        p, q, r = max(((0, 1, 2), (0, 2, 1), (1, 2, 0)), key=lambda pqr: abs(a[pqr[0]][pqr[1]]))
-        largest = abs(a[p][q])
-        limit = threshold * (abs(a[0][0]) + abs(a[1][1]) + abs(a[2][2]))
-        if largest <= limit:
-            if largest <= _EPSILON * limit:
-                break
-            step = 1
-        theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q])
-        if theta**4 < 10.0 / _EPSILON:
-            t = 1.0 / (
-                theta + sqrt(1.0 + theta * theta) if theta >= 0.0 else theta - sqrt(1.0 + theta * theta)
-            )
-            cosine = 1.0 / sqrt(1.0 + t * t)
-        else:
-            t = 1.0 / (theta * (2.0 + 0.5 / (theta * theta)))
-            cosine = 1.0 - 0.5 * t * t
-        sine = cosine * t
-        shift = t * a[p][q]
-        a[p][q] = a[q][p] = 0.0
-        a[p][p] -= shift
-        a[q][q] += shift
-        a[r][p], a[r][q] = cosine * a[r][p] - sine * a[r][q], cosine * a[r][q] + sine * a[r][p]
-        a[p][r], a[q][r] = a[r][p], a[r][q]
-        for row in v:
-            row[p], row[q] = cosine * row[p] - sine * row[q], cosine * row[q] + sine * row[p]
-        step -= 1
-    eigenvectors = ((v[0][0], v[0][1], v[0][2]), (v[1][0], v[1][1], v[1][2]), (v[2][0], v[2][1], v[2][2]))
-    return (a[0][0], a[1][1], a[2][2]), eigenvectors

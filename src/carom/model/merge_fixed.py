@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from carom.description import Inertial, Joint, JointType, Pose
+from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, dot
-from carom.model.inertia import diagonalize
 from carom.model.tree import TreeNode
 
 

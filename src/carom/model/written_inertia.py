@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from carom.description import Inertial, JointType, Pose
+from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
     NO_ROTATION,
@@ -17,7 +18,6 @@ from carom.description.transform import (
     transposed,
 )
 from carom.logger import Logger
-from carom.model.inertia import diagonalize
 from carom.model.tree import TreeNode, depth_first
 
 _log = Logger(__name__)

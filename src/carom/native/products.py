@@ -47,6 +47,11 @@ def inverses(matrices: Floats) -> Floats:
     return cofactors / determinants(matrices)[..., None, None]
 
 
+def turned_tensor(turn: Floats, tensor: Floats) -> Floats:
+    """A symmetric tensor (3, 3) in the axes that a rotation matrix (3, 3) turns its own to."""
+    return product(product(turn, tensor), turn.T)
+
+
 def length(vector: Floats) -> float:
     """Length of a vector of shape (n,)."""
     return sqrt(sum(x * x for x in vector.tolist()))

@@ -10,6 +10,7 @@ import numpy as np
 from carom.description.pose import Pose
 from carom.description.transform import compose, rotation_matrix
 from carom.model.body_spec import BASE
+from carom.native.products import dots
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import FileKeyframe
@@ -77,6 +78,6 @@ def _place(body: Body, q: list[float], v: list[float]) -> None:
         body.set_base_pose(pose.position, pose.orientation)
     x, y, z = body.links[BASE].pose.orientation[:3]
     turn = np.array(rotation_matrix((x, y, z, body.links[BASE].pose.orientation[3])))
-    spin = turn @ v[3:]
-    linear = v[:3] + np.cross(spin, turn @ inertial.position)
+    spin = dots(turn, np.array(v[3:]))
+    linear = v[:3] + np.cross(spin, dots(turn, np.array(inertial.position)))
     body.set_base_velocity(linear.tolist(), spin.tolist())

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.formats.mesh.part import MeshPart, make_part
-from carom.native.products import product
+from carom.native.products import determinants, product
 
 _MAGIC = b"glTF"
 _HEADER, _CHUNK = 12, 8
@@ -130,7 +130,7 @@ class _Gltf:
         if not len(triangles):
             return None
         placed = product(positions, pose[:3, :3].T) + pose[:3, 3]
-        if np.linalg.det(pose[:3, :3]) < 0.0:
+        if determinants(pose[:3, :3]) < 0.0:
             triangles = triangles[:, ::-1]
         return make_part(self.file, placed, np.ascontiguousarray(triangles), name)
 

@@ -22,6 +22,7 @@ from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
+from carom.native.products import turned_tensor
 
 WORLD = "world"
 _FRICTION = (1.0, 0.005, 0.0001)
@@ -205,7 +206,7 @@ def _read_inertial(scope: Scope, element: Element) -> BodyInertia:
     else:
         tensor = np.zeros((3, 3))
     turn = np.array(rotation_matrix(pose.orientation))
-    return BodyInertia(mass, np.array(pose.position), turn @ tensor @ turn.T)
+    return BodyInertia(mass, np.array(pose.position), turned_tensor(turn, tensor))
 
 
 def _contact(scope: Scope, element: Element, earlier: ContactParameters) -> ContactParameters:

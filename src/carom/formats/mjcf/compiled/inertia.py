@@ -7,10 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.description.eigen import principal_axes
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.compiler import Compiler
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
+from carom.native.products import dots, turned_tensor
 from carom.record import record
 
 Matrix = NDArray[np.float64]
@@ -51,8 +53,8 @@ def inertia_of(geoms: Iterable[GeomMass]) -> BodyInertia:
     parts = []
     for geom in geoms:
         turn = np.array(rotation_matrix(geom.frame.orientation))
-        centre = np.array(geom.frame.position) + turn @ geom.shape.centre
-        parts.append((geom.mass, centre, geom.mass * (turn @ geom.shape.tensor @ turn.T)))
+        centre = np.array(geom.frame.position) + dots(turn, geom.shape.centre)
+        parts.append((geom.mass, centre, geom.mass * turned_tensor(turn, geom.shape.tensor)))
     mass = sum(part[0] for part in parts)
     if mass == 0.0:
         return BodyInertia.none()
@@ -60,7 +62,7 @@ def inertia_of(geoms: Iterable[GeomMass]) -> BodyInertia:
     tensor = np.zeros((3, 3))
     for m, centre, own in parts:
         away = centre - middle
-        tensor += own + m * (away @ away * np.eye(3) - np.outer(away, away))
+        tensor += own + m * (dots(away, away) * np.eye(3) - np.outer(away, away))
     return BodyInertia(mass, middle, tensor)
 
 
@@ -71,7 +73,7 @@ def bounded(inertia: BodyInertia, compiler: Compiler) -> str | None:
         What is wrong with moments that no body has; None if nothing is.
     """
     inertia.mass = max(inertia.mass, compiler.least_mass)
-    moments, axes = np.linalg.eigh(inertia.tensor)
+    moments, axes = principal_axes(inertia.tensor)
     changed = np.maximum(moments, compiler.least_inertia) if compiler.least_inertia > 0.0 else moments
     if changed.max(initial=0.0) * 2.0 > changed.sum() * (1.0 + _ROUNDING) + _ROUNDING**2:
         if not compiler.balance:
@@ -79,7 +81,7 @@ def bounded(inertia: BodyInertia, compiler: Compiler) -> str | None:
             return f"no body has the moments of inertia {x:g}, {y:g} and {z:g}"
         changed = np.full(3, changed.mean())
     if (changed != moments).any():
-        inertia.tensor = axes @ np.diag(changed) @ axes.T
+        inertia.tensor = turned_tensor(axes, np.diag(changed))
     return None
 
 

@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.products import dots
 from carom.native.trigonometry import cos, sin
 
 Made = tuple[NDArray[np.float64], NDArray[np.int32]]
@@ -51,7 +52,7 @@ def _sphere(divisions: int) -> Made:
     vertices = [np.roll(corner, turn) for turn in range(3) for corner in corners]
     points = np.array(vertices) / np.sqrt(1.0 + golden * golden)
     triangles = [
-        (a, b, c) if np.dot(points[a], np.cross(points[b], points[c])) > 0.0 else (a, c, b)
+        (a, b, c) if dots(points[a], np.cross(points[b], points[c])) > 0.0 else (a, c, b)
         for a in range(12)
         for b in range(a + 1, 12)
         for c in range(b + 1, 12)

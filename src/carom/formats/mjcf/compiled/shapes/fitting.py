@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.description.eigen import principal_axes
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import Matrix3, quaternion_from_matrix
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset
+from carom.native.products import determinants, dots, product
 
 
 def fitted(mesh: MeshAsset, kind: str, *, by_bounds: bool) -> tuple[Vector3, Pose] | None:
@@ -16,15 +18,15 @@ def fitted(mesh: MeshAsset, kind: str, *, by_bounds: bool) -> tuple[Vector3, Pos
     """
     if mesh.mass is None:
         return None
-    moments, axes = np.linalg.eigh(mesh.mass.tensor)
+    moments, axes = principal_axes(mesh.mass.tensor)
     moments, axes = moments[::-1], axes[:, ::-1].copy()
-    if np.linalg.det(axes) < 0.0:
+    if determinants(axes) < 0.0:
         axes[:, 2] *= -1.0
     centre = mesh.mass.centre
     if by_bounds:
-        local = (mesh.vertices - centre) @ axes
+        local = product(mesh.vertices - centre, axes)
         low, high = local.min(axis=0), local.max(axis=0)
-        centre = centre + axes @ (0.5 * (low + high))
+        centre = centre + dots(axes, 0.5 * (low + high))
         a, b, c = (float(x) for x in 0.5 * (high - low))
     else:
         squares = np.maximum(3.0 * (0.5 * moments.sum() - moments), 0.0)

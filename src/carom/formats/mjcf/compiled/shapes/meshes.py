@@ -20,6 +20,7 @@ from carom.formats.mjcf.defaults import class_defaults
 from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
+from carom.native.products import product
 from carom.record import record
 
 LEGACY = "legacy"
@@ -145,5 +146,5 @@ def _to_reference(
         w, x, y, z = context.numbers(element, "refquat", attributes["refquat"], 4, 4)
         if w == x == y == z == 0.0:
             raise context.error(element, "refquat has no length, so it is no rotation")
-        vertices = vertices @ np.array(rotation_matrix((x, y, z, w)))
+        vertices = product(vertices, np.array(rotation_matrix((x, y, z, w))))
     return vertices
