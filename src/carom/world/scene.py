@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
 from carom.scene.named_constraints.joint_coupling import JointCoupling
 
@@ -27,7 +28,7 @@ class Scene(Sequence[Body]):
         format: Its format: `URDF`, `SDF`, `MJCF` or `saved world`.
         bodies: The bodies, in the order of the file.
         constraints: Constraints by name, such as couplings of joints.
-        actuators: Actuators by name; none are made yet.
+        actuators: Actuators of all bodies by name, in the order of an MJCF file.
         sensors: Sensors by name; none are made yet.
         sites: Named frames of MJCF files, by name.
         keyframes: Named states of MJCF files, by name; `reset` puts the bodies into one.
@@ -50,7 +51,7 @@ class Scene(Sequence[Body]):
         self.format: str = format_name
         self.bodies: list[Body] = list(bodies)
         self.constraints: dict[str, JointCoupling] = {it.name: it for it in constraints}
-        self.actuators: dict[str, Any] = {}
+        self.actuators: dict[str, BodyActuator] = {it.name: it for body in bodies for it in body.actuators}
         self.sensors: dict[str, Any] = {}
         self.sites: dict[str, Site] = {}
         self.keyframes: dict[str, Keyframe] = {}
@@ -61,7 +62,7 @@ class Scene(Sequence[Body]):
     def reset(self, keyframe: str) -> None:
         """Put the bodies of the scene into a state of the file; the time of the world goes on.
 
-        Motors keep their commands.
+        Actuators get its controls and activations; motors keep their commands.
 
         Args:
             keyframe: Its name.

@@ -17,11 +17,24 @@ _SOFT = "contacts and limits are Carom's own"
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
+_ACTUATOR = (
+    "actlimited actrange class ctrllimited ctrlrange forcelimited forcerange gear group joint jointinparent name"
+)
+_ACTUATORS = {
+    "general": "biasprm biastype dynprm dyntype gainprm gaintype",
+    "motor": "",
+    "position": "dampratio inheritrange kp kv timeconst",
+    "velocity": "kv",
+    "intvelocity": "dampratio inheritrange kp kv",
+    "damper": "kv",
+    "cylinder": "area bias diameter timeconst",
+}
+
 _READ = {
     "mujoco": "model",
     "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
     "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
-    "option": "density gravity impratio integrator cone jacobian magnetic solver timestep viscosity wind",
+    "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic solver timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
     "texture": "class file name type",
@@ -30,7 +43,7 @@ _READ = {
     "body": f"childclass mocap name pos {_TURN}",
     "inertial": f"diaginertia fullinertia mass pos {_TURN}",
     "joint": "armature axis class damping frictionloss limited name pos range ref springref stiffness type "
-    "actuatorfrclimited",
+    "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
     "geom": "class conaffinity condim contype density fitscale friction fromto group hfield mass material "
     f"mesh name pos rgba shellinertia size type {_TURN}",
@@ -41,18 +54,18 @@ _READ = {
     "replicate": "childclass count euler offset sep",
     "include": "file",
     "exclude": "body1 body2 name",
-    "key": "ctrl name qpos qvel time",
+    **{tag: f"{_ACTUATOR} {own}".strip() for tag, own in _ACTUATORS.items()},
+    "key": "act ctrl name qpos qvel time",
     "default": "class",
 }
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("compiler", "conflict", "settings of attached models do not reach this one", _YET),
-    ("option", "actuatorgroupdisable", "no actuator is switched off", _YET),
     ("option", "o_friction o_margin o_solimp o_solref", _SOFT, _YET),
     ("option", "sleep_tolerance", "bodies do not fall asleep", _YET),
     ("body", "gravcomp", "gravity acts on it", _YET),
     ("body", "sleep", "it does not fall asleep", _YET),
-    ("joint", "actuatorfrcrange actuatorgravcomp", "forces of actuators on the joint are not changed", _YET),
+    ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springdamper springyield", "the joint has another spring", _YET),
     ("joint", "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET),
     ("geom", "gap margin solimp solref solmix", _SOFT, _YET),
@@ -60,7 +73,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
     ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
-    ("key", "act", "activations of actuators are not set", _YET),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )

@@ -34,6 +34,7 @@ class BodyReader:
     Attributes:
         model: What has been read so far, apart from bodies.
         bodies: All bodies, without the world, in document order.
+        elements: The walk through all elements of bodies.
         missing_meshes: Geoms whose mesh is missing are left out and reported.
     """
 
@@ -41,7 +42,7 @@ class BodyReader:
         self.model = model
         self.bodies: list[CompiledBody] = []
         self.missing_meshes = missing_meshes
-        self._elements = Elements()
+        self.elements = Elements()
         self._meshes = Meshes()
         self._lines: dict[str, dict[str, int]] = {}
 
@@ -83,7 +84,7 @@ class BodyReader:
     ) -> None:
         geoms: list[Geom] = []
         stated: BodyInertia | None = None
-        for child, within in self._elements.inside(element, scope):
+        for child, within in self.elements.inside(element, scope):
             context = within.context
             match child.tag:
                 case "body":

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Any
+from math import inf
+from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Joint, Pose, Visual
 from carom.description.link import ContactParameters
@@ -12,6 +13,10 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
 from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
+    from carom.formats.mjcf.compiled.context import CompiledContext
 
 
 @record(frozen=False, eq=False)
@@ -23,12 +28,16 @@ class CompiledJoint:
         anchor: Its position in the body's frame [m].
         reference: Its position where the body is as the file states it [rad or m].
         element: The element that states it.
+        context: The reading of its file.
+        actuator_range: Bounds of the sum of its actuators' forces [N m or N].
     """
 
     joint: Joint
     anchor: Vector3
     reference: float
     element: Element
+    context: CompiledContext
+    actuator_range: tuple[float, float] = (-inf, inf)
 
 
 @record(frozen=False, eq=False)
@@ -112,6 +121,7 @@ class FileKeyframe:
         positions: `qpos`; quaternions have w first. Empty if it states none: the initial positions.
         velocities: `qvel`. Empty for zero.
         controls: `ctrl`. Empty for zero.
+        activations: `act`. Empty for zero.
     """
 
     name: str
@@ -119,6 +129,22 @@ class FileKeyframe:
     positions: tuple[float, ...]
     velocities: tuple[float, ...]
     controls: tuple[float, ...]
+    activations: tuple[float, ...] = ()
+
+
+@record(frozen=False, eq=False)
+class FileActuator:
+    """An actuator of the file.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        spec: What it does; None if that is not built.
+        has_activation: It has a state in `act`.
+    """
+
+    name: str
+    spec: ActuatorSpec | None
+    has_activation: bool
 
 
 @record(frozen=False, eq=False)
@@ -135,6 +161,7 @@ class CompiledModel:
         sites: By name.
         cameras: By name.
         keyframes: By name.
+        actuators: In the order of `ctrl`.
     """
 
     name: str = ""
@@ -146,3 +173,4 @@ class CompiledModel:
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
+    actuators: list[FileActuator] = field(default_factory=list)

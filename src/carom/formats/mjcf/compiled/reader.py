@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
 from carom.formats.mjcf.compiled.body import BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
 from carom.formats.mjcf.compiled.compiler import read_compiler
@@ -13,6 +14,7 @@ from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframe import read_keyframes
 from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
@@ -42,8 +44,8 @@ def compile_mjcf(
     """Reads and checks an MJCF file as MuJoCo understands it, in double precision.
 
     Inertia comes from geoms and meshes by the rules of `<compiler>`; bodies without joints are fixed to what
-    is around them; the geoms of the world are one robot, `world`. Actuators, sensors, tendons, equalities and
-    soft bodies are not read.
+    is around them; the geoms of the world are one robot, `world`. Sensors, tendons and soft bodies are
+    not read.
 
     Args:
         path: The file, looked up with `AssetSearch.find`.
@@ -78,9 +80,12 @@ def compile_mjcf(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
-    for tag in _BY_CHILDREN:
-        for element in context.root.all(tag):
-            element.note()
+    scope, names = Scope(context), Names(reader.bodies, reader.elements)
+    for each in (*reader.elements.attached, scope):
+        for tag in _BY_CHILDREN:
+            for element in each.context.root.all(tag):
+                element.note()
+    ActuatorReader(model, names).read(scope)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)
