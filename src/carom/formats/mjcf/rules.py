@@ -14,6 +14,8 @@ _YET = "not read yet"
 _NO_LOSS = "none for the dynamics"
 _SKETCH = "it is for the window of MuJoCo"
 _SOFT = "contacts and limits are Carom's own"
+_RIGID = "the constraint is as stiff as the solver makes it"
+_LAW = "the force of the actuator is another one"
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
@@ -29,6 +31,11 @@ _ACTUATORS = {
     "damper": "kv",
     "cylinder": "area bias diameter timeconst",
 }
+
+_EQUALITY = "active body1 body2 class name site1 site2"
+_NOT_OF_JOINTS = "cranklength cranksite refsite site slidersite tendon body"
+
+_UNBUILT = ("orientation", "pid", "muscle", "adhesion", "dcmotor", "plugin")
 
 _READ = {
     "mujoco": "model",
@@ -55,6 +62,9 @@ _READ = {
     "include": "file",
     "exclude": "body1 body2 name",
     **{tag: f"{_ACTUATOR} {own}".strip() for tag, own in _ACTUATORS.items()},
+    "connect": f"anchor {_EQUALITY}",
+    "weld": f"anchor relpose {_EQUALITY}",
+    "equality": "active class",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
 }
@@ -74,6 +84,13 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
+    *[
+        (tag, "actdim actearly armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
+        for tag in _ACTUATORS
+    ],
+    ("general", "inheritrange", _LAW, _YET),
+    *[(tag, "solimp solref", _RIGID, _YET) for tag in ("connect", "weld", "equality", "equality/joint")],
+    ("weld", "torquescale", _RIGID, _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )
 
@@ -91,6 +108,7 @@ _WITHOUT_LOSS = {
     "joint": "group user",
     "freejoint": "group",
     "geom": "castshadow user",
+    **{tag: f"lengthrange user {_NOT_OF_JOINTS}" for tag in _ACTUATORS},
     "site": "group material rgba user",
     "camera": "ipd output principal principalpixel projection target user",
     "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
@@ -99,6 +117,10 @@ _WITHOUT_LOSS = {
 
 _ELEMENTS = (
     Rule("actuator/*", "it does not act", _YET),
+    *[Rule(f"actuator/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
+    *[Rule(f"default/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
+    *[Rule(f"equality/joint@{name}", "none: it has no meaning here", "another attribute counts")
+      for name in ("active", "class", "joint1", "joint2", "name", "polycoef")],
     Rule("sensor/*", "there is no such sensor", _YET),
     Rule("tendon/*", "it does not pull", _YET),
     Rule("equality/*", "this constraint does not hold", _YET),

@@ -147,6 +147,48 @@ class FileActuator:
     has_activation: bool
 
 
+@record
+class FileCoupling:
+    """A joint that follows another.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        follower: Name of the joint.
+        leader: Name of the joint that it follows; None if it is held.
+        coefficients: Of the polynomial in the position of the leader.
+        enabled: It holds.
+    """
+
+    name: str
+    follower: str
+    leader: str | None
+    coefficients: tuple[float, float, float, float, float]
+    enabled: bool
+
+
+@record
+class FileTie:
+    """A frame on a body that coincides with one on another, or, unless it is a weld, its origin.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        is_weld: Axes coincide as well.
+        first: Name of a body.
+        first_frame: The frame in that of the body.
+        second: Name of the other body, or `world`.
+        second_frame: The frame in that of the other body.
+        enabled: It holds.
+    """
+
+    name: str
+    is_weld: bool
+    first: str
+    first_frame: Pose
+    second: str
+    second_frame: Pose
+    enabled: bool
+
+
 @record(frozen=False, eq=False)
 class CompiledModel:
     """All of a file.
@@ -162,6 +204,9 @@ class CompiledModel:
         cameras: By name.
         keyframes: By name.
         actuators: In the order of `ctrl`.
+        couplings: Of joints, by `<equality>`.
+        ties: Of bodies, by `<equality>`.
+        equality_count: Number of all constraints in `<equality>`.
     """
 
     name: str = ""
@@ -174,3 +219,6 @@ class CompiledModel:
     cameras: dict[str, FileCamera] = field(default_factory=dict)
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
     actuators: list[FileActuator] = field(default_factory=list)
+    couplings: list[FileCoupling] = field(default_factory=list)
+    ties: list[FileTie] = field(default_factory=list)
+    equality_count: int = 0

@@ -5,15 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
-from carom.formats.mjcf.compiled.body import BodyReader
+from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
 from carom.formats.mjcf.compiled.compiler import read_compiler
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.equality import EqualityReader
 from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframe import read_keyframes
-from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
@@ -64,8 +65,9 @@ def compile_mjcf(
     for element in context.root.all("option"):
         read_option(context, element, model.options)
     reader = BodyReader(model, missing_meshes=missing_meshes)
+    scope, whole = Scope(context), CompiledBody(WORLD, context.root)
     for world in context.root.all("worldbody"):
-        whole = reader.read_world(world, Scope(context))
+        whole = reader.read_world(world, scope)
         everything = [whole, *reader.bodies]
         if set_collision_groups(everything):
             context.leave_out(
@@ -80,12 +82,13 @@ def compile_mjcf(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
-    scope, names = Scope(context), Names(reader.bodies, reader.elements)
+    names = Names(reader.bodies, reader.elements)
     for each in (*reader.elements.attached, scope):
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
                 element.note()
     ActuatorReader(model, names).read(scope)
+    EqualityReader(model, names, whole).read(scope)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)

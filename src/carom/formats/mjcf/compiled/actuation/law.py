@@ -18,7 +18,7 @@ Numbers = Callable[[str, str, int], list[float]]
 SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder")
 FIXED, AFFINE, NONE = "fixed", "affine", "none"
 FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
-_UNBUILT = ("muscle", "adhesion", "dcmotor", "pid", "plugin")
+_UNBUILT = ("orientation", "muscle", "adhesion", "dcmotor", "pid", "plugin")
 KINDS = (*SHORTCUTS, *_UNBUILT)
 
 
