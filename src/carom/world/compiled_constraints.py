@@ -30,9 +30,7 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
         tie = new_coupling(body, follower, leader, it.coefficients, it.name, other)
         _put(body, tie, enabled=it.enabled)
         made.append(JointCoupling(tie))
-    links = {
-        body.spec.link(i).name: (body, i) for body in bodies for i in range(BASE, len(body.spec.links))
-    }
+    links = {body.spec.link(i).name: (body, i) for body in bodies for i in range(BASE, len(body.spec.links))}
     for it in model.ties:
         first, second, fixed = (*links[it.first], it.first_frame), None, it.second_frame
         if it.second == WORLD:

@@ -19,9 +19,7 @@ _LAW = "the force of the actuator is another one"
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
-_ACTUATOR = (
-    "actlimited actrange class ctrllimited ctrlrange forcelimited forcerange gear group joint jointinparent name"
-)
+_ACTUATOR = "actlimited actrange class ctrllimited ctrlrange forcelimited forcerange gear group joint jointinparent name"
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype",
     "motor": "",
@@ -41,7 +39,8 @@ _READ = {
     "mujoco": "model",
     "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
     "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
-    "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic solver timestep viscosity wind",
+    "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic solver "
+    "timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
     "texture": "class file name type",
@@ -108,7 +107,7 @@ _WITHOUT_LOSS = {
     "joint": "group user",
     "freejoint": "group",
     "geom": "castshadow user",
-    **{tag: f"lengthrange user {_NOT_OF_JOINTS}" for tag in _ACTUATORS},
+    **dict.fromkeys(_ACTUATORS, f"lengthrange user {_NOT_OF_JOINTS}"),
     "site": "group material rgba user",
     "camera": "ipd output principal principalpixel projection target user",
     "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
@@ -119,8 +118,10 @@ _ELEMENTS = (
     Rule("actuator/*", "it does not act", _YET),
     *[Rule(f"actuator/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
     *[Rule(f"default/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
-    *[Rule(f"equality/joint@{name}", "none: it has no meaning here", "another attribute counts")
-      for name in ("active", "class", "joint1", "joint2", "name", "polycoef")],
+    *[
+        Rule(f"equality/joint@{name}", "none: it has no meaning here", "another attribute counts")
+        for name in ("active", "class", "joint1", "joint2", "name", "polycoef")
+    ],
     Rule("sensor/*", "there is no such sensor", _YET),
     Rule("tendon/*", "it does not pull", _YET),
     Rule("equality/*", "this constraint does not hold", _YET),

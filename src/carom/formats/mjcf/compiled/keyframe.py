@@ -10,16 +10,14 @@ _COORDINATES = {"free": 7, "spherical": 4}
 
 
 def read_keyframes(context: CompiledContext, element: Element, model: CompiledModel) -> None:
-    """Add the keys of a `<keyframe>` to a model whose joints and actuators are known; raises `DescriptionError`."""
+    """Add the keys of a `<keyframe>` to a model whose actuators are known; raises `DescriptionError`."""
     count = sum(_COORDINATES.get(kind, 1) for _, _, kind in model.joints)
     rates = sum({"free": 6, "spherical": 3}.get(kind, 1) for _, _, kind in model.joints)
     for number, key in enumerate(element.all("key")):
         attributes = key.attributes
         name = attributes.get("name", "") or str(number)
 
-        def values(
-            attribute: str, needed: int, what: str = "joints", of: Element = key
-        ) -> tuple[float, ...]:
+        def values(attribute: str, needed: int, what: str = "joints", of: Element = key) -> tuple[float, ...]:
             text = of.attributes.get(attribute, "")
             found = context.singles(of, attribute, text)
             if found and len(found) != needed:

@@ -49,7 +49,7 @@ class Names:
         return [each for each in self.elements.copied(scope) if fits(each)]
 
     def missing(self, scope: Scope, element: Element, names: list[str], known: set[str], what: str) -> None:
-        """Raise an error that names the first unknown one; nothing for an attached model, which may lack it."""
+        """Raise an error about the first unknown one; an attached model may lack it."""
         for name in names:
             if name and full(scope, name) not in known and scope not in self.elements.attached:
                 raise scope.context.error(element, f"there is no {what} {shown(name)}")

@@ -1,7 +1,7 @@
 """The law of an actuator: how its gain, bias and dynamics follow from shortcuts and defaults.
 
-`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. Defaults of any of them are those
-of all: each changes the gain, bias and dynamics that earlier ones have left.
+`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. A shortcut starts from the gain,
+bias and dynamics that earlier ones of its own kind, or general ones, have left; those of other kinds it drops.
 """
 
 from __future__ import annotations
@@ -42,6 +42,7 @@ class Law:
         bias: Parameters of the bias. A positive last one of a servo is a damping ratio.
         time: First parameter of the dynamics.
         inherited: Factor on the range of the joint that bounds the target; 0 for none.
+        shortcut: The last shortcut; empty for none.
         bounded: Names of the ranges that have to be stated.
     """
 
@@ -52,6 +53,7 @@ class Law:
     bias: list[float] = field(default_factory=_zero)
     time: float = 1.0
     inherited: float = 0.0
+    shortcut: str = ""
     bounded: tuple[str, ...] = ()
 
     def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> None:
@@ -65,6 +67,13 @@ class Law:
             text = attributes.get(name)
             return default if text is None else [*numbers(name, text, most), *default][:3]
 
+        if tag != "general":
+            if self.shortcut not in ("", tag):
+                self._set(FIXED, NONE, NONE, _one(), _zero())
+                self.time, self.inherited = 1.0, 0.0
+            elif tag == "position" and not self.shortcut:
+                self.dynamics, self.time = NONE, 1.0
+            self.shortcut = tag
         match tag:
             case "general":
                 self.gain_type = attributes.get("gaintype", self.gain_type)
@@ -91,7 +100,7 @@ class Law:
                 if diameter >= 0.0:
                     area = 0.25 * pi * diameter * diameter
                 bias = several("bias", self.bias, 3)
-                self._set(FIXED, AFFINE, FILTER, [area, *self.gain[1:]], bias)
+                self._set(FIXED, AFFINE, FILTER, [area, 0.0, 0.0], bias)
             case _:
                 self.gain_type = tag
 
@@ -106,12 +115,14 @@ class Law:
         if tag == "position" and "timeconst" in attributes:
             self.time = number("timeconst", 0.0)
             dynamics = NONE if self.time == 0.0 else FILTER_EXACT
-        self._set(FIXED, AFFINE, dynamics, [kp, *self.gain[1:]], [self.bias[0], -kp, last])
+        self._set(FIXED, AFFINE, dynamics, [kp, 0.0, 0.0], [0.0, -kp, last])
         self.inherited = number("inheritrange", self.inherited)
         if tag == "intvelocity":
             self.bounded = ("act",)
 
-    def _set(self, gain_type: str, bias_type: str, dynamics: str, gain: list[float], bias: list[float]) -> None:
+    def _set(
+        self, gain_type: str, bias_type: str, dynamics: str, gain: list[float], bias: list[float]
+    ) -> None:
         self.gain_type, self.bias_type, self.dynamics = gain_type, bias_type, dynamics
         self.gain, self.bias = gain, bias
 
