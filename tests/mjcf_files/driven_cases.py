@@ -59,7 +59,8 @@ TIED: dict[str, str] = {
  relpose="0 .5 0 1 0 0 1"/></equality></mujoco>""",
     "coupled": f"""{_HEAD}<body name="l" pos="3 0 0"><joint name="one" axis="0 1 0"/><geom size=".1" pos=".3
  0 0"/></body><body name="n" pos="4 0 0"><joint name="two" axis="0 1 0" ref="20"/><geom size=".1" pos=".2 0
- 0"/></body></worldbody><equality><joint joint1="two" joint2="one" polycoef="0 -.5 .1"/></equality></mujoco>""",
+ 0"/></body></worldbody><equality><joint joint1="two" joint2="one" polycoef="0 -.5 .1"/>
+</equality></mujoco>""",
     "coupled to a reference": f"""{_HEAD}<body name="l"><joint name="one" axis="0 1 0" ref="30"/><geom
  size=".1" pos=".3 0 0"/><body name="n" pos=".3 0 0"><joint name="two" axis="0 1 0"/><geom size=".1" pos=".2
  0 0"/></body></body></worldbody><equality><joint joint1="two" joint2="one" polycoef="0 -.5 .2 .1"/>

@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 
-
 import pytest
 from driven_cases import ACTUATED, arm
 from numpy.testing import assert_allclose

@@ -19,7 +19,8 @@ _LAW = "the force of the actuator is another one"
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
-_ACTUATOR = "actlimited actrange class ctrllimited ctrlrange forcelimited forcerange gear group joint jointinparent name"
+_BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
+_ACTUATOR = f"{_BOUNDS} class gear group joint jointinparent name"
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype",
     "motor": "",

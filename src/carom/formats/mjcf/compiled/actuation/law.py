@@ -1,12 +1,13 @@
 """The law of an actuator: how its gain, bias and dynamics follow from shortcuts and defaults.
 
-`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. A shortcut starts from the gain,
-bias and dynamics that earlier ones of its own kind, or general ones, have left; those of other kinds it drops.
+`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. Each kind has defaults of its own;
+those for general actuators are those of the last kind, and where a general one comes last, of all kinds.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass, field
 from math import pi
 
@@ -42,7 +43,7 @@ class Law:
         bias: Parameters of the bias. A positive last one of a servo is a damping ratio.
         time: First parameter of the dynamics.
         inherited: Factor on the range of the joint that bounds the target; 0 for none.
-        shortcut: The last shortcut; empty for none.
+        shortcut: The shortcut that it is of; empty for a general one.
         bounded: Names of the ranges that have to be stated.
     """
 
@@ -67,13 +68,9 @@ class Law:
             text = attributes.get(name)
             return default if text is None else [*numbers(name, text, most), *default][:3]
 
-        if tag != "general":
-            if self.shortcut not in ("", tag):
-                self._set(FIXED, NONE, NONE, _one(), _zero())
-                self.time, self.inherited = 1.0, 0.0
-            elif tag == "position" and not self.shortcut:
-                self.dynamics, self.time = NONE, 1.0
-            self.shortcut = tag
+        if tag == "position" and not self.shortcut:
+            self.dynamics, self.time = NONE, 1.0
+        self.shortcut = "" if tag == "general" else tag
         match tag:
             case "general":
                 self.gain_type = attributes.get("gaintype", self.gain_type)
@@ -161,3 +158,23 @@ class Law:
         """Of a servo whose damping is to be found from the inertia that it moves; 0 for none."""
         is_servo = self.bias_type == AFFINE and self.gain[0] == -self.bias[1]
         return max(self.bias[2], 0.0) if is_servo else 0.0
+
+
+class Laws:
+    """The laws that defaults have left, by kind of element."""
+
+    def __init__(self) -> None:
+        self._last = Law()
+        self._own: dict[str, Law] = {}
+
+    def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> Law:
+        """The law of an element, which is a default for those that follow."""
+        if tag == "general":
+            self._own.clear()
+            law = self._last
+        else:
+            law = self._own.get(tag) or (Law() if self._last.shortcut else self._last)
+        law = deepcopy(law)
+        law.apply(tag, attributes, numbers)
+        self._own[tag] = self._last = law
+        return law

@@ -14,6 +14,7 @@ from carom.formats.mjcf.compiled.actuation.law import (
     KINDS,
     NONE,
     Law,
+    Laws,
 )
 from carom.formats.mjcf.compiled.actuation.moved_inertia import moved_inertia
 from carom.formats.mjcf.compiled.elements import Scope
@@ -157,7 +158,7 @@ class ActuatorReader:
 
 def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
     """All attributes of an actuator, with defaults of all kinds, and its law."""
-    context, law = scope.context, Law()
+    context, laws = scope.context, Laws()
     name = element.attributes.get("class") or MAIN
     if name not in context.classes and name != MAIN:
         raise context.error(element, f"there is no default class {shown(name)}")
@@ -170,9 +171,9 @@ def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
         if tag in KINDS:
             if isinstance(defaults, Recorded):
                 defaults.note_use()
-            law.apply(tag, defaults, numbers)
+            laws.apply(tag, defaults, numbers)
             whole = layered(whole, defaults)
-    law.apply(element.tag, element.attributes, numbers)
+    law = laws.apply(element.tag, element.attributes, numbers)
     return layered(whole, element.attributes), law
 
 
