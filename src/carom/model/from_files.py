@@ -117,9 +117,6 @@ def compiled_mjcf_bodies(
         )
         # A base that is fixed keeps the mass of its body, which has no effect until it is freed.
         spec.base.mass = placed.robot.links[placed.robot.root].inertial.mass
-        joints = {link.joint_name for link in spec.links}
-        drivers = (it.spec for it in model.actuators if it.spec is not None and it.spec.joint in joints)
-        spec.actuators = tuple(drivers)
         bodies.append((spec, placed.pose))
     return model, bodies
 

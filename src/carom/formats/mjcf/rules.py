@@ -47,7 +47,7 @@ _READ = {
     "texture": "class file name type",
     "material": "class name rgba specular texture",
     "model": "file name",
-    "body": f"childclass mocap name pos {_TURN}",
+    "body": f"childclass gravcomp mocap name pos {_TURN}",
     "inertial": f"diaginertia fullinertia mass pos {_TURN}",
     "joint": "armature axis class damping frictionloss limited name pos range ref springref stiffness type "
     "actuatorfrclimited actuatorfrcrange",
@@ -73,7 +73,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("compiler", "conflict", "settings of attached models do not reach this one", _YET),
     ("option", "o_friction o_margin o_solimp o_solref", _SOFT, _YET),
     ("option", "sleep_tolerance", "bodies do not fall asleep", _YET),
-    ("body", "gravcomp", "gravity acts on it", _YET),
     ("body", "sleep", "it does not fall asleep", _YET),
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springdamper springyield", "the joint has another spring", _YET),

@@ -64,6 +64,7 @@ class BodyReader:
         self.bodies.append(body)
         local = read_pose(context, element, attributes)
         body.pose = compose(scope.into, local)
+        body.gravity_compensation = context.number(element, attributes, "gravcomp", 0.0)
         body.is_mocap = context.flag(element, attributes, "mocap", False)
         if body.is_mocap and not is_top:
             raise context.error(element, "only bodies of the world can be mocap bodies")

@@ -55,6 +55,7 @@ class CompiledBody:
         collisions: Its shapes that collide.
         visuals: Its shapes that are seen.
         contact: Friction of its geoms.
+        gravity_compensation: Share of its weight that is carried.
         children: Bodies in it.
     """
 
@@ -68,6 +69,7 @@ class CompiledBody:
     collisions: list[Collision] = field(default_factory=list)
     visuals: list[Visual] = field(default_factory=list)
     contact: ContactParameters = ContactParameters()
+    gravity_compensation: float = 0.0
     children: list[CompiledBody] = field(default_factory=list)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
@@ -21,6 +22,7 @@ from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, read_root
+from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import locate
@@ -88,11 +90,19 @@ def compile_mjcf(
             for element in each.context.root.all(tag):
                 element.note()
     ActuatorReader(model, names).read(scope)
+    model.robots = [_driven(placed, model) for placed in model.robots]
     EqualityReader(model, names, whole).read(scope)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)
     return model
+
+
+def _driven(placed: PlacedRobot, model: CompiledModel) -> PlacedRobot:
+    """A robot with the actuators of its joints, in the order of the file."""
+    joints = {joint.name for joint in placed.robot.joints}
+    actuators = (it.spec for it in model.actuators if it.spec is not None and it.spec.joint in joints)
+    return replace(placed, robot=replace(placed.robot, actuators=tuple(actuators)))
 
 
 def _read_document(
