@@ -51,7 +51,8 @@ def test_the_content_of_a_file_is_its_format(write, text, kind):
         assert len(scene) == 1
         assert list(scene) == scene.bodies == list(world.bodies.values())
         assert scene[scene[0].name] is scene[0]
-        assert scene.actuators == scene.sensors == scene.keyframes == scene.cameras == {}
+        assert list(scene.actuators) == ([] if kind != "MJCF" else ["actuator0_0"])
+        assert scene.sensors == scene.keyframes == scene.cameras == {}
         assert scene.options == ({"timestep": 0.01, "gravity": (0.0, 0.0, -9.81)} if kind == "MJCF" else {})
 
 

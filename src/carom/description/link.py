@@ -96,11 +96,16 @@ class ContactParameters:
 
 @record
 class Link:
-    """One rigid body of a robot."""
+    """One rigid body of a robot.
+
+    Attributes:
+        gravity_compensation: Share of its weight that a force at its centre of mass carries; 1 for all.
+    """
 
     name: str
     inertial: Inertial = Inertial()
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     contact: ContactParameters = ContactParameters()
+    gravity_compensation: float = 0.0
     user_data: dict[str, str] = field(default_factory=dict)

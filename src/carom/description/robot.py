@@ -6,6 +6,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from carom.description.actuator import ActuatorSpec
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
 from carom.record import record
@@ -26,6 +27,7 @@ class Robot:
         user_data: Key and value pairs stated by the file for the model.
         deformable: Its description if it is a soft body; it then has a single link with the name of the
             `<deformable>` or `<reduced_deformable>` element, and no joints.
+        actuators: What drives its joints; PyBullet's API has none.
     """
 
     name: str
@@ -36,3 +38,4 @@ class Robot:
     source: Path | None = None
     user_data: dict[str, str] = field(default_factory=dict)
     deformable: Deformable | None = None
+    actuators: tuple[ActuatorSpec, ...] = ()

@@ -156,6 +156,7 @@ class Model:
     tree_max_velocity: RealRows
     link_mass: RealRows
     link_inertia: Vector3Rows  # principal moments
+    link_gravity_compensation: RealRows  # share of its weight that a force at its centre of mass carries
     tree_joint_terms: RealRows  # not 0: some joint has armature, implicit damping or a spring
     dof_damping: RealRows  # explicit, as PyBullet's
     dof_armature: RealRows  # inertia of the drive, seen at the joint

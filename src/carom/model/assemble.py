@@ -66,6 +66,7 @@ def assemble(
         user_data=dict(robot.user_data),
         link_damping=0.0 if as_written else DEFAULT_LINK_DAMPING,
         is_held=not as_written,
+        actuators=robot.actuators if as_written else (),
     )
     if flags & LoadFlags.PRINT_URDF_INFO:
         _log.info("%s", outline(body))
@@ -88,6 +89,7 @@ def _link_spec(
         visuals=() if flags & LoadFlags.IGNORE_VISUAL_SHAPES else link.visuals,
         compound_margin=compound_margin,
         contact=link.contact,
+        gravity_compensation=link.gravity_compensation,
         user_data=dict(link.user_data),
     )
     if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:

@@ -60,6 +60,7 @@ class LinkSpec:
             inertial frame, are widened [m].
         contact: Contact parameters of the link.
         mimic: The joint this one follows, as the file states it; not simulated in a body with `is_held`.
+        gravity_compensation: Share of its weight that a force at its centre of mass carries.
         user_data: Key and value pairs stated by the file for the link.
     """
 
@@ -89,6 +90,7 @@ class LinkSpec:
     compound_margin: float = MARGIN
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
+    gravity_compensation: float = 0.0
     user_data: dict[str, str] = field(default_factory=dict)
 
     @property

@@ -212,6 +212,7 @@ class WorldArrays:
             model[name][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
         model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
+        model["link_gravity_compensation"][:, first_link] = spec.base.gravity_compensation
 
         last_dof = {BASE: -1}
         position = rows.first["position"] + BASE_POSITIONS
@@ -225,6 +226,7 @@ class WorldArrays:
             model["link_first_dof"][row] = dof
             model["link_dof_count"][row] = DOF_COUNT[code]
             self.write_inertia(row, link.mass, link.inertia)
+            model["link_gravity_compensation"][:, row] = link.gravity_compensation
             self._write_joint(row, link, parent, code)
             last_dof[j] = last_dof[link.parent]
             for _ in range(DOF_COUNT[code]):

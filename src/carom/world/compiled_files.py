@@ -26,11 +26,13 @@ def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
 
 
 def describe(scene: Scene, model: CompiledModel) -> None:
-    """Give a scene the sites, cameras, keyframes and options of its file."""
+    """Give a scene the sites, cameras, actuators, keyframes and options of its file."""
     scene.sites = dict(model.sites)
     scene.cameras = dict(model.cameras)
     scene.options = dict(model.options)
-    scene.keyframes = {name: Keyframe(state, scene, model.joints) for name, state in model.keyframes.items()}
+    of_bodies = {it.name: it for body in scene.bodies for it in body.actuators}
+    scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
+    scene.keyframes = {name: Keyframe(state, scene, model) for name, state in model.keyframes.items()}
 
 
 def _kept_apart(bodies: Sequence[Body], model: CompiledModel) -> Iterator[tuple[int, int]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +12,7 @@ from carom.model.body_spec import BASE
 from carom.native.products import dots
 
 if TYPE_CHECKING:
-    from carom.formats.mjcf.compiled.model import FileKeyframe
+    from carom.formats.mjcf.compiled.model import CompiledModel, FileKeyframe
     from carom.scene.body import Body
     from carom.world.scene import Scene
 
@@ -30,17 +29,22 @@ class Keyframe:
             quaternion (w, x, y, z); of a spherical joint a quaternion (w, x, y, z). Empty if there are none.
         velocities: Of all joints in that order: of a free body the velocity of its frame in the world, and
             its angular velocity in its own axes. Empty if the file has none: the bodies are at rest.
-        controls: Of all actuators in the order of the file. Empty if the file has none.
+        controls: Of all actuators in the order of the file. Empty if the file has none: they are 0.
+        activations: Of all actuators with a state, in that order. Empty if the file has none: they are 0.
     """
 
-    def __init__(self, state: FileKeyframe, scene: Scene, joints: Sequence[tuple[str, str, str]]) -> None:
+    def __init__(self, state: FileKeyframe, scene: Scene, model: CompiledModel) -> None:
         self.name = state.name
         self.time = state.time
         self.positions: np.ndarray = np.array(state.positions)
         self.velocities: np.ndarray = np.array(state.velocities)
         self.controls: np.ndarray = np.array(state.controls)
+        self.activations: np.ndarray = np.array(state.activations)
         self._bodies = tuple(scene.bodies)
-        self._joints = tuple(joints)
+        self._joints = tuple(model.joints)
+        # By the order of controls, and by that of activations; None for one that is not built.
+        self._actuators = [scene.actuators.get(it.name) for it in model.actuators]
+        self._with_activation = [scene.actuators.get(it.name) for it in model.actuators if it.has_activation]
 
     def __repr__(self) -> str:
         return f"<Keyframe {self.name!r}: {len(self.positions)} positions>"
@@ -65,6 +69,12 @@ class Keyframe:
                 w, x, y, z = q
                 q = [x, y, z, w]
             body.set_joint_state(joint, q or None, v)
+        for number, actuator in enumerate(self._actuators):
+            if actuator is not None:
+                actuator.control = self.controls[number] if len(self.controls) else 0.0
+        for number, actuator in enumerate(self._with_activation):
+            if actuator is not None:
+                actuator.activation = self.activations[number] if len(self.activations) else 0.0
         for body in self._bodies:
             body.note_reset(moved=True)
 

@@ -14,7 +14,7 @@ from carom.scene.body import Body
 if TYPE_CHECKING:
     from carom.formats.kinds import FileKind
     from carom.formats.search import AssetSearch
-    from carom.scene.named_constraints.joint_coupling import JointCoupling
+    from carom.world.compiled_constraints import NamedConstraint
     from carom.world.robot_files import Choices
     from carom.world.scene import Scene
     from carom.world.world import World
@@ -125,10 +125,12 @@ class DescriptionLoading(BodyAdding):
             return self._load_file(path, position, orientation, choices)
         from carom.formats.reading.ignored import IgnoredList
         from carom.scene.named_constraints.joint_coupling import couplings_of
+        from carom.scene.named_constraints.tie import ties_of
         from carom.world.scene import Scene
 
         world, bodies = self._as_world(), self.load_saved(path)
-        return Scene(world, path, "saved world", bodies, IgnoredList(), couplings_of(world, bodies))
+        constraints = [*couplings_of(world, bodies), *ties_of(world, bodies)]
+        return Scene(world, path, "saved world", bodies, IgnoredList(), constraints)
 
     def load_saved(self, path: str | Path) -> list[Body]:
         """Add all bodies of a world that was saved by `save`; see `load`, which takes other files as well.
@@ -257,6 +259,8 @@ class DescriptionLoading(BodyAdding):
     ) -> Scene:
         """Add everything that a robot file describes; see `World.load`."""
         from carom.checks import vector
+        from carom.description.pose import Pose
+        from carom.world.compiled_constraints import constrain
         from carom.world.compiled_files import describe, finish
         from carom.world.robot_files import couple, placed, read_robot_file, report
         from carom.world.scene import Scene
@@ -265,15 +269,17 @@ class DescriptionLoading(BodyAdding):
         turn = vector(orientation, 4, "orientation").tolist()
         source = read_robot_file(path, choices, kind)
         report(source, strict=choices.strict)
-        couplings: list[JointCoupling] = []
+        constraints: list[NamedConstraint] = []
 
         def also(bodies: list[Body]) -> None:
-            couplings.extend(couple(bodies))
+            constraints.extend(couple(bodies))
             if source.model is not None:
                 finish(bodies, source.model)
+                frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
+                constraints.extend(constrain(bodies, source.model, frame))
 
         bodies = self.load_all(placed(source.bodies, place, turn), also)
-        scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, couplings)
+        scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, constraints)
         if source.model is not None:
             describe(scene, source.model)
         return scene

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
-from carom.scene.named_constraints.joint_coupling import JointCoupling
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
+    from carom.world.compiled_constraints import NamedConstraint
     from carom.world.keyframe import Keyframe
     from carom.world.world import World
 
@@ -26,8 +27,8 @@ class Scene(Sequence[Body]):
         source: The file.
         format: Its format: `URDF`, `SDF`, `MJCF` or `saved world`.
         bodies: The bodies, in the order of the file.
-        constraints: Constraints by name, such as couplings of joints.
-        actuators: Actuators by name; none are made yet.
+        constraints: Couplings of joints, and connected and welded links, by name.
+        actuators: Actuators of all bodies by name, in the order of an MJCF file.
         sensors: Sensors by name; none are made yet.
         sites: Named frames of MJCF files, by name.
         keyframes: Named states of MJCF files, by name; `reset` puts the bodies into one.
@@ -43,14 +44,14 @@ class Scene(Sequence[Body]):
         format_name: str,
         bodies: Sequence[Body],
         ignored: IgnoredList,
-        constraints: Sequence[JointCoupling] = (),
+        constraints: Sequence[NamedConstraint] = (),
     ) -> None:
         self.world: World = world
         self.source: Path = source
         self.format: str = format_name
         self.bodies: list[Body] = list(bodies)
-        self.constraints: dict[str, JointCoupling] = {it.name: it for it in constraints}
-        self.actuators: dict[str, Any] = {}
+        self.constraints: dict[str, NamedConstraint] = {it.name: it for it in constraints}
+        self.actuators: dict[str, BodyActuator] = {it.name: it for body in bodies for it in body.actuators}
         self.sensors: dict[str, Any] = {}
         self.sites: dict[str, Site] = {}
         self.keyframes: dict[str, Keyframe] = {}
@@ -61,7 +62,7 @@ class Scene(Sequence[Body]):
     def reset(self, keyframe: str) -> None:
         """Put the bodies of the scene into a state of the file; the time of the world goes on.
 
-        Motors keep their commands.
+        Actuators get its controls and activations; motors keep their commands.
 
         Args:
             keyframe: Its name.

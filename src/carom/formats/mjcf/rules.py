@@ -14,23 +14,43 @@ _YET = "not read yet"
 _NO_LOSS = "none for the dynamics"
 _SKETCH = "it is for the window of MuJoCo"
 _SOFT = "contacts and limits are Carom's own"
+_RIGID = "the constraint is as stiff as the solver makes it"
+_LAW = "the force of the actuator is another one"
 _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
+
+_BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
+_ACTUATOR = f"{_BOUNDS} class gear group joint jointinparent name"
+_ACTUATORS = {
+    "general": "biasprm biastype dynprm dyntype gainprm gaintype",
+    "motor": "",
+    "position": "dampratio inheritrange kp kv timeconst",
+    "velocity": "kv",
+    "intvelocity": "dampratio inheritrange kp kv",
+    "damper": "kv",
+    "cylinder": "area bias diameter timeconst",
+}
+
+_EQUALITY = "active body1 body2 class name site1 site2"
+_NOT_OF_JOINTS = "cranklength cranksite refsite site slidersite tendon body"
+
+_UNBUILT = ("orientation", "pid", "muscle", "adhesion", "dcmotor", "plugin")
 
 _READ = {
     "mujoco": "model",
     "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
     "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
-    "option": "density gravity impratio integrator cone jacobian magnetic solver timestep viscosity wind",
+    "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic solver "
+    "timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
     "texture": "class file name type",
     "material": "class name rgba specular texture",
     "model": "file name",
-    "body": f"childclass mocap name pos {_TURN}",
+    "body": f"childclass gravcomp mocap name pos {_TURN}",
     "inertial": f"diaginertia fullinertia mass pos {_TURN}",
     "joint": "armature axis class damping frictionloss limited name pos range ref springref stiffness type "
-    "actuatorfrclimited",
+    "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
     "geom": "class conaffinity condim contype density fitscale friction fromto group hfield mass material "
     f"mesh name pos rgba shellinertia size type {_TURN}",
@@ -41,18 +61,20 @@ _READ = {
     "replicate": "childclass count euler offset sep",
     "include": "file",
     "exclude": "body1 body2 name",
-    "key": "ctrl name qpos qvel time",
+    **{tag: f"{_ACTUATOR} {own}".strip() for tag, own in _ACTUATORS.items()},
+    "connect": f"anchor {_EQUALITY}",
+    "weld": f"anchor relpose {_EQUALITY}",
+    "equality": "active class",
+    "key": "act ctrl name qpos qvel time",
     "default": "class",
 }
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("compiler", "conflict", "settings of attached models do not reach this one", _YET),
-    ("option", "actuatorgroupdisable", "no actuator is switched off", _YET),
     ("option", "o_friction o_margin o_solimp o_solref", _SOFT, _YET),
     ("option", "sleep_tolerance", "bodies do not fall asleep", _YET),
-    ("body", "gravcomp", "gravity acts on it", _YET),
     ("body", "sleep", "it does not fall asleep", _YET),
-    ("joint", "actuatorfrcrange actuatorgravcomp", "forces of actuators on the joint are not changed", _YET),
+    ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springdamper springyield", "the joint has another spring", _YET),
     ("joint", "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET),
     ("geom", "gap margin solimp solref solmix", _SOFT, _YET),
@@ -60,8 +82,14 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
     ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
-    ("key", "act", "activations of actuators are not set", _YET),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
+    *[
+        (tag, "actdim actearly armature damping delay ffrange input interp nsample velrange", _LAW, _YET)
+        for tag in _ACTUATORS
+    ],
+    ("general", "inheritrange", _LAW, _YET),
+    *[(tag, "solimp solref", _RIGID, _YET) for tag in ("connect", "weld", "equality", "equality/joint")],
+    ("weld", "torquescale", _RIGID, _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )
 
@@ -79,6 +107,7 @@ _WITHOUT_LOSS = {
     "joint": "group user",
     "freejoint": "group",
     "geom": "castshadow user",
+    **dict.fromkeys(_ACTUATORS, f"lengthrange user {_NOT_OF_JOINTS}"),
     "site": "group material rgba user",
     "camera": "ipd output principal principalpixel projection target user",
     "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
@@ -87,6 +116,12 @@ _WITHOUT_LOSS = {
 
 _ELEMENTS = (
     Rule("actuator/*", "it does not act", _YET),
+    *[Rule(f"actuator/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
+    *[Rule(f"default/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
+    *[
+        Rule(f"equality/joint@{name}", "none: it has no meaning here", "another attribute counts")
+        for name in ("active", "class", "joint1", "joint2", "name", "polycoef")
+    ],
     Rule("sensor/*", "there is no such sensor", _YET),
     Rule("tendon/*", "it does not pull", _YET),
     Rule("equality/*", "this constraint does not hold", _YET),

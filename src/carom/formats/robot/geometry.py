@@ -16,6 +16,7 @@ WRITTEN_MESH_SUFFIXES = (*MESH_SUFFIXES, ".glb", ".gltf", ".ply")
 
 FIELD_SUFFIXES = (".cdf",)
 _SHAPES = ("box", "sphere", "cylinder", "capsule", "plane", "mesh", "cdf")
+_OF_DRAKE = "drake:capsule"
 
 
 def shape_element(context: FileContext, owner: Element) -> Element:
@@ -26,7 +27,7 @@ def shape_element(context: FileContext, owner: Element) -> Element:
     if not geometry.children:
         raise context.error(geometry, "it holds no shape")
     shape = geometry.children[0]
-    if shape.tag not in _SHAPES:
+    if shape.tag not in _SHAPES and not (shape.tag == _OF_DRAKE and context.written is not None):
         raise context.error(shape, f"unknown shape; known are {', '.join(_SHAPES)}")
     return shape
 

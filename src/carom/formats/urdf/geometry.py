@@ -19,7 +19,7 @@ def read_urdf_geometry(context: FileContext, owner: Element) -> Geometry:
             return Sphere(context.scale * context.non_negative(shape, "radius"))
         case "cylinder":
             return Cylinder(*_radius_and_length(context, shape))
-        case "capsule":
+        case "capsule" | "drake:capsule":
             return Capsule(*_radius_and_length(context, shape))
         case "plane":
             context.required(shape, "normal")

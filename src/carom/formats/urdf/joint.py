@@ -18,6 +18,7 @@ from carom.formats.robot.joint import (
     read_limit,
     unit_axis,
 )
+from carom.formats.urdf.transmission import with_rotor
 from carom.formats.xml_element import Element
 
 Ignored = TypeVar("Ignored")
@@ -41,7 +42,7 @@ def read_joint(context: FileContext, element: Element, link_indices: dict[str, i
         axis_length = 1.0
     damping, friction = read_dynamics(context, element)
     scale = context.scale if kind in SLIDES else 1.0
-    return Joint(
+    joint = Joint(
         name,
         kind,
         parent=_read_end(context, element, "parent", link_indices),
@@ -55,6 +56,7 @@ def read_joint(context: FileContext, element: Element, link_indices: dict[str, i
         mimic=_if_valid(context, element.first("mimic"), scale, _read_mimic),
         safety=_if_valid(context, element.first("safety_controller"), scale, _read_safety),
     )
+    return joint if context.written is None else with_rotor(context, element, joint)
 
 
 def _read_end(context: FileContext, joint: Element, tag: str, link_indices: dict[str, int]) -> int:

@@ -27,7 +27,7 @@ def report_motion_without_mass(context: FileContext, links: Sequence[Link], join
     for joint in joints:
         children[joint.parent].append(joint)
     for joint, element in zip(joints, list(context.root.all("joint")), strict=True):
-        if joint.type is JointType.FIXED:
+        if joint.type is JointType.FIXED or joint.armature > 0.0:
             continue
         moved = _moved(joint, children)
         turns = joint.type not in SLIDES

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
+from carom.description.actuator import ActuatorSpec
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
@@ -24,6 +25,7 @@ from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
 from carom.formats.urdf.moving_mass import report_motion_without_mass
 from carom.formats.urdf.rules import URDF_RULES
+from carom.formats.urdf.transmission import read_transmissions
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
@@ -131,7 +133,9 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
     joints = _read_all(context, "joint", lambda it: read_joint(context, it, link_indices))
     warn_of_assumed_masses(context)
     root = find_root(context, links, joints, list(element.all("joint")))
+    actuators: tuple[ActuatorSpec, ...] = ()
     if context.written is not None:
+        actuators = read_transmissions(context, joints)
         report_motion_without_mass(context, links, joints)
         joints = checked_followers(context, joints)
     robot = Robot(
@@ -142,6 +146,7 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
         materials=tuple(context.materials.values()),
         source=context.file,
         user_data=context.user_data(element),
+        actuators=actuators,
     )
     return robot, context.references
 

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from carom.formats.reading.rules import Rule, Rules
 
-_NO_ACTUATORS = "actuators of files are not made yet; command joints by their motors"
+_NO_ACTUATORS = "only those of simple transmissions are made; command joints by their motors"
 _SIMULATOR = "settings of another simulator"
 
 URDF_RULES: Rules = Rules(
     "URDF",
     (
-        Rule("robot/transmission", "joints are commanded directly, without reduction", _NO_ACTUATORS),
+        Rule("transmission/*", "none for the dynamics", "it is for the programs of the real robot"),
+        Rule("transmission/type", "none: it is a simple one", "another one counts"),
+        Rule("actuator/*", "none for the dynamics", "it is for the programs of the real robot"),
+        Rule("transmission/joint/*", "none for the dynamics", "it is for the programs of the real robot"),
+        Rule("transmission@*", "none", "its actuator has a name"),
+        Rule("transmission/joint@*", "none for the dynamics", "it is for the programs of the real robot"),
+        Rule("transmission/actuator@*", "none for the dynamics", "it is for the programs of the real robot"),
         Rule("robot/gazebo", "its sensors, plugins and contact parameters are missing", _SIMULATOR),
         Rule("robot/ros2_control", "its controllers and initial values are missing", _NO_ACTUATORS),
         Rule("robot/sensor", "the sensor is missing", "sensors of files are not made yet"),
@@ -40,8 +46,6 @@ URDF_RULES: Rules = Rules(
         Rule("joint/limit@jerk", "jerks are not limited", "not built"),
         Rule("joint/limit@deceleration", "decelerations are not limited", "not built"),
         Rule("joint/actuator", "joints are commanded directly", _NO_ACTUATORS),
-        Rule("joint/drake:rotor_inertia", "no reflected inertia of the rotor", "armature is not read yet"),
-        Rule("joint/drake:gear_ratio", "no reflected inertia of the rotor", "armature is not read yet"),
         Rule("joint/drake:controller_gains", "no controller is made", _NO_ACTUATORS),
         Rule("robot/drake:collision_filter_group", "these links collide", "not built"),
         Rule("robot/drake:joint", "this joint is missing", "not built"),

@@ -61,9 +61,10 @@ def damping_rate(coefficient: real, speed: real) -> real:
 
 @func
 def external_force(model: Model, state: State, mass: real, world: Int32, link: Int32) -> Vector3:
-    """Gravity and the force applied by the user, at the centre of mass [N]."""
+    """Gravity, less what is compensated, and the force applied by the user, at the centre of mass [N]."""
     wrench = state.link_wrench[world, link]
-    return model.gravity_vector[world, 0] * mass + Vector3(wrench[0], wrench[1], wrench[2])
+    pulled = mass - model.link_gravity_compensation[world, link] * mass
+    return model.gravity_vector[world, 0] * pulled + Vector3(wrench[0], wrench[1], wrench[2])
 
 
 @func

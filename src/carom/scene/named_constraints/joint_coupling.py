@@ -122,7 +122,8 @@ def place_followers(body: Body, joint: int) -> None:
         leader = pending.pop()
         for coupling in couplings:
             follower = coupling.follower.index
-            if coupling.leader is not None and coupling.leader.index == leader and follower not in placed:
+            of = coupling.leader
+            if of is not None and of.body is body and of.index == leader and follower not in placed:
                 coupling.place()
                 placed.add(follower)
                 pending.append(follower)
@@ -134,21 +135,25 @@ def new_coupling(
     leader: int | None,
     coefficients: tuple[float, float, float, float, float],
     name: str,
+    other: Body | None = None,
 ) -> UserConstraint:
-    """The constraint between two joints of a body, to be put into its world; None for no leader.
+    """The constraint between two joints, to be put into their world; None for no leader.
+
+    The leader is a joint of the same body, or of another one.
 
     Raises:
         ValueError: One of them is not revolute or prismatic.
     """
-    for joint in (follower, leader):
-        if joint is not None and body.velocity_count[joint] != _SINGLE_DOF:
-            raise ValueError(f"joint {body.spec.links[joint].joint_name!r} is neither revolute nor prismatic")
+    of_leader = body if other is None else other
+    for each, joint in ((body, follower), (of_leader, leader)):
+        if joint is not None and each.velocity_count[joint] != _SINGLE_DOF:
+            raise ValueError(f"joint {each.spec.links[joint].joint_name!r} is neither revolute nor prismatic")
     constant, first, second, third, fourth = coefficients
     tie = body.world.user_constraints.new(
         UserConstraintKind.COUPLING,
         body,
         follower,
-        None if leader is None else body,
+        None if leader is None else of_leader,
         -1 if leader is None else leader,
         (0.0, 0.0, 0.0),
         IDENTITY,

@@ -35,6 +35,7 @@ class BodyReader:
     Attributes:
         model: What has been read so far, apart from bodies.
         bodies: All bodies, without the world, in document order.
+        elements: The walk through all elements of bodies.
         missing_meshes: Geoms whose mesh is missing are left out and reported.
     """
 
@@ -42,7 +43,7 @@ class BodyReader:
         self.model = model
         self.bodies: list[CompiledBody] = []
         self.missing_meshes = missing_meshes
-        self._elements = Elements()
+        self.elements = Elements()
         self._meshes = Meshes()
         self._lines: dict[str, dict[str, int]] = {}
 
@@ -64,6 +65,7 @@ class BodyReader:
         self.bodies.append(body)
         local = read_pose(context, element, attributes)
         body.pose = compose(scope.into, local)
+        body.gravity_compensation = context.number(element, attributes, "gravcomp", 0.0)
         body.is_mocap = context.flag(element, attributes, "mocap", False)
         if body.is_mocap and not is_top:
             raise context.error(element, "only bodies of the world can be mocap bodies")
@@ -84,7 +86,7 @@ class BodyReader:
     ) -> None:
         geoms: list[Geom] = []
         stated: BodyInertia | None = None
-        for child, within in self._elements.inside(element, scope):
+        for child, within in self.elements.inside(element, scope):
             context = within.context
             match child.tag:
                 case "body":

@@ -54,10 +54,21 @@ class Scope:
 
 
 class Elements:
-    """Goes through the elements of a file; counts them, since copies multiply."""
+    """Goes through the elements of a file; counts them, since copies multiply.
+
+    Attributes:
+        attached: The scopes of all models that were attached, in order.
+    """
 
     def __init__(self) -> None:
         self.count = 0
+        self.attached: list[Scope] = []
+        self._copied: dict[int, dict[tuple[str, str], Scope]] = {}
+
+    def copied(self, scope: Scope) -> list[Scope]:
+        """The scopes of all copies that `<replicate>` made within the file of a scope, in order."""
+        copies = self._copied.get(id(scope.context), {})
+        return [copy for (prefix, _), copy in copies.items() if prefix == scope.prefix]
 
     def inside(self, parent: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
         """The elements of a body, the world or a frame, and their scopes, in document order."""
@@ -94,7 +105,9 @@ class Elements:
         child_class = attributes.get("childclass", scope.child_class)
         for number in range(count):
             suffix = f"{separator}{number:0{digits}d}{scope.suffix}"
-            yield from self.inside(element, replace(scope, child_class=child_class, into=into, suffix=suffix))
+            inner = replace(scope, child_class=child_class, into=into, suffix=suffix)
+            self._copied.setdefault(id(context), {})[scope.prefix, suffix] = replace(inner, into=IDENTITY)
+            yield from self.inside(element, inner)
             into = compose(into, step)
 
     def _attached(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
@@ -105,6 +118,7 @@ class Elements:
             raise context.error(element, f"there is no model {shown(name)}")
         prefix = scope.prefix + attributes.get("prefix", "")
         inner = Scope(other, None, scope.into, prefix, scope.suffix)
+        self.attached.append(inner)
         kind = "frame" if "frame" in attributes else "body"
         wanted = attributes.get(kind)
         worlds = list(other.root.all("worldbody"))

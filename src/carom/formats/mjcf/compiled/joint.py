@@ -46,20 +46,21 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
         context.leave_out(element, "it has no friction", "friction of balls is not built", "frictionloss")
         friction = 0.0
     reference = 0.0 if kind == "ball" else _position(scope, element, attributes, "ref", kind)
+    bounds = _actuator_range(scope, element, attributes)
     joint = Joint(
         scope.name(element),
         described,
         0,
         0,
         axis=axis,
-        limit=JointLimit(lower, upper, effort=_effort(scope, element, attributes)),
+        limit=JointLimit(lower, upper, effort=_effort(bounds)),
         damping=damping,
         friction=friction,
         armature=_first(scope, element, attributes, "armature"),
         stiffness=_first(scope, element, attributes, "stiffness"),
         spring_reference=0.0 if kind == "ball" else _position(scope, element, attributes, "springref", kind),
     )
-    return CompiledJoint(joint, anchor, reference, element)
+    return CompiledJoint(joint, anchor, reference, element, context, bounds)
 
 
 def _triple(scope: Scope, element: Element, attributes: Attributes, name: str, default: Vector3) -> Vector3:
@@ -118,14 +119,21 @@ def is_limited(scope: Scope, element: Element, attributes: Attributes, name: str
     return lower < upper
 
 
-def _effort(scope: Scope, element: Element, attributes: Attributes) -> float:
-    """The bound of actuators' forces on the joint, in the description only; 0 for none."""
+def _effort(bounds: tuple[float, float]) -> float:
+    """The bound of actuators' forces on the joint in the description; 0 for none."""
+    lower, upper = bounds
+    return 0.0 if (lower, upper) == (-inf, inf) else max(-lower, upper)
+
+
+def _actuator_range(scope: Scope, element: Element, attributes: Attributes) -> tuple[float, float]:
+    """The bounds of the sum of actuators' forces on the joint."""
     if not is_limited(scope, element, attributes, "actuatorfrclimited", "actuatorfrcrange"):
-        return 0.0
-    lower, upper = scope.context.numbers(
-        element, "actuatorfrcrange", attributes.get("actuatorfrcrange", ""), 2, 2
-    )
-    return min(max(-lower, upper), inf)
+        return (-inf, inf)
+    text = attributes.get("actuatorfrcrange", "")
+    lower, upper = scope.context.numbers(element, "actuatorfrcrange", text, 2, 2)
+    if lower >= upper:
+        raise scope.context.error(element, f"actuatorfrcrange={shown(text)}: the first number must be less")
+    return lower, upper
 
 
 def _first(scope: Scope, element: Element, attributes: Attributes, name: str) -> float:

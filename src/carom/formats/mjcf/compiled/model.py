@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import field
-from typing import Any
+from math import inf
+from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Joint, Pose, Visual
 from carom.description.link import ContactParameters
@@ -12,6 +13,10 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
 from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
+    from carom.formats.mjcf.compiled.context import CompiledContext
 
 
 @record(frozen=False, eq=False)
@@ -23,12 +28,16 @@ class CompiledJoint:
         anchor: Its position in the body's frame [m].
         reference: Its position where the body is as the file states it [rad or m].
         element: The element that states it.
+        context: The reading of its file.
+        actuator_range: Bounds of the sum of its actuators' forces [N m or N].
     """
 
     joint: Joint
     anchor: Vector3
     reference: float
     element: Element
+    context: CompiledContext
+    actuator_range: tuple[float, float] = (-inf, inf)
 
 
 @record(frozen=False, eq=False)
@@ -46,6 +55,7 @@ class CompiledBody:
         collisions: Its shapes that collide.
         visuals: Its shapes that are seen.
         contact: Friction of its geoms.
+        gravity_compensation: Share of its weight that is carried.
         children: Bodies in it.
     """
 
@@ -59,6 +69,7 @@ class CompiledBody:
     collisions: list[Collision] = field(default_factory=list)
     visuals: list[Visual] = field(default_factory=list)
     contact: ContactParameters = ContactParameters()
+    gravity_compensation: float = 0.0
     children: list[CompiledBody] = field(default_factory=list)
 
 
@@ -112,6 +123,7 @@ class FileKeyframe:
         positions: `qpos`; quaternions have w first. Empty if it states none: the initial positions.
         velocities: `qvel`. Empty for zero.
         controls: `ctrl`. Empty for zero.
+        activations: `act`. Empty for zero.
     """
 
     name: str
@@ -119,6 +131,64 @@ class FileKeyframe:
     positions: tuple[float, ...]
     velocities: tuple[float, ...]
     controls: tuple[float, ...]
+    activations: tuple[float, ...] = ()
+
+
+@record(frozen=False, eq=False)
+class FileActuator:
+    """An actuator of the file.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        spec: What it does; None if that is not built.
+        has_activation: It has a state in `act`.
+    """
+
+    name: str
+    spec: ActuatorSpec | None
+    has_activation: bool
+
+
+@record
+class FileCoupling:
+    """A joint that follows another.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        follower: Name of the joint.
+        leader: Name of the joint that it follows; None if it is held.
+        coefficients: Of the polynomial in the position of the leader.
+        enabled: It holds.
+    """
+
+    name: str
+    follower: str
+    leader: str | None
+    coefficients: tuple[float, float, float, float, float]
+    enabled: bool
+
+
+@record
+class FileTie:
+    """A frame on a body that coincides with one on another, or, unless it is a weld, its origin.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        is_weld: Axes coincide as well.
+        first: Name of a body.
+        first_frame: The frame in that of the body.
+        second: Name of the other body, or `world`.
+        second_frame: The frame in that of the other body.
+        enabled: It holds.
+    """
+
+    name: str
+    is_weld: bool
+    first: str
+    first_frame: Pose
+    second: str
+    second_frame: Pose
+    enabled: bool
 
 
 @record(frozen=False, eq=False)
@@ -135,6 +205,10 @@ class CompiledModel:
         sites: By name.
         cameras: By name.
         keyframes: By name.
+        actuators: In the order of `ctrl`.
+        couplings: Of joints, by `<equality>`.
+        ties: Of bodies, by `<equality>`.
+        equality_count: Number of all constraints in `<equality>`.
     """
 
     name: str = ""
@@ -146,3 +220,7 @@ class CompiledModel:
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
+    actuators: list[FileActuator] = field(default_factory=list)
+    couplings: list[FileCoupling] = field(default_factory=list)
+    ties: list[FileTie] = field(default_factory=list)
+    equality_count: int = 0

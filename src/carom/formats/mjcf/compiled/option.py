@@ -12,7 +12,6 @@ _SCALARS = ("timestep", "density", "viscosity", "impratio")
 _VECTORS = ("gravity", "wind", "magnetic")
 _WORDS = ("integrator", "cone", "solver", "jacobian")
 _FLAGS = {
-    "actuation": "actuators act",
     "clampctrl": "controls have bounds",
     "constraint": "contacts, limits and other constraints act",
     "contact": "bodies collide",
@@ -41,6 +40,10 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     for name in _WORDS:
         if name in attributes:
             options[name] = attributes[name]
+    if "actuatorgroupdisable" in attributes:
+        text = attributes["actuatorgroupdisable"]
+        groups = context.numbers(element, "actuatorgroupdisable", text, 0, 31)
+        options["actuatorgroupdisable"] = tuple(int(group) for group in groups)
     if options.get("timestep", 1.0) <= 0.0:
         raise context.error(element, f"timestep={shown(attributes['timestep'])} must be positive")
     for flags in element.all("flag"):

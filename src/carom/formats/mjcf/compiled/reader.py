@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from carom.formats.mjcf.compiled.body import BodyReader
+from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
+from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
 from carom.formats.mjcf.compiled.compiler import read_compiler
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.equality import EqualityReader
 from carom.formats.mjcf.compiled.families import connected_pairs
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframe import read_keyframes
-from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, read_root
+from carom.formats.placed import PlacedRobot
 from carom.formats.reading.cursor import Cursor
 from carom.formats.robot.context import shown
 from carom.formats.robot.file import locate
@@ -42,8 +47,8 @@ def compile_mjcf(
     """Reads and checks an MJCF file as MuJoCo understands it, in double precision.
 
     Inertia comes from geoms and meshes by the rules of `<compiler>`; bodies without joints are fixed to what
-    is around them; the geoms of the world are one robot, `world`. Actuators, sensors, tendons, equalities and
-    soft bodies are not read.
+    is around them; the geoms of the world are one robot, `world`. Sensors, tendons and soft bodies are
+    not read.
 
     Args:
         path: The file, looked up with `AssetSearch.find`.
@@ -62,8 +67,9 @@ def compile_mjcf(
     for element in context.root.all("option"):
         read_option(context, element, model.options)
     reader = BodyReader(model, missing_meshes=missing_meshes)
+    scope, whole = Scope(context), CompiledBody(WORLD, context.root)
     for world in context.root.all("worldbody"):
-        whole = reader.read_world(world, Scope(context))
+        whole = reader.read_world(world, scope)
         everything = [whole, *reader.bodies]
         if set_collision_groups(everything):
             context.leave_out(
@@ -78,13 +84,25 @@ def compile_mjcf(
         static = robot_of_world(whole)
         model.robots += [] if static is None else [static]
         model.robots += [robot_of_body(body) for body in whole.children]
-    for tag in _BY_CHILDREN:
-        for element in context.root.all(tag):
-            element.note()
+    names = Names(reader.bodies, reader.elements)
+    for each in (*reader.elements.attached, scope):
+        for tag in _BY_CHILDREN:
+            for element in each.context.root.all(tag):
+                element.note()
+    ActuatorReader(model, names).read(scope)
+    model.robots = [_driven(placed, model) for placed in model.robots]
+    EqualityReader(model, names, whole).read(scope)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)
     return model
+
+
+def _driven(placed: PlacedRobot, model: CompiledModel) -> PlacedRobot:
+    """A robot with the actuators of its joints, in the order of the file."""
+    joints = {joint.name for joint in placed.robot.joints}
+    actuators = (it.spec for it in model.actuators if it.spec is not None and it.spec.joint in joints)
+    return replace(placed, robot=replace(placed.robot, actuators=tuple(actuators)))
 
 
 def _read_document(

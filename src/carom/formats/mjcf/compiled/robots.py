@@ -103,6 +103,7 @@ def _link(body: CompiledBody) -> Link:
         tuple(body.collisions),
         tuple(body.visuals),
         body.contact,
+        body.gravity_compensation,
     )
 
 

@@ -1,0 +1,180 @@
+"""The law of an actuator: how its gain, bias and dynamics follow from shortcuts and defaults.
+
+`<motor>`, `<position>` and so on are shortcuts for a `<general>` actuator. Each kind has defaults of its own;
+those for general actuators are those of the last kind, and where a general one comes last, of all kinds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import deepcopy
+from dataclasses import dataclass, field
+from math import pi
+
+from carom.formats.mjcf.defaults import Attributes
+
+Numbers = Callable[[str, str, int], list[float]]
+"""Of an attribute's name and text, and the most numbers it may have: its numbers."""
+
+SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder")
+FIXED, AFFINE, NONE = "fixed", "affine", "none"
+FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
+_UNBUILT = ("orientation", "muscle", "adhesion", "dcmotor", "pid", "plugin")
+KINDS = (*SHORTCUTS, *_UNBUILT)
+
+
+def _one() -> list[float]:
+    return [1.0, 0.0, 0.0]
+
+
+def _zero() -> list[float]:
+    return [0.0, 0.0, 0.0]
+
+
+@dataclass
+class Law:
+    """Gain, bias and dynamics, as MuJoCo names their types.
+
+    Attributes:
+        gain_type: `fixed` or `affine`; another one, or the name of an element, is not built.
+        bias_type: `none` or `affine`.
+        dynamics: `none`, `integrator`, `filter` or `filterexact`.
+        gain: Parameters of the gain.
+        bias: Parameters of the bias. A positive last one of a servo is a damping ratio.
+        time: First parameter of the dynamics.
+        inherited: Factor on the range of the joint that bounds the target; 0 for none.
+        shortcut: The shortcut that it is of; empty for a general one.
+        bounded: Names of the ranges that have to be stated.
+    """
+
+    gain_type: str = FIXED
+    bias_type: str = NONE
+    dynamics: str = NONE
+    gain: list[float] = field(default_factory=_one)
+    bias: list[float] = field(default_factory=_zero)
+    time: float = 1.0
+    inherited: float = 0.0
+    shortcut: str = ""
+    bounded: tuple[str, ...] = ()
+
+    def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> None:
+        """Change it by the attributes of an element, or by those of its defaults."""
+
+        def number(name: str, default: float) -> float:
+            text = attributes.get(name)
+            return default if text is None else numbers(name, text, 1)[0]
+
+        def several(name: str, default: list[float], most: int) -> list[float]:
+            text = attributes.get(name)
+            return default if text is None else [*numbers(name, text, most), *default][:3]
+
+        if tag == "position" and not self.shortcut:
+            self.dynamics, self.time = NONE, 1.0
+        self.shortcut = "" if tag == "general" else tag
+        match tag:
+            case "general":
+                self.gain_type = attributes.get("gaintype", self.gain_type)
+                self.bias_type = attributes.get("biastype", self.bias_type)
+                self.dynamics = attributes.get("dyntype", self.dynamics)
+                self._overlay(self.gain, "gainprm", attributes, numbers)
+                self._overlay(self.bias, "biasprm", attributes, numbers)
+                text = attributes.get("dynprm")
+                self.time = self.time if text is None else numbers("dynprm", text, 10)[0]
+            case "motor":
+                self._set(FIXED, NONE, NONE, _one(), _zero())
+            case "position" | "intvelocity":
+                self._servo(tag, attributes, number)
+            case "velocity":
+                kv = number("kv", self.gain[0])
+                self._set(FIXED, AFFINE, NONE, [kv, 0.0, 0.0], [0.0, 0.0, -kv])
+            case "damper":
+                kv = number("kv", 0.0)
+                self._set(AFFINE, NONE, NONE, [0.0, 0.0, -kv], _zero())
+                self.bounded = ("ctrl",)
+            case "cylinder":
+                self.time = number("timeconst", self.time)
+                area, diameter = number("area", self.gain[0]), number("diameter", -1.0)
+                if diameter >= 0.0:
+                    area = 0.25 * pi * diameter * diameter
+                bias = several("bias", self.bias, 3)
+                self._set(FIXED, AFFINE, FILTER, [area, 0.0, 0.0], bias)
+            case _:
+                self.gain_type = tag
+
+    def _servo(self, tag: str, attributes: Attributes, number: Callable[[str, float], float]) -> None:
+        kp = number("kp", self.gain[0])
+        last = self.bias[2]
+        if "kv" in attributes:
+            last = -number("kv", 0.0)
+        if "dampratio" in attributes:
+            last = number("dampratio", 0.0)
+        dynamics = INTEGRATOR if tag == "intvelocity" else self.dynamics
+        if tag == "position" and "timeconst" in attributes:
+            self.time = number("timeconst", 0.0)
+            dynamics = NONE if self.time == 0.0 else FILTER_EXACT
+        self._set(FIXED, AFFINE, dynamics, [kp, 0.0, 0.0], [0.0, -kp, last])
+        self.inherited = number("inheritrange", self.inherited)
+        if tag == "intvelocity":
+            self.bounded = ("act",)
+
+    def _set(
+        self, gain_type: str, bias_type: str, dynamics: str, gain: list[float], bias: list[float]
+    ) -> None:
+        self.gain_type, self.bias_type, self.dynamics = gain_type, bias_type, dynamics
+        self.gain, self.bias = gain, bias
+
+    @staticmethod
+    def _overlay(values: list[float], name: str, attributes: Attributes, numbers: Numbers) -> None:
+        text = attributes.get(name)
+        if text is not None:
+            found = numbers(name, text, 10)[:3]
+            values[: len(found)] = found
+
+    def unbuilt(self) -> str:
+        """What of it is not built; empty if nothing is."""
+        for kind, built in (
+            (self.gain_type, (FIXED, AFFINE)),
+            (self.bias_type, (NONE, AFFINE)),
+            (self.dynamics, (NONE, INTEGRATOR, FILTER, FILTER_EXACT)),
+        ):
+            if kind not in built:
+                return kind
+        return ""
+
+    @property
+    def gains(self) -> tuple[float, float, float]:
+        """Gain, and its change per length and per velocity."""
+        first, second, third = self.gain
+        return (first, second, third) if self.gain_type == AFFINE else (first, 0.0, 0.0)
+
+    @property
+    def biases(self) -> tuple[float, float, float]:
+        """Bias, and its change per length and per velocity."""
+        first, second, third = self.bias
+        return (first, second, third) if self.bias_type == AFFINE else (0.0, 0.0, 0.0)
+
+    @property
+    def damping_ratio(self) -> float:
+        """Of a servo whose damping is to be found from the inertia that it moves; 0 for none."""
+        is_servo = self.bias_type == AFFINE and self.gain[0] == -self.bias[1]
+        return max(self.bias[2], 0.0) if is_servo else 0.0
+
+
+class Laws:
+    """The laws that defaults have left, by kind of element."""
+
+    def __init__(self) -> None:
+        self._last = Law()
+        self._own: dict[str, Law] = {}
+
+    def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> Law:
+        """The law of an element, which is a default for those that follow."""
+        if tag == "general":
+            self._own.clear()
+            law = self._last
+        else:
+            law = self._own.get(tag) or (Law() if self._last.shortcut else self._last)
+        law = deepcopy(law)
+        law.apply(tag, attributes, numbers)
+        self._own[tag] = self._last = law
+        return law

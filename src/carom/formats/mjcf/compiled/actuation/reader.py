@@ -1,0 +1,230 @@
+"""Reading `<actuator>`: motors, servos and general actuators of hinges and slides."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+from carom.description.actuator import ActuatorSpec
+from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.actuation.law import (
+    FILTER,
+    FILTER_EXACT,
+    INTEGRATOR,
+    KINDS,
+    NONE,
+    Law,
+    Laws,
+)
+from carom.formats.mjcf.compiled.actuation.moved_inertia import moved_inertia
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.joint import is_limited
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel, FileActuator
+from carom.formats.mjcf.compiled.names import Names, full
+from carom.formats.mjcf.defaults import MAIN, Attributes
+from carom.formats.reading.cursor import Recorded, layered
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+from carom.layouts.codes import ActivationDynamics
+
+_DYNAMICS = {
+    NONE: ActivationDynamics.NONE,
+    INTEGRATOR: ActivationDynamics.INTEGRATOR,
+    FILTER: ActivationDynamics.FILTER,
+    FILTER_EXACT: ActivationDynamics.FILTER_EXACT,
+}
+_TRANSMISSIONS = ("tendon", "site", "body", "cranksite", "slidersite", "refsite")
+_UNBOUNDED = (-inf, inf)
+_NO_FORCE = (0.0, 0.0)
+_LOST = "it does not act"
+
+
+class ActuatorReader:
+    """Reads all `<actuator>` sections into a model."""
+
+    def __init__(self, model: CompiledModel, names: Names) -> None:
+        self.model = model
+        self.names = names
+        self._kinds = {name: kind for name, _, kind in model.joints if name}
+        self._drivers: dict[str, list[int]] = {}
+        self._elements: dict[str, tuple[Element, Scope]] = {}
+
+    def read(self, scope: Scope) -> None:
+        """Read the actuators of a file and of all that it attaches; raises `DescriptionError`."""
+        known = set(self._kinds)
+        for element, of in self.names.sections(scope, "actuator"):
+            if element.tag not in KINDS:
+                raise of.context.error(element, f"<{element.tag}> is not known as an actuator")
+            attributes, law = _law(of, element)
+            joint = attributes.get("joint") or attributes.get("jointinparent") or ""
+            if element.tag == "plugin" or law.unbuilt() or not joint:
+                self._leave_out(of, element, attributes, law)
+                continue
+            copies = self.names.copies(of, [joint], known)
+            if not copies:
+                self.names.missing(of, element, [joint], known, "joint")
+            for copy in copies:
+                self._add(copy, element, attributes, law, full(copy, joint))
+        self._bound_joints()
+
+    def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
+        transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
+        if element.tag == "plugin" or law.unbuilt():
+            reason = f"{law.unbuilt() or 'plugin'} actuators are not built"
+        elif transmission:
+            reason = f"actuators are built for joints only, not for a {transmission}"
+        else:
+            raise scope.context.error(element, "it states nothing that it acts on, such as a joint")
+        scope.context.leave_out(element, _LOST, reason)
+        element.note()
+        self._note(FileActuator(self._name(scope, element), None, _has_activation(element.tag, law)))
+
+    def _add(self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str) -> None:
+        name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
+        gear = scope.context.number(element, attributes, "gear", 1.0)
+        if joint not in self.names.joints or self._kinds[joint] == "spherical" or gear == 0.0:
+            reason = "its gear is 0" if gear == 0.0 else "free and ball joints have no actuators"
+            scope.context.leave_out(element, _LOST, reason)
+            self._note(FileActuator(name, None, has_activation))
+            return
+        body, of_joint = self.names.joints[joint]
+        ranges = {
+            kind: _range(scope, element, attributes, kind, law)
+            for kind in ("ctrl", "force", "act")
+        }  # fmt: skip
+        if law.inherited:
+            inherits = "act" if law.dynamics == INTEGRATOR else "ctrl"
+            ranges[inherits] = _inherited(scope, element, law, of_joint)
+        if self._is_off(scope, element, attributes):
+            ranges["force"] = _NO_FORCE
+        spec = ActuatorSpec(
+            name,
+            joint,
+            law.gains,
+            _damped(law, gear, body, of_joint),
+            gear,
+            ranges["ctrl"],
+            ranges["force"],
+            _DYNAMICS[law.dynamics],
+            law.time if law.dynamics in (FILTER, FILTER_EXACT) else 1.0,
+            ranges["act"],
+        )
+        try:
+            spec.check()
+        except DescriptionError as problem:
+            raise scope.context.error(element, problem.reason) from None
+        self._drivers.setdefault(joint, []).append(len(self.model.actuators))
+        self._note(FileActuator(name, spec, has_activation))
+
+    def _note(self, actuator: FileActuator) -> None:
+        self.model.actuators.append(actuator)
+
+    def _name(self, scope: Scope, element: Element) -> str:
+        name = scope.name(element)
+        if not name:
+            return f"actuator{len(self.model.actuators)}_{scope.context.next_number()}"
+        if name in self._elements:
+            line = self._elements[name][0].line
+            raise scope.context.error(element, f"the name {shown(name)} is taken already, on line {line}")
+        self._elements[name] = (element, scope)
+        return name
+
+    def _is_off(self, scope: Scope, element: Element, attributes: Attributes) -> bool:
+        """Whether an option switches it off."""
+        group = int(scope.context.number(element, attributes, "group", 0.0))
+        return not self.model.options.get("flag.actuation", True) or group in self.model.options.get(
+            "actuatorgroupdisable", ()
+        )
+
+    def _bound_joints(self) -> None:
+        """Bound the forces of actuators by what their joints allow."""
+        for joint, numbers in self._drivers.items():
+            _, of_joint = self.names.joints[joint]
+            if of_joint.actuator_range == _UNBOUNDED:
+                continue
+            if len(numbers) > 1:
+                context = of_joint.context
+                context.leave_out(
+                    of_joint.element,
+                    "it bounds the force of each of its actuators",
+                    "a bound of their sum is not built",
+                    "actuatorfrcrange",
+                )
+            for number in numbers:
+                it = self.model.actuators[number]
+                assert it.spec is not None, "only such actuators drive joints"
+                it.spec = _within(it.spec, of_joint.actuator_range)
+
+
+def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
+    """All attributes of an actuator, with defaults of all kinds, and its law."""
+    context, laws = scope.context, Laws()
+    name = element.attributes.get("class") or MAIN
+    if name not in context.classes and name != MAIN:
+        raise context.error(element, f"there is no default class {shown(name)}")
+
+    def numbers(attribute: str, text: str, most: int) -> list[float]:
+        return context.numbers(element, attribute, text, 1, most)
+
+    whole: Attributes = {}
+    for tag, defaults in context.classes.get(name, {}).items():
+        if tag in KINDS:
+            if isinstance(defaults, Recorded):
+                defaults.note_use()
+            laws.apply(tag, defaults, numbers)
+            whole = layered(whole, defaults)
+    law = laws.apply(element.tag, element.attributes, numbers)
+    return layered(whole, element.attributes), law
+
+
+def _has_activation(tag: str, law: Law) -> bool:
+    return tag == "muscle" or law.dynamics != NONE
+
+
+def _range(
+    scope: Scope, element: Element, attributes: Attributes, kind: str, law: Law
+) -> tuple[float, float]:
+    """The range of controls, forces or activations."""
+    name = f"{kind}range"
+    stated = is_limited(scope, element, attributes, f"{kind}limited", name) or kind in law.bounded
+    text = attributes.get(name)
+    if not stated or (text is None and law.inherited and kind in law.bounded):
+        return _UNBOUNDED
+    if text is None:
+        raise scope.context.error(element, f"it needs a {name}")
+    lower, upper = scope.context.numbers(element, name, text, 2, 2)
+    if lower >= upper:
+        raise scope.context.error(element, f"{name}={shown(text)}: the first number must be less")
+    if kind == "ctrl" and element.tag == "damper" and lower < 0.0:
+        raise scope.context.error(element, f"{name}={shown(text)} of a damper must not be negative")
+    return lower, upper
+
+
+def _inherited(scope: Scope, element: Element, law: Law, joint: CompiledJoint) -> tuple[float, float]:
+    """The range of a servo's target from that of its joint."""
+    lower, upper = joint.joint.limit.lower, joint.joint.limit.upper
+    if lower > upper:
+        raise scope.context.error(
+            element, f"inheritrange: joint {shown(joint.joint.name)} has no range to inherit"
+        )
+    middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower) * law.inherited
+    return middle - half, middle + half
+
+
+def _damped(law: Law, gear: float, body: CompiledBody, joint: CompiledJoint) -> tuple[float, float, float]:
+    """The bias, with the damping that a damping ratio stands for."""
+    force, stiffness, damping = law.biases
+    if law.damping_ratio:
+        mass = moved_inertia(body, joint) / (gear * gear)
+        damping = -law.damping_ratio * 2.0 * (law.gain[0] * mass) ** 0.5
+    return force, stiffness, damping
+
+
+def _within(spec: ActuatorSpec, bounds: tuple[float, float]) -> ActuatorSpec:
+    """An actuator whose force on the joint, `gear` times its own, is within bounds as well."""
+    first, second = bounds[0] / spec.gear, bounds[1] / spec.gear
+    lower = max(spec.force_range[0], min(first, second))
+    upper = min(spec.force_range[1], max(first, second))
+    if lower > upper:  # They do not overlap: the joint's bound comes last, so it counts.
+        lower = upper = min(max(spec.force_range[0], min(first, second)), max(first, second))
+    return replace(spec, force_range=(lower, upper))

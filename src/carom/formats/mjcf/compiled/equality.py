@@ -1,0 +1,168 @@
+"""`<equality>`: joints that follow others, and bodies that are connected at a point or welded."""
+
+from __future__ import annotations
+
+from math import comb
+
+import numpy as np
+
+from carom.description import Pose
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, inverse
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileCoupling, FileTie
+from carom.formats.mjcf.compiled.names import Names, full
+from carom.formats.mjcf.defaults import MAIN, Attributes
+from carom.formats.reading.cursor import Recorded, layered
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_BUILT = ("joint", "connect", "weld")
+_WORLD = "world"
+_LOST = "this constraint does not hold"
+_POWERS = 5
+
+
+class EqualityReader:
+    """Reads all `<equality>` sections into a model."""
+
+    def __init__(self, model: CompiledModel, names: Names, world: CompiledBody) -> None:
+        self.model = model
+        self.names = names
+        self._kinds = {name: kind for name, _, kind in model.joints if name}
+        self._poses: dict[str, Pose] = {_WORLD: IDENTITY}
+        self._lines: dict[str, int] = {}
+        pending = [(child, IDENTITY) for child in world.children]
+        while pending:
+            body, around = pending.pop()
+            pose = self._poses[body.name] = compose(around, body.pose)
+            pending += [(child, pose) for child in body.children]
+
+    def read(self, scope: Scope) -> None:
+        """Read the constraints of a file and of all that it attaches; raises `DescriptionError`."""
+        for element, of in self.names.sections(scope, "equality"):
+            if element.tag not in _BUILT:
+                self.model.equality_count += 1
+                continue
+            attributes = _attributes(of, element)
+            if element.tag == "joint":
+                parts, known, what = ("joint1", "joint2"), set(self._kinds), "joint"
+            elif "site1" in element.attributes:
+                parts, known, what = ("site1", "site2"), set(self.model.sites), "site"
+            else:
+                parts, known, what = ("body1", "body2"), set(self._poses), "body"
+            first, second = (element.attributes.get(part, "") for part in parts)
+            if not first or (what == "site" and not second):
+                raise of.context.error(element, f"{parts[1] if first else parts[0]} is missing")
+            copies = self.names.copies(of, [first, second], known)
+            if not copies:
+                self.names.missing(of, element, [first, second], known, what)
+            for copy in copies:
+                a, b = full(copy, first), full(copy, second)
+                if element.tag == "joint":
+                    self._read_coupling(copy, element, attributes, a, b)
+                elif what == "site":
+                    one, other = self.model.sites[a], self.model.sites[b]
+                    self._add_tie(copy, element, attributes, (one.body, one.frame), (other.body, other.frame))
+                else:
+                    self._read_bodies(copy, element, attributes, a, b or _WORLD)
+
+    def _read_coupling(
+        self, scope: Scope, element: Element, attributes: Attributes, follower: str, leader: str
+    ) -> None:
+        context = scope.context
+        if not {follower, leader} - {""} <= set(self.names.joints) or "spherical" in (
+            self._kinds[follower],
+            self._kinds.get(leader),
+        ):
+            context.leave_out(element, _LOST, "free and ball joints are not coupled")
+            return
+        stated = context.numbers(element, "polycoef", attributes.get("polycoef", ""), 0, _POWERS)
+        coefficients = [*stated, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(stated) :]]
+        start = self.names.joints[follower][1].reference
+        if not leader:
+            coefficients[1:] = [0.0] * (_POWERS - 1)
+        else:
+            coefficients = _shifted(coefficients, self.names.joints[leader][1].reference)
+        constant, first, second, third, fourth = coefficients
+        name, enabled = self._name(scope, element), context.flag(element, attributes, "active", True)
+        self.model.couplings.append(
+            FileCoupling(
+                name, follower, leader or None, (start + constant, first, second, third, fourth), enabled
+            )
+        )
+
+    def _read_bodies(self, scope: Scope, element: Element, attributes: Attributes, a: str, b: str) -> None:
+        """Anchors of a constraint between bodies; where not stated, as the bodies are placed in the file."""
+        context = scope.context
+        between = compose(inverse(self._poses[a]), self._poses[b])
+        text = attributes.get("anchor")
+        if text is None and element.tag == "connect":
+            raise context.error(element, "attribute 'anchor' is missing")
+        x, y, z = (0.0, 0.0, 0.0) if text is None else context.numbers(element, "anchor", text, 3, 3)
+        if element.tag == "connect":
+            on_a = Pose((x, y, z))
+            self._add_tie(scope, element, attributes, (a, on_a), (b, compose(inverse(between), on_a)))
+            return
+        text = attributes.get("relpose")
+        if text is not None:
+            px, py, pz, w, i, j, k = context.numbers(element, "relpose", text, 7, 7)
+            size = float(np.linalg.norm((w, i, j, k)))
+            if size > 0.0:
+                between = Pose((px, py, pz), (i / size, j / size, k / size, w / size))
+        on_b = Pose((x, y, z))
+        self._add_tie(scope, element, attributes, (a, compose(between, on_b)), (b, on_b))
+
+    def _add_tie(
+        self,
+        scope: Scope,
+        element: Element,
+        attributes: Attributes,
+        first: tuple[str, Pose],
+        second: tuple[str, Pose],
+    ) -> None:
+        name = self._name(scope, element)
+        if first[0] == second[0]:
+            scope.context.leave_out(element, _LOST, "both ends are on one body")
+            return
+        if first[0] == _WORLD:
+            first, second = second, first
+        enabled = scope.context.flag(element, attributes, "active", True)
+        self.model.ties.append(FileTie(name, element.tag == "weld", *first, *second, enabled))
+
+    def _name(self, scope: Scope, element: Element) -> str:
+        number, name = self.model.equality_count, scope.name(element)
+        self.model.equality_count += 1
+        if not name:
+            return f"{element.tag}{number}_{scope.context.next_number()}"
+        if name in self._lines:
+            raise scope.context.error(
+                element, f"the name {shown(name)} is taken already, on line {self._lines[name]}"
+            )
+        self._lines[name] = element.line
+        return name
+
+
+def _attributes(scope: Scope, element: Element) -> Attributes:
+    """The attributes of a constraint over those of its class of defaults."""
+    context = scope.context
+    name = element.attributes.get("class") or MAIN
+    if name not in context.classes and name != MAIN:
+        raise context.error(element, f"there is no default class {shown(name)}")
+    defaults = context.classes.get(name, {}).get("equality", {})
+    if isinstance(defaults, Recorded):
+        defaults.note_use()
+    return layered(defaults, element.attributes)
+
+
+def _shifted(coefficients: list[float], start: float) -> list[float]:
+    """The coefficients of a polynomial in x - start as those of one in x."""
+    if start == 0.0:
+        return coefficients
+    return [
+        sum(
+            coefficients[power] * comb(power, own) * (-start) ** (power - own)
+            for power in range(own, _POWERS)
+        )
+        for own in range(_POWERS)
+    ]

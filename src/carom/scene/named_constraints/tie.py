@@ -1,0 +1,160 @@
+"""Named ties between two links, or a link and the world: connected at a point, or welded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.description.pose import IDENTITY, Pose
+from carom.description.transform import compose, conjugate, inverse, multiplied, rotation_matrix
+from carom.layouts.codes import UserConstraintKind
+from carom.scene.user_constraints import UserConstraint
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.scene.link import Link
+    from carom.world.world import World
+
+UNBOUNDED = 1e30
+"""Greatest impulse of each row of a tie per substep [N s or N m s]; no solver gets there."""
+
+
+class Connect:
+    """Holds a point of a link at a point of another one, or of the world, as a ball joint does."""
+
+    __slots__ = ("_tie",)
+
+    def __init__(self, tie: UserConstraint) -> None:
+        self._tie = tie
+
+    def __repr__(self) -> str:
+        second = "the world" if self.second is None else repr(self.second.name)
+        state = "" if self.enabled else ", disabled"
+        return f"<{type(self).__name__} {self.name!r}: {self.first.name!r} to {second}{state}>"
+
+    @property
+    def name(self) -> str:
+        """Name in the file."""
+        return self._tie.name
+
+    @property
+    def first(self) -> Link:
+        """The first link."""
+        return self._tie.parent.links[self._tie.parent_link]
+
+    @property
+    def second(self) -> Link | None:
+        """The second link; None for the world."""
+        return None if self._tie.child is None else self._tie.child.links[self._tie.child_link]
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it holds; settable. Where it is switched on again, it pulls the links together."""
+        return self._tie.enabled
+
+    @enabled.setter
+    def enabled(self, value: bool) -> None:
+        if self._tie.enabled != bool(value):
+            self._tie.enabled = bool(value)
+            self._tie.parent.world.constraints_changed()
+
+    @property
+    def error(self) -> np.ndarray:
+        """Position of the point of the first link minus that of the second, in the world [m], shape (3,)."""
+        first, second = self._frames()
+        return np.subtract(first.position, second.position)
+
+    @property
+    def force(self) -> np.ndarray:
+        """Force on the first link in the last substep, in world axes [N], shape (3,); 0 while disabled."""
+        return self._per_time()[:3].copy()
+
+    def _per_time(self) -> np.ndarray:
+        """Force, and if it is a weld torque along the axes of the first frame, shape (6,)."""
+        world, result = self._tie.parent.world, np.zeros(6)
+        if self.enabled:
+            impulses = world.user_constraints.impulses(self._tie, world.arrays.state)
+            result[: len(impulses)] = impulses
+        return result / (world.parameters.time_step / max(1, world.parameters.substeps))
+
+    def _frames(self) -> tuple[Pose, Pose]:
+        """World poses of the frames that coincide where it holds."""
+        it = self._tie
+        first = compose(_centre_frame(it.parent, it.parent_link), it.parent_frame)
+        if it.child is None:
+            return first, it.child_frame
+        return first, compose(_centre_frame(it.child, it.child_link), it.child_frame)
+
+
+class Weld(Connect):
+    """Holds a frame of a link at a frame of another one, or of the world."""
+
+    __slots__ = ()
+
+    @property
+    def angle_error(self) -> float:
+        """Angle between the axes of both frames [rad]."""
+        first, second = self._frames()
+        x, y, z, w = multiplied(conjugate(second.orientation), first.orientation)
+        return 2.0 * float(np.arctan2(np.linalg.norm((x, y, z)), abs(w)))
+
+    @property
+    def torque(self) -> np.ndarray:
+        """Torque on the first link in the last substep, in world axes [N m], shape (3,); 0 while disabled."""
+        first, _ = self._frames()
+        return np.array(rotation_matrix(first.orientation)) @ self._per_time()[3:]
+
+
+def _centre_frame(body: Body, link: int) -> Pose:
+    """World pose of a link's inertial frame."""
+    pose = body.links[link].inertial_pose
+    x, y, z = (float(value) for value in pose.position)
+    i, j, k, w = (float(value) for value in pose.orientation)
+    return Pose((x, y, z), (i, j, k, w))
+
+
+def new_tie(
+    name: str,
+    first: tuple[Body, int, Pose],
+    second: tuple[Body, int, Pose] | None,
+    fixed_frame: Pose = IDENTITY,
+    *,
+    is_weld: bool,
+) -> UserConstraint:
+    """The constraint that ties two links, to be put into their world.
+
+    Args:
+        name: Its name.
+        first: A body, its link (-1 is the base), and a frame in that link's frame.
+        second: The same of the other one; None for the world.
+        fixed_frame: The frame in the world without another link.
+        is_weld: Axes coincide as well as origins.
+    """
+    body, link, frame = first
+    kind = UserConstraintKind.FIXED if is_weld else UserConstraintKind.POINT_TO_POINT
+    child, child_link, child_frame = (None, -1, fixed_frame)
+    if second is not None:
+        child, child_link, child_frame = second[0], second[1], _from_centre(*second)
+    tie = body.world.user_constraints.new(
+        kind, body, link, child, child_link, (0.0, 0.0, 0.0), _from_centre(body, link, frame), child_frame
+    )
+    tie.name = name
+    tie.max_impulse = tie.max_force = UNBOUNDED
+    return tie
+
+
+def _from_centre(body: Body, link: int, frame: Pose) -> Pose:
+    """A frame in a link's frame as one in its inertial frame."""
+    return compose(inverse(body.link_inertial_frame(link)), frame)
+
+
+def ties_of(world: World, bodies: Sequence[Body]) -> list[Connect]:
+    """The named ties of some bodies of a world."""
+    kinds = {UserConstraintKind.FIXED: Weld, UserConstraintKind.POINT_TO_POINT: Connect}
+    return [
+        kinds[tie.kind](tie)
+        for tie in (world.user_constraints.all if len(world.user_constraints) else ())
+        if tie.kind in kinds and tie.name and any(tie.parent is body for body in bodies)
+    ]

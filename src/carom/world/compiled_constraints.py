@@ -1,0 +1,49 @@
+"""Constraints of MJCF files between bodies made from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Pose
+from carom.description.transform import compose
+from carom.model.body_spec import BASE
+from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
+from carom.scene.named_constraints.tie import Connect, Weld, new_tie
+
+if TYPE_CHECKING:
+    from carom.formats.mjcf.compiled.model import CompiledModel
+    from carom.scene.body import Body
+    from carom.scene.user_constraints import UserConstraint
+
+WORLD = "world"
+NamedConstraint = JointCoupling | Connect
+
+
+def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list[NamedConstraint]:
+    """Make the constraints of a file, whose frame is at `place`; called while bodies are added."""
+    made: list[NamedConstraint] = []
+    joints = {link.joint_name: (body, i) for body in bodies for i, link in enumerate(body.spec.links)}
+    for it in model.couplings:
+        body, follower = joints[it.follower]
+        other, leader = (None, None) if it.leader is None else joints[it.leader]
+        tie = new_coupling(body, follower, leader, it.coefficients, it.name, other)
+        _put(body, tie, enabled=it.enabled)
+        made.append(JointCoupling(tie))
+    links = {body.spec.link(i).name: (body, i) for body in bodies for i in range(BASE, len(body.spec.links))}
+    for it in model.ties:
+        first, second, fixed = (*links[it.first], it.first_frame), None, it.second_frame
+        if it.second == WORLD:
+            fixed = compose(place, it.second_frame)
+        else:
+            second = (*links[it.second], it.second_frame)
+        tie = new_tie(it.name, first, second, fixed, is_weld=it.is_weld)
+        _put(first[0], tie, enabled=it.enabled)
+        made.append(Weld(tie) if it.is_weld else Connect(tie))
+    return made
+
+
+def _put(body: Body, tie: UserConstraint, *, enabled: bool) -> None:
+    tie.enabled = enabled
+    body.world.user_constraints.put(tie)
+    body.world.constraints.add_user(tie)

@@ -1,0 +1,121 @@
+"""Actuators of MJCF files act as in MuJoCo: their forces, their activations, and the motion that follows."""
+
+import json
+from pathlib import Path
+
+import pytest
+from driven_cases import ACTUATED, arm
+from numpy.testing import assert_allclose
+
+from carom import World
+from carom.errors import DescriptionError
+
+ANSWERS = json.loads(Path(__file__).with_name("driven_answers.json").read_text())
+
+
+def load(world, folder, text):
+    (folder / "file.xml").write_text(text)
+    return world.load(folder / "file.xml")
+
+
+def joints_of(scene):
+    return {joint.name: joint for body in scene.bodies for joint in body.joints}
+
+
+def start(scene, answer):
+    joints = joints_of(scene)
+    for name, q, v in zip(answer["joints"], answer["q"], answer["v"], strict=True):
+        joints[name].body.set_joint_state(joints[name].index, [q], [v])
+    for actuator, control in zip(scene.actuators.values(), answer["control"], strict=True):
+        actuator.control = control
+    moving = [it for it in scene.actuators.values() if it.spec.dynamics]
+    for actuator, activation in zip(moving, answer["activation"], strict=True):
+        actuator.activation = activation
+
+
+def free_joints(scene):
+    for joint in joints_of(scene).values():
+        joint.body.change_dynamics(joint.index, joint_lower_limit=1.0, joint_upper_limit=-1.0)
+
+
+@pytest.mark.parametrize("name", ACTUATED)
+def test_forces_are_those_of_mujoco(tmp_path, name):
+    answer = ANSWERS[name]
+    with World() as world:
+        scene = load(world, tmp_path, ACTUATED[name])
+        assert not scene.ignored.that_matter or "flag" in str(scene.ignored)
+        free_joints(scene)
+        start(scene, answer)
+        world.gravity = (0.0, 0.0, 0.0)
+        world.parameters.time_step = 1e-9
+        world.apply_parameters()
+        world.step()
+        forces = dict.fromkeys(answer["joints"], 0.0)
+        for actuator in scene.actuators.values():
+            forces[actuator.joint.name] += actuator.force * actuator.gear
+        assert_allclose([forces[joint] for joint in answer["joints"]], answer["force"], rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", [name for name in ACTUATED if name != "copies"])
+def test_motion_is_that_of_mujoco(tmp_path, name):
+    answer = ANSWERS[name]
+    with World() as world:
+        scene = load(world, tmp_path, ACTUATED[name])
+        free_joints(scene)
+        scene.apply_options()
+        start(scene, answer)
+        world.step(400)
+        joints = joints_of(scene)
+        ends = [joints[joint].position for joint in answer["joints"]]
+        assert_allclose(ends, answer["end"], atol=1e-3)
+        moving = [it.activation for it in scene.actuators.values() if it.spec.dynamics]
+        assert_allclose(moving, answer["end_activation"], rtol=1e-6, atol=1e-6)
+
+
+def test_actuators_have_the_names_and_the_order_of_the_file(tmp_path):
+    text = arm('<motor name="second" joint="k"/><motor name="first" joint="j"/><motor joint="j"/>')
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        names = list(scene.actuators)
+        assert names[:2] == ["second", "first"]
+        assert scene.actuators["first"].joint.name == "j"
+        assert scene["a"].actuators.names == names
+
+
+def test_a_keyframe_sets_controls_and_activations(tmp_path):
+    actuators = (
+        '<motor name="m" joint="j"/><muscle name="x" joint="j" lengthrange="0 1"/>'
+        '<intvelocity name="i" joint="k" kp="2" actrange="-1 1"/>'
+    )
+    key = '<keyframe><key name="home" ctrl=".1 .2 .3" act=".5 .6"/><key name="rest"/></keyframe></mujoco>'
+    with World() as world:
+        scene = load(world, tmp_path, arm(actuators).replace("</mujoco>", key))
+        assert list(scene.actuators) == ["m", "i"]
+        scene.reset("home")
+        assert [it.control for it in scene.actuators.values()] == [0.1, 0.3]
+        assert scene.actuators["i"].activation == 0.6
+        scene.reset("rest")
+        assert [it.control for it in scene.actuators.values()] == [0.0, 0.0]
+        assert scene.actuators["i"].activation == 0.0
+        (lost,) = [it for it in scene.ignored.that_matter if it.element == "actuator/muscle"]
+        assert "muscle" in lost.reason
+
+
+@pytest.mark.parametrize(
+    ("actuator", "problem"),
+    [
+        ('<motor joint="no"/>', "no joint 'no'"),
+        ("<motor/>", "nothing that it acts on"),
+        ('<motor joint="j" ctrllimited="true"/>', "needs a ctrlrange"),
+        ('<motor joint="j" forcerange="2 1" forcelimited="true"/>', "first number must be less"),
+        ('<intvelocity joint="j"/>', "needs a actrange"),
+        ('<damper joint="j" ctrlrange="-1 1"/>', "must not be negative"),
+        ('<motor joint="j" class="no"/>', "no default class 'no'"),
+        ('<motor name="a" joint="j"/><motor name="a" joint="j"/>', "taken already, on line"),
+        ('<position joint="j" kp="x"/>', "not a number"),
+        ('<engine joint="j"/>', "not known as an actuator"),
+    ],
+)
+def test_mistakes_are_named(tmp_path, actuator, problem):
+    with World() as world, pytest.raises(DescriptionError, match=problem):
+        load(world, tmp_path, arm(actuator))
