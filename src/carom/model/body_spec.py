@@ -15,6 +15,8 @@ from carom.description import Collision, ContactParameters, JointType, Mimic, Po
 from carom.description.actuator import ActuatorSpec
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
+from carom.description.sensor import SensorSpec
+from carom.description.site import SiteSpec
 from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
@@ -132,6 +134,8 @@ class BodySpec(Reusable):
         is_held: As in PyBullet, motors hold all joints until they are commanded, joints have no friction
             and follow no others, and their damping is explicit.
         actuators: What drives its joints besides their motors.
+        sites: Named frames on its links.
+        sensors: What it measures.
     """
 
     name: str
@@ -145,6 +149,8 @@ class BodySpec(Reusable):
     link_damping: float = DEFAULT_LINK_DAMPING
     is_held: bool = True
     actuators: tuple[ActuatorSpec, ...] = ()
+    sites: tuple[SiteSpec, ...] = ()
+    sensors: tuple[SensorSpec, ...] = ()
 
     @property
     def damping_field(self) -> str:
