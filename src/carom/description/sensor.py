@@ -1,9 +1,9 @@
-"""Sensors as data: what is measured, of which object, and how well. `carom.description.sensors` has classes."""
+"""Sensors as data: what is measured, of which object, how well. `carom.description.sensors` has classes."""
 
 from __future__ import annotations
 
 from enum import Enum
-from math import inf
+from math import ceil, inf
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
@@ -88,6 +88,14 @@ _NUMBERS = (
     SensorKind.ACTUATOR_FORCE,
     SensorKind.CLOCK,
 )
+OF_STEPS: tuple[SensorKind, ...] = (
+    SensorKind.ACCELEROMETER,
+    SensorKind.FRAME_LINEAR_ACCELERATION,
+    SensorKind.FRAME_ANGULAR_ACCELERATION,
+)
+"""Kinds that are known only just after a step."""
+SHORT_STEP = 1e-3
+MOST_SAMPLES = 100_000
 _SITE_KINDS = tuple(SensorKind)[:8]
 _JOINT_KINDS = tuple(SensorKind)[8:16]
 _ACTUATOR_KINDS = tuple(SensorKind)[16:19]
@@ -112,6 +120,7 @@ class SensorSpec:
         cutoff: Bound of the absolute values, after bias and noise; 0 for none.
         delay: Time from a measurement until it is read [s].
         period: Time between measurements, held in between [s]; 0 for one at every step.
+        samples: How many measurements are kept for the delay; 0 for as many as steps of 1 ms or longer need.
         seed: Of the noise; sensors with the same name and seed have the same noise.
         magnetic_field: Of magnetometers: in world axes.
         reach: Of range finders: how far they see [m].
@@ -129,6 +138,7 @@ class SensorSpec:
     cutoff: float = 0.0
     delay: float = 0.0
     period: float = 0.0
+    samples: int = 0
     seed: int = 0
     magnetic_field: Vector3 = (0.0, -0.5, 0.0)
     reach: float = 1000.0
@@ -137,6 +147,27 @@ class SensorSpec:
     def dim(self) -> int:
         """How many numbers it gives."""
         return 1 if self.kind in _NUMBERS else 4 if self.kind in _QUATERNIONS else 3
+
+    @property
+    def is_remembered(self) -> bool:
+        """Whether it is measured at each step, and not when it is read."""
+        return self.kind in OF_STEPS or self.delay > 0.0 or self.period > 0.0
+
+    @property
+    def kept(self) -> int:
+        """Number of measurements in its memory."""
+        if not self.is_remembered:
+            return 0
+        return self.samples or 1 if self.delay == 0.0 else self.samples or self._needed
+
+    @property
+    def _needed(self) -> int:
+        return ceil(self.delay / max(self.period, SHORT_STEP)) + 2
+
+    @property
+    def memory(self) -> int:
+        """Numbers in its memory: how many measurements it has, and of each its time and its numbers."""
+        return 1 + self.kept * (1 + self.dim) if self.is_remembered else 0
 
     def check(self) -> None:
         """Raise `DescriptionError` unless object and parameters fit the kind."""
@@ -152,6 +183,10 @@ class SensorSpec:
                 raise self._error(f"needs a {name} of 0 or more, not {getattr(self, name):g}")
         if not 0.0 < self.reach < inf:
             raise self._error(f"needs a reach greater than 0, not {self.reach:g}")
+        if not 0 <= self.samples <= MOST_SAMPLES or self.kept > MOST_SAMPLES:
+            raise self._error(
+                f"would keep {max(self.samples, self.kept)} measurements; {MOST_SAMPLES} are most"
+            )
         if len(self.bias) not in (0, 1, self.dim):
             raise self._error(f"has {self.dim} numbers, but its bias has {len(self.bias)}")
         if not all(-inf < number < inf for number in (*self.bias, *self.magnetic_field)):

@@ -20,6 +20,7 @@ class Quality(TypedDict, total=False):
     cutoff: float
     delay: float
     period: float
+    samples: int
     seed: int
 
 

@@ -189,6 +189,9 @@ class State:
     dof_pd: Vector8Rows
     dof_torque: RealRows
     dof_motor_impulse: RealRows
+    # Of joints with a force-torque sensor, in the last substep: of all rows of the joint itself, of its limits.
+    dof_joint_impulse: RealRows
+    dof_limit_impulse: RealRows
     link_pose: TransformRows  # of the inertial frame
     link_twist: Vector6Rows  # linear velocity of the centre of mass, angular velocity
     link_wrench: Vector6Rows  # external force, torque about the centre of mass
@@ -211,6 +214,7 @@ class State:
     actuator_control: RealRows
     actuator_activation: RealRows
     actuator_force: RealRows  # in the last substep
+    sensor_memory: RealRows  # see `scene.sensors.memory`
     status_entry: IntRows  # result of the last step: see `layouts.status`
 
 
@@ -257,6 +261,8 @@ class DofScratch:
     start_velocity: real  # at the start of the step
     start_torque: real
     start_motor_impulse: real
+    start_joint_impulse: real
+    start_limit_impulse: real
     angular: Vector3  # motion subspace
     linear: Vector3
     force: real

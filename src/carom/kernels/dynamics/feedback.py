@@ -10,13 +10,18 @@ from carom.kernels.dynamics.dynamics import generalized_forces, link_bias_forces
 from carom.kernels.dynamics.mass_matrix import solve
 from carom.kernels.dynamics.rows import row_dof
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector3, Vector6, func
-from carom.layouts.codes import CONSTRAINT_FEEDBACK
+from carom.kernels.types import Int32, Vector3, Vector6, func, real
+from carom.layouts.codes import CONSTRAINT_FEEDBACK, LIMIT, SPHERICAL_LIMIT
 
 
 @func
-def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Set the constraint forces on the links of a tree to zero."""
+def clear_constraint_forces(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Set the constraint forces on the links of a tree and the impulses of its joints' rows to zero."""
+    dof = model.tree[tree].first_dof + 0
+    while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
+        state.dof_joint_impulse[world, dof] = real(0.0)
+        state.dof_limit_impulse[world, dof] = real(0.0)
+        dof += 1
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
@@ -33,16 +38,21 @@ def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, po
 
 @func
 def gather_constraint_forces(
-    model: Model, settings: Settings, scratch: Scratch, world: Int32, first: Int32, last: Int32
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, first: Int32, last: Int32
 ):
-    """Add the impulses of rows [first, last), as forces, to the joint's link and its parent."""
+    """Add the impulses of rows [first, last) to those of their joints, and as forces to the links they join."""
     for row in range(first, last):
         constraint = scratch.row[world, row].constraint
         if model.tree[model.constraint[constraint].tree].sensor_count > 0:
             link = model.constraint[constraint].link
             parent = model.link[link].parent
             dof = row_dof(model, scratch, world, row)
-            size = scratch.row[world, row].impulse / settings.time_step
+            impulse = scratch.row[world, row].impulse
+            state.dof_joint_impulse[world, dof] += impulse
+            kind = model.constraint[constraint].kind
+            if kind == LIMIT or kind == SPHERICAL_LIMIT:
+                state.dof_limit_impulse[world, dof] += impulse
+            size = impulse / settings.time_step
             angular = scratch.dof[world, dof].angular
             if wp.dot(angular, angular) > 0.0:
                 scratch.link[world, link].constraint_torque += angular * size

@@ -29,6 +29,8 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         scratch.dof[world, dof].start_velocity = state.dof_velocity[world, dof]
         scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
         scratch.dof[world, dof].start_motor_impulse = state.dof_motor_impulse[world, dof]
+        scratch.dof[world, dof].start_joint_impulse = state.dof_joint_impulse[world, dof]
+        scratch.dof[world, dof].start_limit_impulse = state.dof_limit_impulse[world, dof]
         dof += 1
     first = model.tree[tree].first_actuator
     for actuator in range(first, first + model.tree[tree].actuator_count):
@@ -62,6 +64,8 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         state.dof_velocity[world, dof] = scratch.dof[world, dof].start_velocity
         state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
         state.dof_motor_impulse[world, dof] = scratch.dof[world, dof].start_motor_impulse
+        state.dof_joint_impulse[world, dof] = scratch.dof[world, dof].start_joint_impulse
+        state.dof_limit_impulse[world, dof] = scratch.dof[world, dof].start_limit_impulse
         dof += 1
     first = model.tree[tree].first_actuator
     for actuator in range(first, first + model.tree[tree].actuator_count):

@@ -52,7 +52,7 @@ def move_tree(
     solve(model, scratch, world, tree)
     if model.tree[tree].sensor_count > 0:
         measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
-        clear_constraint_forces(model, scratch, world, tree)
+        clear_constraint_forces(model, state, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
     if pushed:
         invert(model, scratch, world, tree)
