@@ -189,7 +189,7 @@ class State:
     dof_pd: Vector8Rows
     dof_torque: RealRows
     dof_motor_impulse: RealRows
-    # Of joints with a force-torque sensor, in the last substep: of all rows of the joint itself, of its limits.
+    # Of joints with a force-torque sensor, in the last substep: of all own rows of the joint, of its limits.
     dof_joint_impulse: RealRows
     dof_limit_impulse: RealRows
     link_pose: TransformRows  # of the inertial frame

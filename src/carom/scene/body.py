@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.joint import JOINT_CODE
-from carom.description.pose import Pose
+from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, DOF_COUNT, POSITION_COUNT, Activity
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
@@ -23,9 +23,13 @@ from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator
+    from carom.description.sensors import Sensor
+    from carom.description.site import SiteShape
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.joint import Joints
     from carom.scene.link import Links
+    from carom.scene.sensors.sensor import BodySensors
+    from carom.scene.sensors.site import BodySites
     from carom.world.world import World
 
 # Largest rounding error of the squared length of a unit quaternion.
@@ -167,6 +171,59 @@ class Body:
         from carom.scene.actuators.changes import add_actuator
 
         add_actuator(self, name, actuator)
+
+    @cached_property
+    def sites(self) -> BodySites:
+        """The sites, frames on links, by index or name."""
+        from carom.scene.sensors.site import BodySites
+
+        return BodySites(self)
+
+    def add_site(
+        self,
+        name: str,
+        link: int | str = -1,
+        pose: Pose = IDENTITY,
+        *,
+        shape: SiteShape | str = "sphere",
+        size: Sequence[float] = (0.005,),
+    ) -> None:
+        """Add a site, a frame on a link.
+
+        Args:
+            name: Its name among the sites of the body.
+            link: The link by index (-1 is the base) or name.
+            pose: The frame in the link frame.
+            shape: Shape of its volume: sphere, capsule, ellipsoid, cylinder or box.
+            size: Of its volume [m]: a radius; radius and half length; or three half axes.
+
+        Raises:
+            DescriptionError: The name is taken, or a number has no meaning.
+        """
+        from carom.scene.sensors.changes import add_site
+
+        add_site(self, name, link, pose, shape, size)
+
+    @cached_property
+    def sensors(self) -> BodySensors:
+        """The sensors by index or name."""
+        from carom.scene.sensors.sensor import BodySensors
+
+        return BodySensors(self)
+
+    def add_sensor(self, name: str, sensor: Sensor) -> None:
+        """Add a sensor.
+
+        Args:
+            name: Its name among the sensors of the body.
+            sensor: What it measures, such as `Gyro(site="imu")`; see `carom.description.sensors`.
+
+        Raises:
+            DescriptionError: What it refers to does not exist, the name is taken, or a number has no meaning.
+        """
+        from carom.scene.sensors.changes import add_sensor
+
+        add_sensor(self, name, sensor)
 
     def link_spec(self, link: int) -> LinkSpec:
         """The specification of link `link`; -1 is the base."""

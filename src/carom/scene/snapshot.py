@@ -64,7 +64,7 @@ class BodyLayout:
         return f"{joints} joints with {freedoms} freedoms{driven}{sensed}"
 
     def moves_like(self, other: BodyLayout) -> bool:
-        """Whether both have the same numbers of links, coordinates, nodes and actuators, and the same memory."""
+        """Whether both have the same numbers of links, coordinates, nodes, actuators and sensors' memory."""
         mine = (self.links, self.positions, self.dofs, self.nodes, self.actuators, self.sensors)
         others = (other.links, other.positions, other.dofs, other.nodes, other.actuators, other.sensors)
         return mine == others

@@ -40,7 +40,7 @@ def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, po
 def gather_constraint_forces(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, first: Int32, last: Int32
 ):
-    """Add the impulses of rows [first, last) to those of their joints, and as forces to the links they join."""
+    """Add the impulses of rows [first, last) to those of joints, and as forces to the links they join."""
     for row in range(first, last):
         constraint = scratch.row[world, row].constraint
         if model.tree[model.constraint[constraint].tree].sensor_count > 0:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from carom.description.pose import Pose
 from carom.description.sensor import SensorKind, SensorSpec
 from carom.description.sensors import Sensor
-from carom.description.site import SiteSpec
+from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
 from carom.model.sensor_rows import insert_memory
 from carom.scene.handles import world_of
@@ -25,8 +27,17 @@ _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
 
 
-def add_site(body: Body, site: SiteSpec) -> None:
+def add_site(
+    body: Body, name: str, link: int | str, pose: Pose, shape: SiteShape | str, size: Sequence[float]
+) -> None:
     """Add a site to a body, as `Body.add_site` does."""
+    x, y, z = (*map(float, size), 0.0, 0.0)[:3]
+    try:
+        volume = SiteShape(shape)
+    except ValueError:
+        known = ", ".join(it.value for it in SiteShape)
+        raise DescriptionError(f"site {name!r}: its shape {shape!r} is none of {known}") from None
+    site = SiteSpec(name, body.links[link].index, pose, volume, (x, y, z))
     site.check()
     if not site.name or any(other.name == site.name for other in body.spec.sites):
         raise DescriptionError(f"site {site.name!r}: each one of a body needs a name of its own")

@@ -89,7 +89,8 @@ def reference_frame(source: Source, body: Body, spec: SensorSpec) -> Frame | Non
         found = [other for other in source.bodies.values() if other.name == spec.reference_body]
         if len(found) != 1:
             raise DescriptionError(
-                f"sensor {spec.name!r}: {len(found)} bodies have the name {spec.reference_body!r} of its reference"
+                f"sensor {spec.name!r}: {len(found)} bodies have the name {spec.reference_body!r} of its "
+                "reference; one should"
             )
         (body,) = found
     return frame_of(body, spec.reference_type, spec.reference)

@@ -30,14 +30,14 @@ def loaded_frame(body: Body, spec: SensorSpec) -> Frame:
     frame = object_frame(body, spec)
     if frame.link < 0 and body.fixed_base:
         raise DescriptionError(
-            f"sensor {spec.name!r}: site {spec.object!r} is on the fixed base of {body.name!r}, and the force "
-            "that holds a base is not computed; give the base a link on a fixed joint, with the site"
+            f"sensor {spec.name!r}: site {spec.object!r} is on the fixed base of {body.name!r}, and the "
+            "force that holds a base is not computed; give the base a link on a fixed joint, with the site"
         )
     return frame
 
 
 def _wrench(source: Source, frame: Frame) -> tuple[Array, Array]:
-    """Force and torque of the parent on a link about its centre of mass, in the axes of its inertial frame."""
+    """Force and torque of the parent on a link about its centre of mass, in axes of its inertial frame."""
     zero = np.zeros((source.count, 3))
     if frame.link < 0:
         # Nothing holds a free base.

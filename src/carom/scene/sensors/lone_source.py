@@ -26,30 +26,37 @@ class LoneSource(Source):
 
     @property
     def engine(self) -> Engine:
+        """See `Source`."""
         return self._world.engine
 
     @property
     def parameters(self) -> EngineParameters:
+        """See `Source`."""
         return self._world.parameters
 
     @property
     def times(self) -> Array:
+        """See `Source`."""
         return np.array([self._world.time])
 
     @property
     def seeds(self) -> np.ndarray:
+        """See `Source`."""
         return np.array([self._world.parameters.sensor_seed], dtype=np.int64).view(np.uint64)
 
     def poses(self, body: Body) -> Array:
+        """See `Source`."""
         self._world.update_link_poses(body)
         return self.state("link_pose")
 
     def velocities(self, body: Body) -> Array:
+        """See `Source`."""
         self._world.update_link_poses(body)
         self._world.update_link_velocities(body)
         return self.state("link_twist")
 
     def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+        """See `Source`."""
         # A link that was hit is not hit again along the whole ray.
         found = self._world.queries().cast_rays(starts, ends, hit_number=number, separation=1.0)
         bodies, links, fractions = zip(*(hit[:3] for hit in found), strict=True)

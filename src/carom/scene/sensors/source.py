@@ -45,7 +45,7 @@ class Source(ABC):
 
     @abstractmethod
     def poses(self, body: Body) -> Array:
-        """World poses of inertial frames for the present coordinates; rows are valid for links of the body."""
+        """World poses of inertial frames for the present coordinates; rows of links of the body are valid."""
 
     @abstractmethod
     def velocities(self, body: Body) -> Array:
