@@ -14,6 +14,7 @@ from typing import Any
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.actuator import ActuatorSpec
 from carom.description.joint import JOINT_CODE
+from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.sensor import SensorSpec
 from carom.description.site import SiteSpec
@@ -136,6 +137,7 @@ class BodySpec(Reusable):
         actuators: What drives its joints besides their motors.
         sites: Named frames on its links.
         sensors: What it measures.
+        keyframes: Its states by name.
     """
 
     name: str
@@ -151,6 +153,7 @@ class BodySpec(Reusable):
     actuators: tuple[ActuatorSpec, ...] = ()
     sites: tuple[SiteSpec, ...] = ()
     sensors: tuple[SensorSpec, ...] = ()
+    keyframes: tuple[BodyKeyframe, ...] = ()
 
     @property
     def damping_field(self) -> str:

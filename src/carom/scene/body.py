@@ -23,6 +23,7 @@ from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator
+    from carom.description.keyframe import BodyKeyframe
     from carom.description.sensors import Sensor
     from carom.description.site import SiteShape
     from carom.scene.actuators.actuator import BodyActuators
@@ -224,6 +225,29 @@ class Body:
         from carom.scene.sensors.changes import add_sensor
 
         add_sensor(self, name, sensor)
+
+    def add_keyframe(self, keyframe: BodyKeyframe | str) -> None:
+        """Add a keyframe, a state with a name.
+
+        Args:
+            keyframe: The state; or a name, for the present state.
+
+        Raises:
+            DescriptionError: It does not fit the body, or the name is taken.
+        """
+        from carom.scene.keyframes.changes import add_keyframe
+
+        add_keyframe(self, keyframe)
+
+    def reset(self, name: str) -> None:
+        """Reset the body to one of its keyframes; the time of the world stays.
+
+        Raises:
+            KeyError: There is no keyframe of this name.
+        """
+        from carom.scene.keyframes.changes import reset
+
+        reset([self], name)
 
     def link_spec(self, link: int) -> LinkSpec:
         """The specification of link `link`; -1 is the base."""

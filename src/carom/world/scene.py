@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from carom.scene.body import Body
+from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
 from carom.scene.named_constraints.joint_coupling import JointCoupling
 
 if TYPE_CHECKING:
     from carom.formats.reading.ignored import IgnoredList
+    from carom.scene.sensors.sensor import BodySensor
     from carom.world.world import World
 
 _MOST_NAMES = 8
@@ -26,8 +28,6 @@ class Scene(Sequence[Body]):
         bodies: The bodies, in the order of the file.
         constraints: Constraints by name, such as couplings of joints.
         actuators: Actuators by name; none are made yet.
-        sensors: Sensors by name; none are made yet.
-        keyframes: Keyframes by name; none are made yet.
         cameras: Cameras by name; none are made yet.
         options: Options that the file set in the world, by name; none are set yet.
         ignored: What the file says and the simulation lacks; prints as a table.
@@ -48,8 +48,6 @@ class Scene(Sequence[Body]):
         self.bodies: list[Body] = list(bodies)
         self.constraints: dict[str, JointCoupling] = {it.name: it for it in constraints}
         self.actuators: dict[str, Any] = {}
-        self.sensors: dict[str, Any] = {}
-        self.keyframes: dict[str, Any] = {}
         self.cameras: dict[str, Any] = {}
         self.options: dict[str, Any] = {}
         self.ignored: IgnoredList = ignored
@@ -58,6 +56,29 @@ class Scene(Sequence[Body]):
         names = ", ".join(repr(body.name) for body in self.bodies[:_MOST_NAMES])
         more = f" and {len(self.bodies) - _MOST_NAMES} more" if len(self.bodies) > _MOST_NAMES else ""
         return f"<Scene of {self.source.name} ({self.format}): {names or 'no bodies'}{more}>"
+
+    @property
+    def sensors(self) -> dict[str, BodySensor]:
+        """The sensors of all bodies by name; if two have the same name, the first."""
+        sensors = [sensor for body in self.bodies for sensor in body.sensors]
+        return {sensor.name: sensor for sensor in reversed(sensors)}
+
+    @property
+    def keyframes(self) -> dict[str, Keyframe]:
+        """The keyframes of the bodies by name."""
+        return keyframes_of(self.bodies)
+
+    def reset(self, name: str) -> None:
+        """Reset the bodies that have a keyframe of this name to it, and the world to its time.
+
+        Raises:
+            KeyError: No body has a keyframe of this name.
+        """
+        keyframes = self.keyframes
+        if name not in keyframes:
+            known = ", ".join(map(repr, keyframes)) or "none"
+            raise KeyError(f"{self.source.name} has no keyframe {name!r}; it has {known}")
+        keyframes[name].reset()
 
     def __len__(self) -> int:
         return len(self.bodies)

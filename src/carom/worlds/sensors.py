@@ -68,10 +68,8 @@ class BatchSource(Source):
             places = self._scene.link_places
             self._casters[number] = RayCaster(self._engine, places, hit_number=number, separation=1.0)
         found = self._casters[number](starts[:, None], ends[:, None], -1)
-        fractions, bodies, links = (
-            np.asarray(it)[:, 0] for it in (found.fractions, found.bodies, found.links)
-        )
-        return fractions, bodies, links
+        bodies, links = np.asarray(found.bodies)[:, 0], np.asarray(found.links)[:, 0]
+        return np.asarray(found.fractions)[:, 0], bodies, links
 
     def watch(self) -> StepWatch | None:
         """Begin to measure in a step, if some sensor has a memory."""

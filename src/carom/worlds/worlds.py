@@ -25,6 +25,7 @@ from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, take_images
+from carom.worlds.keyframes import reset_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
@@ -237,6 +238,20 @@ class Worlds(Closed):
         rows = start.rows_for(worlds, self.count)
         start.put_back(self._engine, worlds, rows)
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
+        self.halted[worlds] = False
+
+    def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
+        """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
+
+        Args:
+            name: Name of the keyframe.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            KeyError: No body has a keyframe of this name.
+        """
+        worlds = world_numbers(self._engine.take(where), self.count)
+        self.times[worlds] = reset_to(self._scene, self._engine, name, worlds)
         self.halted[worlds] = False
 
     def extract(self, world: int) -> World:
