@@ -13,7 +13,15 @@ import numpy as np
 
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Pose
-from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, DOF_COUNT, POSITION_COUNT, Activity
+from carom.layouts.codes import (
+    BASE_POSITIONS,
+    BASE_VELOCITIES,
+    DOF_COUNT,
+    LOADED,
+    POSITION_COUNT,
+    SENSED,
+    Activity,
+)
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.tables import NUMPY_REAL
@@ -363,17 +371,27 @@ class Body:
 
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
-        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint])
+        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] & SENSED)
 
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         model = self.world.arrays.model.numpy
         row = self.first_link + 1 + joint
-        model["link_sensor"][row] = enabled
-        links = slice(self.first_link, self.first_link + 1 + self.joint_count)
-        model["tree_sensor_count"][self.rows.tree] = int(model["link_sensor"][links].sum())
+        others = model["link_sensor"][row] & ~SENSED
+        model["link_sensor"][row] = others | SENSED if enabled else others
+        self._count_sensors()
         if not enabled:
             self.world.joint_reaction[row] = 0.0
+
+    def measure_load(self, joint: int) -> None:
+        """Measure from now on what a joint transmits, for sensors of sites and of its limit."""
+        self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] |= LOADED
+        self._count_sensors()
+
+    def _count_sensors(self) -> None:
+        model = self.world.arrays.model.numpy
+        links = slice(self.first_link, self.first_link + 1 + self.joint_count)
+        model["tree_sensor_count"][self.rows.tree] = int(np.count_nonzero(model["link_sensor"][links]))
 
 
 def _body_of(world: World, number: int) -> Body:

@@ -60,6 +60,8 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
         arrays["state"].setdefault(name, np.zeros(0))
     # Nor those from versions without sensors these.
     arrays["state"].setdefault("sensor_memory", np.zeros(0))
+    if "link_reaction" in arrays["state"]:
+        arrays["state"].setdefault("link_load", np.zeros_like(arrays["state"]["link_reaction"]))
     if "dof_velocity" in arrays["state"]:
         for name in _OF_SENSORS:
             arrays["state"].setdefault(name, np.zeros(len(arrays["state"]["dof_velocity"])))

@@ -2,6 +2,10 @@
 
 As in Bullet it is computed in two passes: the wrench of the unconstrained motion, plus that of a
 second motion caused by the constraint forces alone.
+
+Bullet's second pass has terms of the velocities of the links, which are in the first pass already: its
+`State.link_reaction` is in error by the order of centripetal forces. `State.link_load` is the sum of the first
+pass and of a second one without them.
 """
 
 import warp as wp
@@ -11,7 +15,10 @@ from carom.kernels.dynamics.mass_matrix import solve
 from carom.kernels.dynamics.rows import row_dof
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector3, Vector6, func, real
-from carom.layouts.codes import CONSTRAINT_FEEDBACK, LIMIT, SPHERICAL_LIMIT
+from carom.layouts.codes import CONSTRAINT_FEEDBACK, LIMIT, LOADED, SPHERICAL_LIMIT
+
+# Passes of `measure_joint_wrenches`.
+FIRST, BULLETS, EXACT = 0, 1, 2
 
 
 @func
@@ -65,11 +72,11 @@ def gather_constraint_forces(
 
 @func
 def measure_joint_wrenches(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, add: Int32
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, which: Int32
 ):
     """Store in (or add to) the sensors the wrenches transmitted by their joints.
 
-    Expects the accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
+    `which` is FIRST for the first pass, BULLETS or EXACT for one of the second passes. Expects the accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
     """
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
@@ -111,15 +118,42 @@ def measure_joint_wrenches(
             torque = scratch.link[world, link].moment - wp.cross(scratch.link[world, link].offset, force)
             to_link = wp.transpose(scratch.link[world, link].rotation)
             force, torque = to_link * force, to_link * torque
+            load = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
+            if which == FIRST:
+                state.link_load[world, link] = load
+            elif which == EXACT:
+                state.link_load[world, link] += load
             if settings.feedback_in_joint != 0:
                 torque -= wp.cross(force, model.link[link].com_from_pivot)
             if settings.feedback_in_world != 0:
                 force = scratch.link[world, link].rotation * force
                 torque = scratch.link[world, link].rotation * torque
             wrench = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
-            if add != 0:
+            if which == BULLETS:
                 wrench += state.link_reaction[world, link]
-            state.link_reaction[world, link] = wrench
+            if which != EXACT:
+                state.link_reaction[world, link] = wrench
+
+
+@func
+def has_loads(model: Model, tree: Int32) -> bool:
+    """Whether some link of a tree needs `State.link_load`."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        if (model.link[link].sensor & LOADED) != 0:
+            return True
+    return False
+
+
+@func
+def resting_link_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """The force each link needs, as `link_bias_forces`, if it is at rest and only constraints act on it."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        force = -scratch.link[world, link].constraint_force
+        scratch.link[world, link].force = force
+        torque = -scratch.link[world, link].constraint_torque
+        scratch.link[world, link].moment = torque + wp.cross(scratch.link[world, link].offset, force)
 
 
 @func
@@ -127,7 +161,12 @@ def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Second pass: add the wrenches caused by constraint forces to the sensors."""
+    if has_loads(model, tree):
+        resting_link_forces(model, scratch, world, tree)
+        generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+        solve(model, scratch, world, tree)
+        measure_joint_wrenches(model, settings, state, scratch, world, tree, EXACT)
     link_bias_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)
-    measure_joint_wrenches(model, settings, state, scratch, world, tree, 1)
+    measure_joint_wrenches(model, settings, state, scratch, world, tree, BULLETS)

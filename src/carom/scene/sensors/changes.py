@@ -88,8 +88,8 @@ def switch_on(world: World, bodies: list[Body]) -> None:
                 link = joint_of(body, spec)
             else:
                 continue
-            if link >= 0 and not body.has_sensor(link):
-                body.set_sensor(link, True)
+            if link >= 0:
+                body.measure_load(link)
     if watched and not any(isinstance(it, SensorObserver) for it in world.observers):
         world.observers.append(SensorObserver(world))
         world.scene_changed()

@@ -17,9 +17,6 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, turned_back
 from carom.scene.sensors.volumes import is_touched
 
-# Bits of `EngineParameters.joint_feedback_mode`.
-_IN_WORLD, _ABOUT_JOINT = 1, 2
-
 
 def loaded_frame(body: Body, spec: SensorSpec) -> Frame:
     """The site of a force or torque sensor.
@@ -43,15 +40,9 @@ def _wrench(source: Source, frame: Frame) -> tuple[Array, Array]:
         # Nothing holds a free base.
         return zero, zero
     body, row = frame.body, frame.row
-    reaction = source.state("link_reaction")[:, row]
-    force, torque = reaction[:, :3], reaction[:, 3:]
-    mode = source.parameters.joint_feedback_mode
-    if mode & _IN_WORLD:
-        turn = source.poses(body)[:, row, 3:]
-        force, torque = turned_back(turn, force), turned_back(turn, torque)
-    if mode & _ABOUT_JOINT:
-        torque = torque + cross(force, source.topology("link_com_from_pivot")[row : row + 1])
-    # The reaction leaves out what motors, limits and actuators of the joint itself exert along its axes.
+    load = source.state("link_load")[:, row]
+    force, torque = load[:, :3], load[:, 3:]
+    # The load leaves out what motors, limits and actuators of the joint itself exert along its axes.
     first, count = body.velocity_index[frame.link], body.velocity_count[frame.link]
     along = source.state("dof_joint_impulse")[:, first : first + count] / source.parameters.substep_time
     code = body.joint_types[frame.link]
