@@ -26,6 +26,7 @@ from carom.description.sensors import (
     Velocimeter,
 )
 from carom.model.body_spec import BodySpec, LinkSpec
+from carom.scene.sensors.vectors import turned
 
 DATA = Path(__file__).parent / "data"
 RECORDED = json.loads((DATA / "mujoco.json").read_text(encoding="utf-8"))
@@ -156,13 +157,20 @@ def test_a_sliding_box_feels_its_friction_and_then_its_weight() -> None:
 def test_a_limit_carries_the_weight_of_what_it_stops() -> None:
     body = arm(1e-3)
     body.add_sensor("stop", JointLimitForce("elbow"))
-    body.add_sensor("held", made("torque s_tool"))
-    body.joints.reset([1.2, 0.6])
-    for joint in body.joints.movable[:1]:
-        joint.damping = 1e4
-    body.world.step(3000)
-    elbow = body.joints["elbow"]
-    elbow.position, elbow.velocity
-    stop = body.sensors["stop"].read()
-    assert stop.shape == (1,)
-    assert stop[0] >= 0.0
+    body.add_sensor("held", made("force s_tool"))
+    body.joints["shoulder"].damping = 1e5
+    body.joints.reset([2.9, 0.69])
+    body.joints["elbow"].damping = 0.5
+    body.world.step(4000)
+    joint, link = body.joints["elbow"], body.links["fore"]
+    weights = [(it.mass, it.inertial_pose.position) for it in (link, body.links["tool"])]
+    axis = body.links["fore"].pose
+    pivot = axis.position
+    direction = turned(axis.orientation, np.array([1.0, 0.0, 0.0]))
+    torque = sum(
+        float(np.cross(place - pivot, [0.0, 0.0, -9.81 * mass]) @ direction) for mass, place in weights
+    )
+    assert torque > 0.5  # gravity presses the joint against its upper limit
+    assert joint.position == pytest.approx(0.698, abs=0.01)
+    assert body.sensors["stop"].read()[0] == pytest.approx(torque, rel=1e-3)
+    assert np.linalg.norm(body.sensors["held"].read()) == pytest.approx(0.2 * 9.81, rel=1e-3)

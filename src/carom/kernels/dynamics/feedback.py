@@ -4,8 +4,8 @@ As in Bullet it is computed in two passes: the wrench of the unconstrained motio
 second motion caused by the constraint forces alone.
 
 Bullet's second pass has terms of the velocities of the links, which are in the first pass already: its
-`State.link_reaction` is in error by the order of centripetal forces. `State.link_load` is the sum of the first
-pass and of a second one without them.
+`State.link_reaction` is in error by the order of centripetal forces. `State.link_load` is the sum of the
+first pass and of a second one without them.
 """
 
 import warp as wp
@@ -76,7 +76,8 @@ def measure_joint_wrenches(
 ):
     """Store in (or add to) the sensors the wrenches transmitted by their joints.
 
-    `which` is FIRST for the first pass, BULLETS or EXACT for one of the second passes. Expects the accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
+    `which` is FIRST for the first pass, BULLETS or EXACT for one of the second passes. Expects the
+    accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
     """
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
