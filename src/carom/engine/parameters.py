@@ -47,6 +47,7 @@ class EngineParameters:
         constraint_solver: 1 sequential impulses, 2 projected Gauss-Seidel, 3 Dantzig.
         sat: Separating axis test for polyhedra.
         collision_filter_mode: 0 both bodies must accept each other, 1 one is enough.
+        sensor_seed: Seed of the noise of all sensors.
     """
 
     time_step: float = DEFAULT_TIME_STEP
@@ -76,6 +77,7 @@ class EngineParameters:
     constraint_solver: int = 1
     sat: bool = False
     collision_filter_mode: int = 1
+    sensor_seed: int = 0
 
     @property
     def substep_count(self) -> int:

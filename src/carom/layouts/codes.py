@@ -138,3 +138,6 @@ ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 # Purposes of `kernels.dynamics.dynamics.link_bias_forces`.
 FREE_MOTION = 0
 CONSTRAINT_FEEDBACK = 1
+
+# Bits of `LinkModel.sensor`: Bullet's force-torque sensor, and what sensors of sites need.
+SENSED, LOADED = 1, 2

@@ -99,7 +99,7 @@ class LinkModel:
     first_dof: Int32
     dof_count: Int32
     nearest_dof: Int32  # last dof on the path from the root to this link, -1 for none
-    sensor: Int32
+    sensor: Int32  # bits: see `codes.SENSED` and `codes.LOADED`
     number: Int32  # among the links that can move, in Bullet's order; -1 if it cannot
     joint_rotation: Quaternion  # of the inertial frame in the parent's inertial frame, at position 0
     pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
@@ -190,10 +190,14 @@ class State:
     dof_pd: Vector8Rows
     dof_torque: RealRows
     dof_motor_impulse: RealRows
+    # Of joints of trees with sensors, in the last substep: of all own rows of the joint, of its limits.
+    dof_joint_impulse: RealRows
+    dof_limit_impulse: RealRows
     link_pose: TransformRows  # of the inertial frame
     link_twist: Vector6Rows  # linear velocity of the centre of mass, angular velocity
     link_wrench: Vector6Rows  # external force, torque about the centre of mass
     link_reaction: Vector6Rows  # force-torque sensor: force, torque
+    link_load: Vector6Rows  # the same without Bullet's errors, see `kernels.dynamics.feedback`
     tree_island: IntRows  # root of its island
     tree_iterations: IntRows  # sweeps of the solver; in the row of the island's root
     tree_residual: RealRows  # likewise
@@ -212,6 +216,7 @@ class State:
     actuator_control: RealRows
     actuator_activation: RealRows
     actuator_force: RealRows  # in the last substep
+    sensor_memory: RealRows  # see `scene.sensors.memory`
     status_entry: IntRows  # result of the last step: see `layouts.status`
 
 
@@ -258,6 +263,8 @@ class DofScratch:
     start_velocity: real  # at the start of the step
     start_torque: real
     start_motor_impulse: real
+    start_joint_impulse: real
+    start_limit_impulse: real
     angular: Vector3  # motion subspace
     linear: Vector3
     force: real
@@ -292,6 +299,7 @@ class Scratch:
     position_start: RealRows  # at the start of the step, like the next three
     link_pose_start: TransformRows
     link_reaction_start: Vector6Rows
+    link_load_start: Vector6Rows
     user_impulse_start: Vector6Rows
 
     # Matrices and vectors over the active dofs of a tree; rows are padded to whole blocks of four

@@ -14,7 +14,10 @@ from typing import Any
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.actuator import ActuatorSpec
 from carom.description.joint import JOINT_CODE
+from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import IDENTITY, Vector3
+from carom.description.sensor import SensorSpec
+from carom.description.site import SiteSpec
 from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
@@ -134,6 +137,9 @@ class BodySpec(Reusable):
         is_held: As in PyBullet, motors hold all joints until they are commanded, joints have no friction
             and follow no others, and their damping is explicit.
         actuators: What drives its joints besides their motors.
+        sites: Named frames on its links.
+        sensors: What it measures.
+        keyframes: Its states by name.
     """
 
     name: str
@@ -147,6 +153,9 @@ class BodySpec(Reusable):
     link_damping: float = DEFAULT_LINK_DAMPING
     is_held: bool = True
     actuators: tuple[ActuatorSpec, ...] = ()
+    sites: tuple[SiteSpec, ...] = ()
+    sensors: tuple[SensorSpec, ...] = ()
+    keyframes: tuple[BodyKeyframe, ...] = ()
 
     @property
     def damping_field(self) -> str:

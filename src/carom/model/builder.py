@@ -89,7 +89,20 @@ class WorldArrays:
         self.model: ArrayTable = ArrayTable(Model, references=_INDEX_FIELDS)
         self.state: ArrayTable = ArrayTable(State, world_count)
         self.used: dict[str, int] = dict.fromkeys(
-            ("tree", "link", "position", "dof", "block", "delta", "constraint", "row", "node", "actuator"), 0
+            (
+                "tree",
+                "link",
+                "position",
+                "dof",
+                "block",
+                "delta",
+                "constraint",
+                "row",
+                "node",
+                "actuator",
+                "sensor",
+            ),
+            0,
         )
         # The numbers of replacements for which it was made, and it.
         self._row_changes: tuple[tuple[int, int], RowChanges] | None = None
@@ -148,6 +161,7 @@ class WorldArrays:
             "delta": blocks,
             "node": 0 if spec.soft is None else len(spec.soft.nodes),
             "actuator": len(spec.actuators),
+            "sensor": sum(sensor.memory for sensor in spec.sensors),
         }
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)

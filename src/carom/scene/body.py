@@ -12,8 +12,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.joint import JOINT_CODE
-from carom.description.pose import Pose
-from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, DOF_COUNT, POSITION_COUNT, Activity
+from carom.description.pose import IDENTITY, Pose
+from carom.layouts.codes import (
+    BASE_POSITIONS,
+    BASE_VELOCITIES,
+    DOF_COUNT,
+    LOADED,
+    POSITION_COUNT,
+    SENSED,
+    Activity,
+)
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.tables import NUMPY_REAL
@@ -23,9 +31,14 @@ from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator
+    from carom.description.keyframe import BodyKeyframe
+    from carom.description.sensors import Sensor
+    from carom.description.site import SiteShape
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.joint import Joints
     from carom.scene.link import Links
+    from carom.scene.sensors.sensor import BodySensors
+    from carom.scene.sensors.site import BodySites
     from carom.world.world import World
 
 # Largest rounding error of the squared length of a unit quaternion.
@@ -170,6 +183,82 @@ class Body:
 
         add_actuator(self, name, actuator)
 
+    @cached_property
+    def sites(self) -> BodySites:
+        """The sites, frames on links, by index or name."""
+        from carom.scene.sensors.site import BodySites
+
+        return BodySites(self)
+
+    def add_site(
+        self,
+        name: str,
+        link: int | str = -1,
+        pose: Pose = IDENTITY,
+        *,
+        shape: SiteShape | str = "sphere",
+        size: Sequence[float] = (0.005,),
+    ) -> None:
+        """Add a site, a frame on a link.
+
+        Args:
+            name: Its name among the sites of the body.
+            link: The link by index (-1 is the base) or name.
+            pose: The frame in the link frame.
+            shape: Shape of its volume: sphere, capsule, ellipsoid, cylinder or box.
+            size: Of its volume [m]: a radius; radius and half length; or three half axes.
+
+        Raises:
+            DescriptionError: The name is taken, or a number has no meaning.
+        """
+        from carom.scene.sensors.changes import add_site
+
+        add_site(self, name, link, pose, shape, size)
+
+    @cached_property
+    def sensors(self) -> BodySensors:
+        """The sensors by index or name."""
+        from carom.scene.sensors.sensor import BodySensors
+
+        return BodySensors(self)
+
+    def add_sensor(self, name: str, sensor: Sensor) -> None:
+        """Add a sensor.
+
+        Args:
+            name: Its name among the sensors of the body.
+            sensor: What it measures, such as `Gyro(site="imu")`; see `carom.description.sensors`.
+
+        Raises:
+            DescriptionError: What it refers to does not exist, the name is taken, or a number has no meaning.
+        """
+        from carom.scene.sensors.changes import add_sensor
+
+        add_sensor(self, name, sensor)
+
+    def add_keyframe(self, keyframe: BodyKeyframe | str) -> None:
+        """Add a keyframe, a state with a name.
+
+        Args:
+            keyframe: The state; or a name, for the present state.
+
+        Raises:
+            DescriptionError: It does not fit the body, or the name is taken.
+        """
+        from carom.scene.keyframes.changes import add_keyframe
+
+        add_keyframe(self, keyframe)
+
+    def reset(self, name: str) -> None:
+        """Reset the body to one of its keyframes; the time of the world stays.
+
+        Raises:
+            KeyError: There is no keyframe of this name.
+        """
+        from carom.scene.keyframes.changes import reset
+
+        reset([self], name)
+
     def link_spec(self, link: int) -> LinkSpec:
         """The specification of link `link`; -1 is the base."""
         return self.spec.link(link)
@@ -284,17 +373,27 @@ class Body:
 
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
-        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint])
+        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] & SENSED)
 
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         model = self.world.arrays.model.numpy
         row = self.first_link + 1 + joint
-        model["link_sensor"][row] = enabled
-        links = slice(self.first_link, self.first_link + 1 + self.joint_count)
-        model["tree_sensor_count"][self.rows.tree] = int(model["link_sensor"][links].sum())
+        others = model["link_sensor"][row] & ~SENSED
+        model["link_sensor"][row] = others | SENSED if enabled else others
+        self._count_sensors()
         if not enabled:
             self.world.joint_reaction[row] = 0.0
+
+    def measure_load(self, joint: int) -> None:
+        """Measure from now on what a joint transmits, for sensors of sites and of its limit."""
+        self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] |= LOADED
+        self._count_sensors()
+
+    def _count_sensors(self) -> None:
+        model = self.world.arrays.model.numpy
+        links = slice(self.first_link, self.first_link + 1 + self.joint_count)
+        model["tree_sensor_count"][self.rows.tree] = int(np.count_nonzero(model["link_sensor"][links]))
 
 
 def _body_of(world: World, number: int) -> Body:

@@ -62,10 +62,21 @@ def add_bodies(
         for body in added:
             body.update_link_poses()
         world.update_soft_poses()
+        if any(spec.sensors for spec, _ in bodies):
+            _begin_to_measure(world, added)
         if also is not None:
             also(added)
         undo.done()
     return added
+
+
+def _begin_to_measure(world: World, bodies: list[Body]) -> None:
+    from carom.scene.sensors.changes import check_sensor, switch_on
+
+    for body in bodies:
+        for spec in body.spec.sensors:
+            check_sensor(world, body, spec)
+    switch_on(world, bodies)
 
 
 def append(world: World, spec: BodySpec, pose: Pose) -> Body:

@@ -43,6 +43,7 @@ class BodyLayout:
         shapes: Number of its collision shapes.
         nodes: Number of nodes; 0 unless it is a soft body.
         actuators: Number of actuators.
+        sensors: Length of the memory of sensors.
     """
 
     id: int
@@ -52,18 +53,21 @@ class BodyLayout:
     shapes: int
     nodes: int = 0
     actuators: int = 0
+    sensors: int = 0
 
     def __str__(self) -> str:
         if self.nodes:
             return f"{self.nodes} nodes"
         joints, freedoms = self.links - 1, self.dofs - BASE_VELOCITIES
         driven = f" and {self.actuators} actuators" if self.actuators else ""
-        return f"{joints} joints with {freedoms} freedoms{driven}"
+        sensed = f" and {self.sensors} numbers of sensors" if self.sensors else ""
+        return f"{joints} joints with {freedoms} freedoms{driven}{sensed}"
 
     def moves_like(self, other: BodyLayout) -> bool:
-        """Whether both have the same numbers of links, coordinates, nodes and actuators."""
-        mine = (self.links, self.positions, self.dofs, self.nodes, self.actuators)
-        return mine == (other.links, other.positions, other.dofs, other.nodes, other.actuators)
+        """Whether both have the same numbers of links, coordinates, nodes, actuators and sensors' memory."""
+        mine = (self.links, self.positions, self.dofs, self.nodes, self.actuators, self.sensors)
+        others = (other.links, other.positions, other.dofs, other.nodes, other.actuators, other.sensors)
+        return mine == others
 
 
 @record(frozen=False)
@@ -118,8 +122,9 @@ def layout(world: World) -> Layout:
         rows = body.rows
         first, links = rows.first["link"], rows.count["link"]
         shapes = int(shape_count[first : first + links].sum())
-        positions, dofs, nodes = (rows.count[axis] for axis in ("position", "dof", "node"))
-        bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, nodes, rows.count["actuator"]))
+        positions, dofs = rows.count["position"], rows.count["dof"]
+        others = [rows.count[axis] for axis in ("node", "actuator", "sensor")]
+        bodies.append(BodyLayout(body.id, links, positions, dofs, shapes, *others))
     return Layout.of(tuple(bodies))
 
 
@@ -219,6 +224,7 @@ def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:
         "dof": [body.dofs for body in was],
         "node": [body.nodes for body in was],
         "actuator": [body.actuators for body in was],
+        "sensor": [body.sensors for body in was],
         _DRIVES: [body.dofs - BASE_VELOCITIES for body in was],
     }
     order: dict[Any, np.ndarray] = {}

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from carom.model.body_spec import BASE
-from carom.world.keyframe import Keyframe
+from carom.world.file_keyframes import give_keyframes
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
@@ -32,7 +32,21 @@ def describe(scene: Scene, model: CompiledModel) -> None:
     scene.options = dict(model.options)
     of_bodies = {it.name: it for body in scene.bodies for it in body.actuators}
     scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
-    scene.keyframes = {name: Keyframe(state, scene, model) for name, state in model.keyframes.items()}
+    _give_sites(scene.bodies, model)
+    give_keyframes(scene.bodies, model)
+
+
+def _give_sites(bodies: Sequence[Body], model: CompiledModel) -> None:
+    """Add the sites of the file to the bodies whose links they are on; those of the world stay with the scene."""
+    places = {
+        body.spec.link(index).name: (body, index)
+        for body in reversed(bodies)
+        for index in range(BASE, len(body.spec.links))
+    }
+    for site in model.sites.values():
+        if site.body in places:
+            body, link = places[site.body]
+            body.add_site(site.name, link, site.frame, shape=site.kind, size=site.size)
 
 
 def _kept_apart(bodies: Sequence[Body], model: CompiledModel) -> Iterator[tuple[int, int]]:

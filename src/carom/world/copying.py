@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 # Attributes that a body computes on demand and that refer to its world.
-_COMPUTED = ("joints", "links", "actuators")
+_COMPUTED = ("joints", "links", "actuators", "sites", "sensors")
 
 
 def copy_world(world: World) -> World:
@@ -33,6 +33,10 @@ def copy_world(world: World) -> World:
     other.links_loaded = world.links_loaded
     other.time, other.unspent_time = world.time, world.unspent_time
     copy_appearance(world, other)
+    if any(body.spec.sensors for body in other.bodies.values()):
+        from carom.scene.sensors.changes import switch_on
+
+        switch_on(other, list(other.bodies.values()))
     return other
 
 

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any, overload
 
 from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
+from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
+    from carom.scene.sensors.sensor import BodySensor
     from carom.world.compiled_constraints import NamedConstraint
-    from carom.world.keyframe import Keyframe
     from carom.world.world import World
 
 _MOST_NAMES = 8
@@ -29,9 +30,7 @@ class Scene(Sequence[Body]):
         bodies: The bodies, in the order of the file.
         constraints: Couplings of joints, and connected and welded links, by name.
         actuators: Actuators of all bodies by name, in the order of an MJCF file.
-        sensors: Sensors by name; none are made yet.
-        sites: Named frames of MJCF files, by name.
-        keyframes: Named states of MJCF files, by name; `reset` puts the bodies into one.
+        sites: Named frames of MJCF files, by name; `Body.sites` has those of each body.
         cameras: Cameras of MJCF files, by name.
         options: What an MJCF file states in `<option>`, by name; `apply_options` sets it in the world.
         ignored: What the file says and the simulation lacks; prints as a table.
@@ -52,28 +51,10 @@ class Scene(Sequence[Body]):
         self.bodies: list[Body] = list(bodies)
         self.constraints: dict[str, NamedConstraint] = {it.name: it for it in constraints}
         self.actuators: dict[str, BodyActuator] = {it.name: it for body in bodies for it in body.actuators}
-        self.sensors: dict[str, Any] = {}
         self.sites: dict[str, Site] = {}
-        self.keyframes: dict[str, Keyframe] = {}
         self.cameras: dict[str, FileCamera] = {}
         self.options: dict[str, Any] = {}
         self.ignored: IgnoredList = ignored
-
-    def reset(self, keyframe: str) -> None:
-        """Put the bodies of the scene into a state of the file; the time of the world goes on.
-
-        Actuators get its controls and activations; motors keep their commands.
-
-        Args:
-            keyframe: Its name.
-
-        Raises:
-            KeyError: There is no keyframe of this name.
-        """
-        if keyframe not in self.keyframes:
-            known = ", ".join(map(repr, self.keyframes)) or "none"
-            raise KeyError(f"no keyframe has the name {keyframe!r}; those of {self.source.name} are {known}")
-        self.keyframes[keyframe].apply()
 
     def apply_options(self) -> None:
         """Set gravity and the time step of the world to those of the file; other options have no effect."""
@@ -88,6 +69,29 @@ class Scene(Sequence[Body]):
         names = ", ".join(repr(body.name) for body in self.bodies[:_MOST_NAMES])
         more = f" and {len(self.bodies) - _MOST_NAMES} more" if len(self.bodies) > _MOST_NAMES else ""
         return f"<Scene of {self.source.name} ({self.format}): {names or 'no bodies'}{more}>"
+
+    @property
+    def sensors(self) -> dict[str, BodySensor]:
+        """The sensors of all bodies by name; if two have the same name, the first."""
+        sensors = [sensor for body in self.bodies for sensor in body.sensors]
+        return {sensor.name: sensor for sensor in reversed(sensors)}
+
+    @property
+    def keyframes(self) -> dict[str, Keyframe]:
+        """The keyframes of the bodies by name."""
+        return keyframes_of(self.bodies)
+
+    def reset(self, name: str) -> None:
+        """Reset the bodies that have a keyframe of this name to it, and the world to its time.
+
+        Raises:
+            KeyError: No body has a keyframe of this name.
+        """
+        keyframes = self.keyframes
+        if name not in keyframes:
+            known = ", ".join(map(repr, keyframes)) or "none"
+            raise KeyError(f"{self.source.name} has no keyframe {name!r}; it has {known}")
+        keyframes[name].reset()
 
     def __len__(self) -> int:
         return len(self.bodies)

@@ -25,6 +25,7 @@ _MOTION = ("position", "dof_velocity", "link_pose", "link_twist", "node_position
 _BASE_TURN, _QUATERNION = 3, 4
 _UNIT_TOLERANCE = 1e-3
 _OF_ACTUATORS = ("actuator_control", "actuator_activation", "actuator_force")
+_OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
 _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 
@@ -57,6 +58,13 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
     for name in _OF_ACTUATORS:
         # Nor do those from versions without actuators have these.
         arrays["state"].setdefault(name, np.zeros(0))
+    # Nor those from versions without sensors these.
+    arrays["state"].setdefault("sensor_memory", np.zeros(0))
+    if "link_reaction" in arrays["state"]:
+        arrays["state"].setdefault("link_load", np.zeros_like(arrays["state"]["link_reaction"]))
+    if "dof_velocity" in arrays["state"]:
+        for name in _OF_SENSORS:
+            arrays["state"].setdefault(name, np.zeros(len(arrays["state"]["dof_velocity"])))
     split_impulses(arrays["contacts"])
     add_overlaps(arrays["contacts"])
     add_resets(arrays["state"], arrays["contacts"])
@@ -110,6 +118,7 @@ def _check_counts(reader: Reader, bodies: list[BodyLayout], state: dict[str, np.
         ("dof_velocity", [body.dofs for body in bodies]),
         ("node_position", [body.nodes for body in bodies]),
         ("actuator_control", [body.actuators for body in bodies]),
+        ("sensor_memory", [body.sensors for body in bodies]),
     ):
         if axis not in state or min(counts, default=0) < 0 or sum(counts) != len(state[axis]):
             raise reader.fail("state.bodies", f"does not have the rows of {axis}")
@@ -166,6 +175,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         "dof": sum(body.dofs for body in saved),
         "node": sum(body.nodes for body in saved),
         "actuator": sum(body.actuators for body in saved),
+        "sensor": sum(body.sensors for body in saved),
         "drive": len(snapshot.layout.joint_dofs),
         **counted_rows(counts),
     }
@@ -181,7 +191,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
     islands = snapshot.state["tree_island"]
     if islands.size and not 0 <= islands.min() <= islands.max() < len(saved):
         raise ValueError("an island number is out of range")
-    for name in (*_MOTION, *_OF_ACTUATORS):
+    for name in (*_MOTION, *_OF_ACTUATORS, "sensor_memory"):
         if not (np.abs(snapshot.state[name]) <= MAX_MAGNITUDE).all():
             raise ValueError(f"array {name!r} contains a number that is infinite, NaN or very large")
     _check_turns(bodies, snapshot)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
 from carom.description import JointType
+from carom.layouts.codes import SENSED
 from carom.scene.joint_motor import Drives
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
@@ -101,9 +102,9 @@ class JointBatch(Batch):
         model = table.numpy
         for joint in chosen:
             row = self._body.first_link + 1 + choose("joint", self.joint_names, joint)
-            model["link_sensor"][row] = 1
+            model["link_sensor"][row] |= SENSED
         links = slice(self._body.first_link, self._links.stop)
-        model["tree_sensor_count"][self.rows.tree] = int(model["link_sensor"][links].sum())
+        model["tree_sensor_count"][self.rows.tree] = int((model["link_sensor"][links] != 0).sum())
         table.written("link_sensor")
         table.written("tree_sensor_count")
 

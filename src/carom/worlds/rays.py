@@ -36,9 +36,21 @@ class RayHits(NamedTuple):
 
 
 class RayCaster:
-    """Casts rays in all worlds of an engine at once; `places` are the body and link of each row."""
+    """Casts rays in all worlds of an engine at once; `places` are the body and link of each row.
 
-    def __init__(self, engine: Engine, places: Sequence[tuple[int, int]]) -> None:
+    `hit_number` is 0 for the first hit, 1 for the second; after a hit, hits on the same link within the
+    fraction `separation` of the ray are ignored.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        places: Sequence[tuple[int, int]],
+        *,
+        hit_number: int = 0,
+        separation: float = 0.0,
+    ) -> None:
+        self._which = {"hit_number": hit_number, "separation": float(NUMPY_REAL(separation))}
         self._count = engine.arrays.world_count
         self._engine = engine
         self._places = row_map_struct(places, engine.table(Places))
@@ -73,8 +85,8 @@ class RayCaster:
             structs.launch(link_poses_kernel, first_world=0),
             structs.launch(prepare_rays_kernel, first_world=0),
             structs.launch(
-                rays_kernel, first_world=0, count=number, threads=1, mask=mask, hit_number=0,
-                separation=float(NUMPY_REAL(0.0)),
+                rays_kernel, first_world=0, count=number, threads=1, mask=mask,
+                **self._which,
             ),
         ]  # fmt: skip
 

@@ -16,6 +16,7 @@ from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.scene.body import Body
+from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
@@ -24,9 +25,11 @@ from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, take_images
+from carom.worlds.keyframes import reset_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
+from carom.worlds.sensors import BatchSource
 from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
 if TYPE_CHECKING:
@@ -81,8 +84,10 @@ class Worlds(Closed):
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
         self.halted: Mask = np.zeros(count, dtype=bool)
+        self._sensors = BatchSource(self._scene, self._engine, self.times)
         self._bodies = {
-            number: BodyBatch(body, self._scene, self._engine) for number, body in self._scene.bodies.items()
+            number: BodyBatch(body, self._scene, self._engine, self._sensors)
+            for number, body in self._scene.bodies.items()
         }
 
         self._close(Worlds)
@@ -114,6 +119,11 @@ class Worlds(Closed):
         if number not in self._bodies:
             raise KeyError(f"there is no body {number}; there are {', '.join(map(str, self._bodies))}")
         return self._bodies[number]
+
+    @property
+    def bodies(self) -> Named[BodyBatch]:
+        """The bodies by name, or by their place in the order they were added."""
+        return Named("body", list(self))
 
     def __iter__(self) -> Iterator[BodyBatch]:
         """The bodies, in the order they were added."""
@@ -151,7 +161,8 @@ class Worlds(Closed):
             raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
-            steps = min(count, MOST_STEPS)
+            # Sensors with a memory measure after each step.
+            steps = 1 if self._sensors.remembered else min(count, MOST_STEPS)
             self._step(steps, chosen)
             count -= steps
 
@@ -159,7 +170,7 @@ class Worlds(Closed):
         running = np.flatnonzero(~self.halted) if chosen is None else chosen[~self.halted[chosen]]
         if not len(running):
             return
-        parameters = self._scene.parameters
+        parameters, watch = self._scene.parameters, self._sensors.watch()
         if parameters.substeps <= 1:
             self._engine.step([1] * steps, None if len(running) == self.count else running)
         else:
@@ -178,6 +189,8 @@ class Worlds(Closed):
         status = self._engine.status[running, STATUS]
         if status.any():
             self._halt(running[status > WELL], steps)
+        if watch is not None:
+            watch.finish(running[~self.halted[running]])
 
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
         """Mark worlds whose step failed, and warn."""
@@ -227,6 +240,20 @@ class Worlds(Closed):
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False
 
+    def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
+        """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
+
+        Args:
+            name: Name of the keyframe.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            KeyError: No body has a keyframe of this name.
+        """
+        worlds = world_numbers(self._engine.take(where), self.count)
+        self.times[worlds] = reset_to(self._scene, self._engine, name, worlds)
+        self.halted[worlds] = False
+
     def extract(self, world: int) -> World:
         """A copy of one of the worlds as a `World`, which continues exactly as it would.
 
@@ -234,13 +261,15 @@ class Worlds(Closed):
             IndexError: There is no such world.
         """
         (number,) = world_numbers([world], self.count)
-        return lone_world(
+        lone = lone_world(
             self._scene,
             self._engine,
             int(number),
             float(self.times[number]),
             float(self._unspent_times[number]),
         )
+        lone.parameters.sensor_seed = int(self.sensor_seeds[number])
+        return lone
 
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
@@ -259,6 +288,15 @@ class Worlds(Closed):
         copy_coordinates(self._engine, int(row), world)
 
     # Parameters
+
+    @property
+    def sensor_seeds(self) -> np.ndarray:
+        """Seed of the noise of sensors in each world, a view (count,).
+
+        At first `World.parameters.sensor_seed` and the numbers after it: a lone world with the seed of one of
+        these has the same noise.
+        """
+        return self._sensors.own_seeds
 
     @property
     def gravity(self) -> Array:

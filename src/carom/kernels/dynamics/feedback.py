@@ -2,6 +2,10 @@
 
 As in Bullet it is computed in two passes: the wrench of the unconstrained motion, plus that of a
 second motion caused by the constraint forces alone.
+
+Bullet's second pass has terms of the velocities of the links, which are in the first pass already: its
+`State.link_reaction` is in error by the order of centripetal forces. `State.link_load` is the sum of the
+first pass and of a second one without them.
 """
 
 import warp as wp
@@ -10,13 +14,21 @@ from carom.kernels.dynamics.dynamics import generalized_forces, link_bias_forces
 from carom.kernels.dynamics.mass_matrix import solve
 from carom.kernels.dynamics.rows import row_dof
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Vector3, Vector6, func
-from carom.layouts.codes import CONSTRAINT_FEEDBACK
+from carom.kernels.types import Int32, Vector3, Vector6, func, real
+from carom.layouts.codes import CONSTRAINT_FEEDBACK, LIMIT, LOADED, SPHERICAL_LIMIT
+
+# Passes of `measure_joint_wrenches`.
+FIRST, BULLETS, EXACT = 0, 1, 2
 
 
 @func
-def clear_constraint_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
-    """Set the constraint forces on the links of a tree to zero."""
+def clear_constraint_forces(model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Set the constraint forces on the links of a tree and the impulses of its joints' rows to zero."""
+    dof = model.tree[tree].first_dof + 0
+    while dof < model.tree[tree].first_dof + model.tree[tree].dof_count:
+        state.dof_joint_impulse[world, dof] = real(0.0)
+        state.dof_limit_impulse[world, dof] = real(0.0)
+        dof += 1
     base = model.tree[tree].first_link
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
@@ -33,16 +45,21 @@ def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, po
 
 @func
 def gather_constraint_forces(
-    model: Model, settings: Settings, scratch: Scratch, world: Int32, first: Int32, last: Int32
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, first: Int32, last: Int32
 ):
-    """Add the impulses of rows [first, last), as forces, to the joint's link and its parent."""
+    """Add the impulses of rows [first, last) to those of joints, and as forces to the links they join."""
     for row in range(first, last):
         constraint = scratch.row[world, row].constraint
         if model.tree[model.constraint[constraint].tree].sensor_count > 0:
             link = model.constraint[constraint].link
             parent = model.link[link].parent
             dof = row_dof(model, scratch, world, row)
-            size = scratch.row[world, row].impulse / settings.time_step
+            impulse = scratch.row[world, row].impulse
+            state.dof_joint_impulse[world, dof] += impulse
+            kind = model.constraint[constraint].kind
+            if kind == LIMIT or kind == SPHERICAL_LIMIT:
+                state.dof_limit_impulse[world, dof] += impulse
+            size = impulse / settings.time_step
             angular = scratch.dof[world, dof].angular
             if wp.dot(angular, angular) > 0.0:
                 scratch.link[world, link].constraint_torque += angular * size
@@ -55,11 +72,12 @@ def gather_constraint_forces(
 
 @func
 def measure_joint_wrenches(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, add: Int32
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, which: Int32
 ):
     """Store in (or add to) the sensors the wrenches transmitted by their joints.
 
-    Expects the accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
+    `which` is FIRST for the first pass, BULLETS or EXACT for one of the second passes. Expects the
+    accelerations in `dof_force` and the link forces summed up by `generalized_forces`.
     """
     base = model.tree[tree].first_link
     count = model.tree[tree].link_count
@@ -101,15 +119,42 @@ def measure_joint_wrenches(
             torque = scratch.link[world, link].moment - wp.cross(scratch.link[world, link].offset, force)
             to_link = wp.transpose(scratch.link[world, link].rotation)
             force, torque = to_link * force, to_link * torque
+            load = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
+            if which == FIRST:
+                state.link_load[world, link] = load
+            elif which == EXACT:
+                state.link_load[world, link] += load
             if settings.feedback_in_joint != 0:
                 torque -= wp.cross(force, model.link[link].com_from_pivot)
             if settings.feedback_in_world != 0:
                 force = scratch.link[world, link].rotation * force
                 torque = scratch.link[world, link].rotation * torque
             wrench = Vector6(force[0], force[1], force[2], torque[0], torque[1], torque[2])
-            if add != 0:
+            if which == BULLETS:
                 wrench += state.link_reaction[world, link]
-            state.link_reaction[world, link] = wrench
+            if which != EXACT:
+                state.link_reaction[world, link] = wrench
+
+
+@func
+def has_loads(model: Model, tree: Int32) -> bool:
+    """Whether some link of a tree needs `State.link_load`."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        if (model.link[link].sensor & LOADED) != 0:
+            return True
+    return False
+
+
+@func
+def resting_link_forces(model: Model, scratch: Scratch, world: Int32, tree: Int32):
+    """The force each link needs, as `link_bias_forces`, if it is at rest and only constraints act on it."""
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        force = -scratch.link[world, link].constraint_force
+        scratch.link[world, link].force = force
+        torque = -scratch.link[world, link].constraint_torque
+        scratch.link[world, link].moment = torque + wp.cross(scratch.link[world, link].offset, force)
 
 
 @func
@@ -117,7 +162,12 @@ def constraint_feedback(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
     """Second pass: add the wrenches caused by constraint forces to the sensors."""
+    if has_loads(model, tree):
+        resting_link_forces(model, scratch, world, tree)
+        generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
+        solve(model, scratch, world, tree)
+        measure_joint_wrenches(model, settings, state, scratch, world, tree, EXACT)
     link_bias_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     generalized_forces(model, state, scratch, world, tree, CONSTRAINT_FEEDBACK)
     solve(model, scratch, world, tree)
-    measure_joint_wrenches(model, settings, state, scratch, world, tree, 1)
+    measure_joint_wrenches(model, settings, state, scratch, world, tree, BULLETS)

@@ -29,6 +29,8 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         scratch.dof[world, dof].start_velocity = state.dof_velocity[world, dof]
         scratch.dof[world, dof].start_torque = state.dof_torque[world, dof]
         scratch.dof[world, dof].start_motor_impulse = state.dof_motor_impulse[world, dof]
+        scratch.dof[world, dof].start_joint_impulse = state.dof_joint_impulse[world, dof]
+        scratch.dof[world, dof].start_limit_impulse = state.dof_limit_impulse[world, dof]
         dof += 1
     first = model.tree[tree].first_actuator
     for actuator in range(first, first + model.tree[tree].actuator_count):
@@ -39,6 +41,7 @@ def keep_start(model: Model, state: State, scratch: Scratch, world: Int32, tree:
         scratch.link_pose_start[world, link] = state.link_pose[world, link]
         if model.link[link].sensor != 0:
             scratch.link_reaction_start[world, link] = state.link_reaction[world, link]
+            scratch.link_load_start[world, link] = state.link_load[world, link]
     scratch.tree[world, tree].start_island = state.tree_island[world, tree]
     scratch.tree[world, tree].start_iterations = state.tree_iterations[world, tree]
     scratch.tree[world, tree].start_residual = state.tree_residual[world, tree]
@@ -62,6 +65,8 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         state.dof_velocity[world, dof] = scratch.dof[world, dof].start_velocity
         state.dof_torque[world, dof] = scratch.dof[world, dof].start_torque
         state.dof_motor_impulse[world, dof] = scratch.dof[world, dof].start_motor_impulse
+        state.dof_joint_impulse[world, dof] = scratch.dof[world, dof].start_joint_impulse
+        state.dof_limit_impulse[world, dof] = scratch.dof[world, dof].start_limit_impulse
         dof += 1
     first = model.tree[tree].first_actuator
     for actuator in range(first, first + model.tree[tree].actuator_count):
@@ -72,6 +77,7 @@ def return_to_start(model: Model, state: State, scratch: Scratch, world: Int32, 
         state.link_pose[world, link] = scratch.link_pose_start[world, link]
         if model.link[link].sensor != 0:
             state.link_reaction[world, link] = scratch.link_reaction_start[world, link]
+            state.link_load[world, link] = scratch.link_load_start[world, link]
     state.tree_island[world, tree] = scratch.tree[world, tree].start_island
     state.tree_iterations[world, tree] = scratch.tree[world, tree].start_iterations
     state.tree_residual[world, tree] = scratch.tree[world, tree].start_residual

@@ -10,6 +10,7 @@ from carom.kernels.dynamics.dynamics import (
     update_velocities,
 )
 from carom.kernels.dynamics.feedback import (
+    FIRST,
     clear_constraint_forces,
     constraint_feedback,
     measure_joint_wrenches,
@@ -51,8 +52,8 @@ def move_tree(
     factorise(model, scratch, world, tree)
     solve(model, scratch, world, tree)
     if model.tree[tree].sensor_count > 0:
-        measure_joint_wrenches(model, settings, state, scratch, world, tree, 0)
-        clear_constraint_forces(model, scratch, world, tree)
+        measure_joint_wrenches(model, settings, state, scratch, world, tree, FIRST)
+        clear_constraint_forces(model, state, scratch, world, tree)
     update_velocities(model, settings, state, scratch, world, tree)
     if pushed:
         invert(model, scratch, world, tree)

@@ -198,7 +198,7 @@ def keep_row_results(
     state.tree_residual[world, root] = residual
     for row in range(count):
         keep_motor_impulse(model, settings, state, scratch, world, row)
-    gather_constraint_forces(model, settings, scratch, world, 0, count)
+    gather_constraint_forces(model, settings, state, scratch, world, 0, count)
 
 
 @func

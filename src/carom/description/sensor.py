@@ -1,0 +1,209 @@
+"""Sensors as data: what is measured, of which object, how well. `carom.description.sensors` has classes."""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import ceil, inf
+
+from carom.description.pose import Vector3
+from carom.errors import DescriptionError
+from carom.record import record
+
+
+class SensorKind(Enum):
+    """What a sensor measures; in MuJoCo's files the names are the same without underscores, if not noted."""
+
+    # Of a site.
+    TOUCH = "touch"
+    ACCELEROMETER = "accelerometer"
+    VELOCIMETER = "velocimeter"
+    GYRO = "gyro"
+    FORCE = "force"
+    TORQUE = "torque"
+    MAGNETOMETER = "magnetometer"
+    RANGE_FINDER = "rangefinder"
+    # Of a joint.
+    JOINT_POSITION = "jointpos"
+    JOINT_VELOCITY = "jointvel"
+    JOINT_ACTUATOR_FORCE = "jointactuatorfrc"
+    BALL_QUATERNION = "ballquat"
+    BALL_ANGULAR_VELOCITY = "ballangvel"
+    JOINT_LIMIT_POSITION = "jointlimitpos"
+    JOINT_LIMIT_VELOCITY = "jointlimitvel"
+    JOINT_LIMIT_FORCE = "jointlimitfrc"
+    # Of an actuator.
+    ACTUATOR_POSITION = "actuatorpos"
+    ACTUATOR_VELOCITY = "actuatorvel"
+    ACTUATOR_FORCE = "actuatorfrc"
+    # Of a frame, in another frame.
+    FRAME_POSITION = "framepos"
+    FRAME_QUATERNION = "framequat"
+    FRAME_X_AXIS = "framexaxis"
+    FRAME_Y_AXIS = "frameyaxis"
+    FRAME_Z_AXIS = "framezaxis"
+    FRAME_LINEAR_VELOCITY = "framelinvel"
+    FRAME_ANGULAR_VELOCITY = "frameangvel"
+    FRAME_LINEAR_ACCELERATION = "framelinacc"
+    FRAME_ANGULAR_ACCELERATION = "frameangacc"
+    # Of a link and all links after it. MuJoCo has no sensor of linear momentum.
+    SUBTREE_CENTER_OF_MASS = "subtreecom"
+    SUBTREE_LINEAR_VELOCITY = "subtreelinvel"
+    SUBTREE_LINEAR_MOMENTUM = "subtreelinmom"
+    SUBTREE_ANGULAR_MOMENTUM = "subtreeangmom"
+    # Of the world.
+    CLOCK = "clock"
+
+
+class SensorObject(Enum):
+    """What kind of thing the object or the reference of a sensor is.
+
+    MuJoCo's `xbody` is a link, its `body` the inertial frame of one; of subtrees both mean the link. For
+    geoms and cameras, make a site at their place.
+    """
+
+    NONE = "none"
+    SITE = "site"
+    LINK = "link"
+    INERTIAL_FRAME = "inertial frame"
+    JOINT = "joint"
+    ACTUATOR = "actuator"
+
+
+_QUATERNIONS = (SensorKind.FRAME_QUATERNION, SensorKind.BALL_QUATERNION)
+_AXES = (SensorKind.FRAME_X_AXIS, SensorKind.FRAME_Y_AXIS, SensorKind.FRAME_Z_AXIS)
+POSITIVE: tuple[SensorKind, ...] = (SensorKind.TOUCH, SensorKind.RANGE_FINDER)
+UNBOUNDED: tuple[SensorKind, ...] = (*_QUATERNIONS, *_AXES)
+"""Kinds with results of unit length, to which no cutoff applies."""
+_NUMBERS = (
+    SensorKind.TOUCH,
+    SensorKind.RANGE_FINDER,
+    SensorKind.JOINT_POSITION,
+    SensorKind.JOINT_VELOCITY,
+    SensorKind.JOINT_ACTUATOR_FORCE,
+    SensorKind.JOINT_LIMIT_POSITION,
+    SensorKind.JOINT_LIMIT_VELOCITY,
+    SensorKind.JOINT_LIMIT_FORCE,
+    SensorKind.ACTUATOR_POSITION,
+    SensorKind.ACTUATOR_VELOCITY,
+    SensorKind.ACTUATOR_FORCE,
+    SensorKind.CLOCK,
+)
+OF_STEPS: tuple[SensorKind, ...] = (
+    SensorKind.ACCELEROMETER,
+    SensorKind.FRAME_LINEAR_ACCELERATION,
+    SensorKind.FRAME_ANGULAR_ACCELERATION,
+)
+"""Kinds that are known only just after a step."""
+SHORT_STEP = 1e-3
+MOST_SAMPLES = 100_000
+_SITE_KINDS = tuple(SensorKind)[:8]
+_JOINT_KINDS = tuple(SensorKind)[8:16]
+_ACTUATOR_KINDS = tuple(SensorKind)[16:19]
+FRAME_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[19:28]
+SUBTREE_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[28:32]
+
+
+@record
+class SensorSpec:
+    """A sensor of a body.
+
+    Attributes:
+        name: Its name among the sensors of the body.
+        kind: What it measures.
+        object_type: What its object is.
+        object: Name of the site, link, joint or actuator of the body; empty for a clock.
+        reference_type: Of sensors of frames: what they are seen from; NONE for the world.
+        reference: Its name.
+        reference_body: Name of the body that has it; empty for the same body.
+        noise: Standard deviation of Gaussian noise that is added to each number of a sample.
+        bias: Added to the numbers: one for each, one for all, or empty for none.
+        cutoff: Bound of the absolute values, after bias and noise; 0 for none.
+        delay: Time from a measurement until it is read [s].
+        period: Time between measurements, held in between [s]; 0 for one at every step.
+        samples: How many measurements are kept for the delay; 0 for as many as steps of 1 ms or longer need.
+        seed: Of the noise; sensors with the same name and seed have the same noise.
+        magnetic_field: Of magnetometers: in world axes.
+        reach: Of range finders: how far they see [m].
+    """
+
+    name: str
+    kind: SensorKind
+    object_type: SensorObject = SensorObject.NONE
+    object: str = ""
+    reference_type: SensorObject = SensorObject.NONE
+    reference: str = ""
+    reference_body: str = ""
+    noise: float = 0.0
+    bias: tuple[float, ...] = ()
+    cutoff: float = 0.0
+    delay: float = 0.0
+    period: float = 0.0
+    samples: int = 0
+    seed: int = 0
+    magnetic_field: Vector3 = (0.0, -0.5, 0.0)
+    reach: float = 1000.0
+
+    @property
+    def dim(self) -> int:
+        """How many numbers it gives."""
+        return 1 if self.kind in _NUMBERS else 4 if self.kind in _QUATERNIONS else 3
+
+    @property
+    def is_remembered(self) -> bool:
+        """Whether it is measured at each step, and not when it is read."""
+        return self.kind in OF_STEPS or self.delay > 0.0 or self.period > 0.0
+
+    @property
+    def kept(self) -> int:
+        """Number of measurements in its memory."""
+        if not self.is_remembered:
+            return 0
+        return self.samples or 1 if self.delay == 0.0 else self.samples or self._needed
+
+    @property
+    def _needed(self) -> int:
+        return ceil(self.delay / max(self.period, SHORT_STEP)) + 2
+
+    @property
+    def memory(self) -> int:
+        """Numbers in its memory: how many measurements it has, and of each its time and its numbers."""
+        return 1 + self.kept * (1 + self.dim) if self.is_remembered else 0
+
+    def check(self) -> None:
+        """Raise `DescriptionError` unless object and parameters fit the kind."""
+        allowed = objects_of(self.kind)
+        if self.object_type not in allowed:
+            raise self._error(f"measures a {' or '.join(it.value for it in allowed)}")
+        if self.reference_type != SensorObject.NONE and (
+            self.kind not in FRAME_KINDS or self.reference_type not in objects_of(self.kind)
+        ):
+            raise self._error(f"cannot be relative to a {self.reference_type.value}")
+        for name in ("noise", "cutoff", "delay", "period"):
+            if not 0.0 <= getattr(self, name) < inf:
+                raise self._error(f"needs a {name} of 0 or more, not {getattr(self, name):g}")
+        if not 0.0 < self.reach < inf:
+            raise self._error(f"needs a reach greater than 0, not {self.reach:g}")
+        if not 0 <= self.samples <= MOST_SAMPLES or self.kept > MOST_SAMPLES:
+            raise self._error(
+                f"would keep {max(self.samples, self.kept)} measurements; {MOST_SAMPLES} are most"
+            )
+        if len(self.bias) not in (0, 1, self.dim):
+            raise self._error(f"has {self.dim} numbers, but its bias has {len(self.bias)}")
+        if not all(-inf < number < inf for number in (*self.bias, *self.magnetic_field)):
+            raise self._error("needs a finite bias and magnetic field")
+
+    def _error(self, problem: str) -> DescriptionError:
+        return DescriptionError(f"sensor {self.name!r} of kind {self.kind.value} {problem}")
+
+
+def objects_of(kind: SensorKind) -> tuple[SensorObject, ...]:
+    """What the object of a sensor can be."""
+    if kind in _SITE_KINDS:
+        return (SensorObject.SITE,)
+    if kind in _JOINT_KINDS:
+        return (SensorObject.JOINT,)
+    if kind in _ACTUATOR_KINDS:
+        return (SensorObject.ACTUATOR,)
+    if kind in FRAME_KINDS:
+        return SensorObject.SITE, SensorObject.LINK, SensorObject.INERTIAL_FRAME
+    return (SensorObject.LINK,) if kind in SUBTREE_KINDS else (SensorObject.NONE,)

@@ -1,0 +1,376 @@
+"""Sensors for `Body.add_sensor`: one class for each kind, all with the same parameters of quality."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
+
+from carom.description.pose import Vector3
+from carom.description.sensor import SensorKind, SensorObject, SensorSpec
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+class Quality(TypedDict, total=False):
+    """Parameters that all sensors have; see `SensorSpec`."""
+
+    noise: float
+    bias: float | tuple[float, ...]
+    cutoff: float
+    delay: float
+    period: float
+    samples: int
+    seed: int
+
+
+class Sensor:
+    """Base of all sensors: a `SensorSpec` without a name.
+
+    Args:
+        object_type: What its object is.
+        object: Name of the object.
+        **parameters: Other fields of `SensorSpec`; `bias` may be one number.
+    """
+
+    __slots__ = ("_spec",)
+    kind: ClassVar[SensorKind]
+
+    def __init__(self, object_type: SensorObject, object: str, **parameters: Any) -> None:
+        bias = parameters.get("bias", ())
+        parameters["bias"] = (float(bias),) if isinstance(bias, (int, float)) else tuple(bias)
+        self._spec = SensorSpec("", self.kind, object_type, object, **parameters)
+
+    def __repr__(self) -> str:
+        spec = self._spec
+        relative = f" from {spec.reference_type.value} {spec.reference!r}" if spec.reference else ""
+        return f"<{type(self).__name__} of {spec.object_type.value} {spec.object!r}{relative}>"
+
+    def spec(self, name: str) -> SensorSpec:
+        """The sensor as data, with a name."""
+        return replace(self._spec, name=name)
+
+
+class _SiteSensor(Sensor):
+    __slots__ = ()
+
+    def __init__(self, site: str, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.SITE, site, **quality)
+
+
+class Touch(_SiteSensor):
+    """Sum of the normal forces [N] of contacts of the site's link that lie in the volume of the site."""
+
+    __slots__ = ()
+    kind = SensorKind.TOUCH
+
+
+class Accelerometer(_SiteSensor):
+    """Acceleration of the site less gravity, in its axes [m/s²]: mean over the last step."""
+
+    __slots__ = ()
+    kind = SensorKind.ACCELEROMETER
+
+
+class Velocimeter(_SiteSensor):
+    """Velocity of the site in its axes [m/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.VELOCIMETER
+
+
+class Gyro(_SiteSensor):
+    """Angular velocity of the site in its axes [rad/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.GYRO
+
+
+class Force(_SiteSensor):
+    """Force [N] of the link's parent on the link, at the site, in its axes."""
+
+    __slots__ = ()
+    kind = SensorKind.FORCE
+
+
+class Torque(_SiteSensor):
+    """Torque [N m] of the link's parent on the link, about the site, in its axes."""
+
+    __slots__ = ()
+    kind = SensorKind.TORQUE
+
+
+class Magnetometer(Sensor):
+    """The magnetic field of the world in the axes of the site."""
+
+    __slots__ = ()
+    kind = SensorKind.MAGNETOMETER
+
+    def __init__(
+        self, site: str, *, magnetic_field: Vector3 = (0.0, -0.5, 0.0), **quality: Unpack[Quality]
+    ) -> None:
+        super().__init__(SensorObject.SITE, site, magnetic_field=magnetic_field, **quality)
+
+
+class RangeFinder(Sensor):
+    """Distance [m] along z of the site to the next surface of another link; -1 if none is within reach."""
+
+    __slots__ = ()
+    kind = SensorKind.RANGE_FINDER
+
+    def __init__(self, site: str, *, reach: float = 1000.0, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.SITE, site, reach=reach, **quality)
+
+
+class _JointSensor(Sensor):
+    __slots__ = ()
+
+    def __init__(self, joint: str, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.JOINT, joint, **quality)
+
+
+class JointPosition(_JointSensor):
+    """Position of a revolute or prismatic joint [rad or m]."""
+
+    __slots__ = ()
+    kind = SensorKind.JOINT_POSITION
+
+
+class JointVelocity(_JointSensor):
+    """Velocity of a revolute or prismatic joint [rad/s or m/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.JOINT_VELOCITY
+
+
+class JointActuatorForce(_JointSensor):
+    """Sum of the forces of all actuators on a joint [N m or N]."""
+
+    __slots__ = ()
+    kind = SensorKind.JOINT_ACTUATOR_FORCE
+
+
+class BallQuaternion(_JointSensor):
+    """Rotation of a spherical joint, quaternion (x, y, z, w)."""
+
+    __slots__ = ()
+    kind = SensorKind.BALL_QUATERNION
+
+
+class BallAngularVelocity(_JointSensor):
+    """Angular velocity of a spherical joint in the axes of its link [rad/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.BALL_ANGULAR_VELOCITY
+
+
+class JointLimitPosition(_JointSensor):
+    """Distance of a joint to the limit that it has passed [rad or m], negative; 0 within its limits."""
+
+    __slots__ = ()
+    kind = SensorKind.JOINT_LIMIT_POSITION
+
+
+class JointLimitVelocity(_JointSensor):
+    """Rate of the distance of a joint to the limit that it has passed [rad/s or m/s]; 0 within its limits."""
+
+    __slots__ = ()
+    kind = SensorKind.JOINT_LIMIT_VELOCITY
+
+
+class JointLimitForce(_JointSensor):
+    """Force of the limit of a joint in the last substep [N m or N]."""
+
+    __slots__ = ()
+    kind = SensorKind.JOINT_LIMIT_FORCE
+
+
+class _ActuatorSensor(Sensor):
+    __slots__ = ()
+
+    def __init__(self, actuator: str, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.ACTUATOR, actuator, **quality)
+
+
+class ActuatorPosition(_ActuatorSensor):
+    """Length of an actuator."""
+
+    __slots__ = ()
+    kind = SensorKind.ACTUATOR_POSITION
+
+
+class ActuatorVelocity(_ActuatorSensor):
+    """Rate of the length of an actuator."""
+
+    __slots__ = ()
+    kind = SensorKind.ACTUATOR_VELOCITY
+
+
+class ActuatorForce(_ActuatorSensor):
+    """Force of an actuator in the last substep."""
+
+    __slots__ = ()
+    kind = SensorKind.ACTUATOR_FORCE
+
+
+class _FrameSensor(Sensor):
+    """Base of sensors of a frame: exactly one of `site`, `link`, `inertial_frame` names it.
+
+    Args:
+        site: A site.
+        link: A link, for its frame.
+        inertial_frame: A link, for its centre of mass and principal axes.
+        reference_site: The frame that it is seen from, likewise; the world without any.
+        reference_link: Likewise.
+        reference_inertial_frame: Likewise.
+        reference_body: Name of the body of the reference; empty for the body of the sensor.
+        **quality: Parameters that all sensors have.
+
+    Raises:
+        TypeError: No frame, or more than one, is named.
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        *,
+        site: str | None = None,
+        link: str | None = None,
+        inertial_frame: str | None = None,
+        reference_site: str | None = None,
+        reference_link: str | None = None,
+        reference_inertial_frame: str | None = None,
+        reference_body: str = "",
+        **quality: Unpack[Quality],
+    ) -> None:
+        what = _one_of("", site, link, inertial_frame)
+        if what is None:
+            raise TypeError(f"{type(self).__name__} needs a site, a link or an inertial_frame")
+        origin = _one_of("reference_", reference_site, reference_link, reference_inertial_frame)
+        reference_type, reference = origin or (SensorObject.NONE, "")
+        super().__init__(
+            *what,
+            reference_type=reference_type,
+            reference=reference,
+            reference_body=reference_body,
+            **quality,
+        )
+
+
+def _one_of(prefix: str, *names: str | None) -> tuple[SensorObject, str] | None:
+    kinds = (SensorObject.SITE, SensorObject.LINK, SensorObject.INERTIAL_FRAME)
+    given = [(kind, name) for kind, name in zip(kinds, names, strict=True) if name is not None]
+    if len(given) > 1:
+        raise TypeError(f"only one of {prefix}site, {prefix}link and {prefix}inertial_frame can be given")
+    return given[0] if given else None
+
+
+class FramePosition(_FrameSensor):
+    """Position of a frame [m]."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_POSITION
+
+
+class FrameQuaternion(_FrameSensor):
+    """Orientation of a frame, quaternion (x, y, z, w)."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_QUATERNION
+
+
+class FrameXAxis(_FrameSensor):
+    """The x axis of a frame."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_X_AXIS
+
+
+class FrameYAxis(_FrameSensor):
+    """The y axis of a frame."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_Y_AXIS
+
+
+class FrameZAxis(_FrameSensor):
+    """The z axis of a frame."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_Z_AXIS
+
+
+class FrameLinearVelocity(_FrameSensor):
+    """Velocity of the origin of a frame [m/s]; of a reference: as seen by an observer that moves with it."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_LINEAR_VELOCITY
+
+
+class FrameAngularVelocity(_FrameSensor):
+    """Angular velocity of a frame [rad/s], relative to that of the reference and in its axes."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_ANGULAR_VELOCITY
+
+
+class FrameLinearAcceleration(_FrameSensor):
+    """Acceleration of the origin of a frame, gravity included [m/s²]: mean over the last step, world axes."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_LINEAR_ACCELERATION
+
+
+class FrameAngularAcceleration(_FrameSensor):
+    """Angular acceleration of a frame [rad/s²]: mean over the last step, world axes."""
+
+    __slots__ = ()
+    kind = SensorKind.FRAME_ANGULAR_ACCELERATION
+
+
+class _SubtreeSensor(Sensor):
+    """Base of sensors of a link and all links after it."""
+
+    __slots__ = ()
+
+    def __init__(self, link: str, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.LINK, link, **quality)
+
+
+class SubtreeCenterOfMass(_SubtreeSensor):
+    """Centre of mass of a link and all links after it, world axes [m]."""
+
+    __slots__ = ()
+    kind = SensorKind.SUBTREE_CENTER_OF_MASS
+
+
+class SubtreeLinearVelocity(_SubtreeSensor):
+    """Velocity of this centre of mass, world axes [m/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.SUBTREE_LINEAR_VELOCITY
+
+
+class SubtreeLinearMomentum(_SubtreeSensor):
+    """Linear momentum of a link and all links after it, world axes [kg m/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.SUBTREE_LINEAR_MOMENTUM
+
+
+class SubtreeAngularMomentum(_SubtreeSensor):
+    """Their angular momentum about their centre of mass, world axes [kg m²/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.SUBTREE_ANGULAR_MOMENTUM
+
+
+class Clock(Sensor):
+    """Simulated time [s]."""
+
+    __slots__ = ()
+    kind = SensorKind.CLOCK
+
+    def __init__(self, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.NONE, "", **quality)

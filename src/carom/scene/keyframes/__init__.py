@@ -1,0 +1,1 @@
+"""Keyframes: states of bodies, by name."""

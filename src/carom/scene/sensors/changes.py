@@ -1,0 +1,95 @@
+"""Adding sites and sensors to bodies, and what sensors need switched on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from carom.description.pose import Pose
+from carom.description.sensor import SensorKind, SensorSpec
+from carom.description.sensors import Sensor
+from carom.description.site import SiteShape, SiteSpec
+from carom.errors import DescriptionError
+from carom.model.sensor_rows import insert_memory
+from carom.scene.handles import world_of
+from carom.scene.sensors.frames import object_frame, reference_frame
+from carom.scene.sensors.joints import actuator_of, joint_of
+from carom.scene.sensors.loads import loaded_frame
+from carom.scene.sensors.lone_source import LoneSource
+from carom.scene.sensors.observer import SensorObserver
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+_OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
+_OF_JOINTS = "joint", "ball"
+
+
+def add_site(
+    body: Body, name: str, link: int | str, pose: Pose, shape: SiteShape | str, size: Sequence[float]
+) -> None:
+    """Add a site to a body, as `Body.add_site` does."""
+    x, y, z = (*map(float, size), 0.0, 0.0)[:3]
+    try:
+        volume = SiteShape(shape)
+    except ValueError:
+        known = ", ".join(it.value for it in SiteShape)
+        raise DescriptionError(f"site {name!r}: its shape {shape!r} is none of {known}") from None
+    site = SiteSpec(name, body.links[link].index, pose, volume, (x, y, z))
+    site.check()
+    if not site.name or any(other.name == site.name for other in body.spec.sites):
+        raise DescriptionError(f"site {site.name!r}: each one of a body needs a name of its own")
+    world_of(body)
+    body.spec = replace(body.spec, sites=(*body.spec.sites, site))
+    body.__dict__.pop("sites", None)
+
+
+def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
+    """Add a sensor to a body, as `Body.add_sensor` does."""
+    world, spec = world_of(body), sensor.spec(name)
+    check_sensor(world, body, spec)
+    if not name or any(other.name == name for other in body.spec.sensors):
+        raise DescriptionError(f"sensor {name!r}: each one of a body needs a name of its own")
+    if spec.memory:
+        others = [other.rows for other in world.bodies.values()]
+        insert_memory(world.arrays, body.rows, others, spec.memory)
+    body.spec = replace(body.spec, sensors=(*body.spec.sensors, spec))
+    body.__dict__.pop("sensors", None)
+    world.scene_changed()
+    switch_on(world, [body])
+
+
+def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
+    """Raise `DescriptionError` unless a sensor fits its body and its world."""
+    spec.check()
+    kind = spec.kind.value
+    if kind.startswith(_OF_JOINTS):
+        joint_of(body, spec)
+    elif kind.startswith("actuator"):
+        actuator_of(body, spec)
+    elif spec.kind in _OF_LOADS:
+        loaded_frame(body, spec)
+    elif spec.object:
+        object_frame(body, spec)
+        reference_frame(LoneSource(world), body, spec)
+
+
+def switch_on(world: World, bodies: list[Body]) -> None:
+    """Switch on what the sensors of bodies need: measurements of joints' forces, and of every step."""
+    watched = False
+    for body in bodies:
+        for spec in body.spec.sensors:
+            watched = watched or spec.is_remembered
+            if spec.kind in _OF_LOADS:
+                link = object_frame(body, spec).link
+            elif spec.kind is SensorKind.JOINT_LIMIT_FORCE:
+                link = joint_of(body, spec)
+            else:
+                continue
+            if link >= 0:
+                body.measure_load(link)
+    if watched and not any(isinstance(it, SensorObserver) for it in world.observers):
+        world.observers.append(SensorObserver(world))
+        world.scene_changed()

@@ -1,0 +1,149 @@
+"""What sensors of joints and actuators measure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from carom.checks import Array
+from carom.description.sensor import SensorKind, SensorSpec
+from carom.errors import DescriptionError
+from carom.layouts.codes import ConstraintKind, JointCode
+from carom.scene.body import Body
+from carom.scene.sensors.source import Source
+from carom.scene.sensors.vectors import turned
+
+_SINGLE = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+_OF_BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
+
+
+def joint_of(body: Body, spec: SensorSpec) -> int:
+    """Index of the joint of a sensor.
+
+    Raises:
+        DescriptionError: There is no such joint, or the sensor is for another type of joint.
+    """
+    names = [link.joint_name for link in body.spec.links]
+    if spec.object not in names:
+        known = ", ".join(map(repr, names)) or "none"
+        raise DescriptionError(f"sensor {spec.name!r}: there is no joint {spec.object!r}; there are {known}")
+    joint = names.index(spec.object)
+    wanted = (JointCode.SPHERICAL,) if spec.kind in _OF_BALLS else _SINGLE
+    if body.joint_types[joint] not in wanted:
+        types = "spherical" if spec.kind in _OF_BALLS else "revolute and prismatic"
+        raise DescriptionError(
+            f"sensor {spec.name!r} of kind {spec.kind.value} is for {types} joints; {spec.object!r} is "
+            f"{body.spec.links[joint].joint_type.value}"
+        )
+    return joint
+
+
+def actuator_of(body: Body, spec: SensorSpec) -> int:
+    """Index of the actuator of a sensor.
+
+    Raises:
+        DescriptionError: There is no such actuator.
+    """
+    names = [actuator.name for actuator in body.spec.actuators]
+    if spec.object not in names:
+        known = ", ".join(map(repr, names)) or "none"
+        raise DescriptionError(
+            f"sensor {spec.name!r}: there is no actuator {spec.object!r}; there are {known}"
+        )
+    return names.index(spec.object)
+
+
+def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return source.state("position")[:, body.position_index[joint_of(body, spec)]].copy()
+
+
+def _velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return source.state("dof_velocity")[:, body.velocity_index[joint_of(body, spec)]].copy()
+
+
+def _actuators_force(source: Source, body: Body, spec: SensorSpec) -> Array:
+    first, total = body.rows.first["actuator"], np.zeros(source.count)
+    for row, actuator in enumerate(body.spec.actuators, start=first):
+        if actuator.joint == spec.object:
+            total = total + source.parameter("actuator_gear", row) * source.state("actuator_force")[:, row]
+    return total
+
+
+def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:
+    first = body.position_index[joint_of(body, spec)]
+    return source.state("position")[:, first : first + 4].copy()
+
+
+def _ball_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    joint = joint_of(body, spec)
+    first = body.velocity_index[joint]
+    to_link = np.array([body.link_inertial_frame(joint).orientation])
+    return turned(to_link, source.state("dof_velocity")[:, first : first + 3])
+
+
+def _limit_distance(source: Source, body: Body, spec: SensorSpec) -> tuple[Array, Array]:
+    """Distance to the limit that is passed, else 0, and the sign of the velocity away from it, else 0."""
+    joint = joint_of(body, spec)
+    kinds, links = source.topology("constraint_kind"), source.topology("constraint_link")
+    number = source.engine.arrays.used["constraint"]
+    link = body.first_link + 1 + joint
+    rows = np.flatnonzero((kinds[:number] == ConstraintKind.LIMIT) & (links[:number] == link))
+    if not len(rows):
+        return np.zeros(source.count), np.zeros(source.count)
+    row = int(rows[0])
+    position = source.state("position")[:, body.position_index[joint]]
+    above = position - source.parameter("constraint_lower", row)
+    below = source.parameter("constraint_upper", row) - position
+    distance = np.minimum(np.minimum(above, below), 0.0)
+    return distance, np.where(distance < 0.0, np.where(above <= below, 1.0, -1.0), 0.0)
+
+
+def _limit_position(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return _limit_distance(source, body, spec)[0]
+
+
+def _limit_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return _limit_distance(source, body, spec)[1] * _velocity(source, body, spec)
+
+
+def _limit_force(source: Source, body: Body, spec: SensorSpec) -> Array:
+    impulse = source.state("dof_limit_impulse")[:, body.velocity_index[joint_of(body, spec)]]
+    return np.abs(impulse) / source.parameters.substep_time
+
+
+def _actuator_position(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return _along_actuator(source, body, spec, "position", body.position_index)
+
+
+def _actuator_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return _along_actuator(source, body, spec, "dof_velocity", body.velocity_index)
+
+
+def _along_actuator(
+    source: Source, body: Body, spec: SensorSpec, field: str, index: tuple[int, ...]
+) -> Array:
+    actuator = actuator_of(body, spec)
+    names = [link.joint_name for link in body.spec.links]
+    joint = names.index(body.spec.actuators[actuator].joint)
+    gear = source.parameter("actuator_gear", body.rows.first["actuator"] + actuator)
+    return gear * source.state(field)[:, index[joint]]
+
+
+def _actuator_force(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return source.state("actuator_force")[:, body.rows.first["actuator"] + actuator_of(body, spec)].copy()
+
+
+OF_JOINTS: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
+    SensorKind.JOINT_POSITION: _position,
+    SensorKind.JOINT_VELOCITY: _velocity,
+    SensorKind.JOINT_ACTUATOR_FORCE: _actuators_force,
+    SensorKind.BALL_QUATERNION: _quaternion,
+    SensorKind.BALL_ANGULAR_VELOCITY: _ball_velocity,
+    SensorKind.JOINT_LIMIT_POSITION: _limit_position,
+    SensorKind.JOINT_LIMIT_VELOCITY: _limit_velocity,
+    SensorKind.JOINT_LIMIT_FORCE: _limit_force,
+    SensorKind.ACTUATOR_POSITION: _actuator_position,
+    SensorKind.ACTUATOR_VELOCITY: _actuator_velocity,
+    SensorKind.ACTUATOR_FORCE: _actuator_force,
+}

@@ -1,0 +1,102 @@
+"""What sensors of forces at sites measure: those that a joint transmits, and those of contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from carom.checks import Array
+from carom.description.sensor import SensorKind, SensorSpec
+from carom.errors import DescriptionError
+from carom.layouts.codes import JointCode
+from carom.layouts.contacts import THERE
+from carom.scene.body import Body
+from carom.scene.sensors.frames import Frame, object_frame, placement
+from carom.scene.sensors.source import Source
+from carom.scene.sensors.vectors import cross, turned_back
+from carom.scene.sensors.volumes import is_touched
+
+
+def loaded_frame(body: Body, spec: SensorSpec) -> Frame:
+    """The site of a force or torque sensor.
+
+    Raises:
+        DescriptionError: There is no such site, or it is on a fixed base, whose load is not computed.
+    """
+    frame = object_frame(body, spec)
+    if frame.link < 0 and body.fixed_base:
+        raise DescriptionError(
+            f"sensor {spec.name!r}: site {spec.object!r} is on the fixed base of {body.name!r}, and the "
+            "force that holds a base is not computed; give the base a link on a fixed joint, with the site"
+        )
+    return frame
+
+
+def _wrench(source: Source, frame: Frame) -> tuple[Array, Array]:
+    """Force and torque of the parent on a link about its centre of mass, in axes of its inertial frame."""
+    zero = np.zeros((source.count, 3))
+    if frame.link < 0:
+        # Nothing holds a free base.
+        return zero, zero
+    body, row = frame.body, frame.row
+    load = source.state("link_load")[:, row]
+    force, torque = load[:, :3], load[:, 3:]
+    # The load leaves out what motors, limits and actuators of the joint itself exert along its axes.
+    first, count = body.velocity_index[frame.link], body.velocity_count[frame.link]
+    along = source.state("dof_joint_impulse")[:, first : first + count] / source.parameters.substep_time
+    code = body.joint_types[frame.link]
+    axis = source.topology("link_axis")[row : row + 1]
+    if code == JointCode.REVOLUTE:
+        torque = torque + along * axis
+    elif code == JointCode.PRISMATIC:
+        force = force + along * axis
+    elif code == JointCode.SPHERICAL:
+        torque = torque + along
+    elif code == JointCode.PLANAR:
+        first_axis, second_axis = (
+            source.topology(f"link_planar_axis{number}")[row : row + 1] for number in (1, 2)
+        )
+        torque = torque + along[:, :1] * axis
+        force = force + along[:, 1:2] * first_axis + along[:, 2:3] * second_axis
+    return force, torque
+
+
+def _force(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame = loaded_frame(body, spec)
+    return turned_back(np.array([frame.pose.orientation]), _wrench(source, frame)[0])
+
+
+def _torque(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame = loaded_frame(body, spec)
+    force, torque = _wrench(source, frame)
+    about_site = torque - cross(np.array([frame.pose.position]), force)
+    return turned_back(np.array([frame.pose.orientation]), about_site)
+
+
+def _touch(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame = object_frame(body, spec)
+    site = next(site for site in body.spec.sites if site.name == spec.object)
+    number = source.contacts("count_contacts")[:, THERE]
+    most = int(number.max(initial=0))
+    links = source.contacts("contact_shapes")[:, :most, 2:]
+    push = source.contacts("contact_impulse")[:, :most, 0]
+    there = (np.arange(most)[None] < number[:, None]) & (push > 0.0) & (links == frame.row).any(axis=2)
+    worlds, rows = np.nonzero(there)
+    points = [source.contacts(f"contact_point_{side}")[worlds, rows] for side in "ab"]
+    normals = source.contacts("contact_normal")[worlds, rows]
+    # Normals point from b to a; outward of the link is away from the other one.
+    outward = np.where((links[worlds, rows, 0] == frame.row)[:, None], -normals, normals)
+    place = placement(source, frame)
+    turn = place.orientation[worlds]
+    middle = turned_back(turn, (points[0] + points[1]) * 0.5 - place.position[worlds])
+    within = is_touched(site, middle, turned_back(turn, outward))
+    impulse = np.bincount(worlds, weights=np.where(within, push[worlds, rows], 0.0), minlength=source.count)
+    return impulse / source.parameters.substep_time
+
+
+OF_LOADS: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
+    SensorKind.FORCE: _force,
+    SensorKind.TORQUE: _torque,
+    SensorKind.TOUCH: _touch,
+}

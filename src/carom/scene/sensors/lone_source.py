@@ -1,0 +1,63 @@
+"""Numbers for sensors from a single world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.checks import Array
+from carom.engine.engine import Engine
+from carom.engine.parameters import EngineParameters
+from carom.scene.body import Body
+from carom.scene.sensors.source import Source
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+
+
+class LoneSource(Source):
+    """A world as a source for sensors."""
+
+    def __init__(self, world: World) -> None:
+        super().__init__(world.bodies)
+        self._world = world
+        world.prepare()
+
+    @property
+    def engine(self) -> Engine:
+        """See `Source`."""
+        return self._world.engine
+
+    @property
+    def parameters(self) -> EngineParameters:
+        """See `Source`."""
+        return self._world.parameters
+
+    @property
+    def times(self) -> Array:
+        """See `Source`."""
+        return np.array([self._world.time])
+
+    @property
+    def seeds(self) -> np.ndarray:
+        """See `Source`."""
+        return np.array([self._world.parameters.sensor_seed], dtype=np.int64).view(np.uint64)
+
+    def poses(self, body: Body) -> Array:
+        """See `Source`."""
+        self._world.update_link_poses(body)
+        return self.state("link_pose")
+
+    def velocities(self, body: Body) -> Array:
+        """See `Source`."""
+        self._world.update_link_poses(body)
+        self._world.update_link_velocities(body)
+        return self.state("link_twist")
+
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+        """See `Source`."""
+        # A link that was hit is not hit again along the whole ray.
+        found = self._world.queries().cast_rays(starts, ends, hit_number=number, separation=1.0)
+        bodies, links, fractions = zip(*(hit[:3] for hit in found), strict=True)
+        return np.array(fractions), np.array(bodies), np.array(links)

@@ -1,0 +1,121 @@
+"""What sensors measure, without noise, in all worlds of a source; see `carom.description.sensors`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from carom.checks import Array
+from carom.description.sensor import SensorKind, SensorSpec
+from carom.scene.body import Body
+from carom.scene.sensors.frames import motion, object_frame, placement, reference_frame
+from carom.scene.sensors.joints import OF_JOINTS
+from carom.scene.sensors.loads import OF_LOADS
+from carom.scene.sensors.source import Source
+from carom.scene.sensors.subtrees import OF_SUBTREES
+from carom.scene.sensors.vectors import conjugate, cross, product, turned, turned_back
+
+Measure = Callable[[Source, Body, SensorSpec], Array]
+
+
+def measured(source: Source, body: Body, spec: SensorSpec) -> Array:
+    """What a sensor measures at present, (worlds, dim); not for kinds that only steps know.
+
+    Raises:
+        DescriptionError: It refers to something that does not exist.
+    """
+    return _BY_KIND[spec.kind](source, body, spec).reshape(source.count, spec.dim)
+
+
+def _gyro(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame = object_frame(body, spec)
+    return turned_back(placement(source, frame).orientation, motion(source, frame).angular)
+
+
+def _velocimeter(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame = object_frame(body, spec)
+    return turned_back(placement(source, frame).orientation, motion(source, frame).linear)
+
+
+def _magnetometer(source: Source, body: Body, spec: SensorSpec) -> Array:
+    turn = placement(source, object_frame(body, spec)).orientation
+    return turned_back(turn, np.array([spec.magnetic_field]))
+
+
+def _range(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame = object_frame(body, spec)
+    start, turn = placement(source, frame)
+    end = start + turned(turn, np.array([[0.0, 0.0, spec.reach]]))
+    fraction, bodies, links = source.hits(start, end, 0)
+    own = (bodies == body.id) & (links == frame.link)
+    if own.any():
+        further, others, _ = source.hits(start, end, 1)
+        fraction, bodies = np.where(own, further, fraction), np.where(own, others, bodies)
+    return np.where(bodies < 0, -1.0, fraction * spec.reach)
+
+
+def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
+    place = placement(source, object_frame(body, spec))
+    reference = reference_frame(source, body, spec)
+    if reference is None:
+        return place.position
+    origin = placement(source, reference)
+    return turned_back(origin.orientation, place.position - origin.position)
+
+
+def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:
+    turn = placement(source, object_frame(body, spec)).orientation
+    reference = reference_frame(source, body, spec)
+    return turn if reference is None else product(conjugate(placement(source, reference).orientation), turn)
+
+
+def _axis(number: int) -> Measure:
+    direction = np.eye(3)[number : number + 1]
+
+    def measure(source: Source, body: Body, spec: SensorSpec) -> Array:
+        return turned(_quaternion(source, body, spec), direction)
+
+    return measure
+
+
+def _linear_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame, reference = object_frame(body, spec), reference_frame(source, body, spec)
+    if reference is None:
+        return motion(source, frame).linear
+    position, velocity = placement(source, frame).position, motion(source, frame).linear
+    origin, moving = placement(source, reference), motion(source, reference)
+    carried = moving.linear + cross(moving.angular, position - origin.position)
+    return turned_back(origin.orientation, velocity - carried)
+
+
+def _angular_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    frame, reference = object_frame(body, spec), reference_frame(source, body, spec)
+    if reference is None:
+        return motion(source, frame).angular
+    angular = motion(source, frame).angular
+    moving = motion(source, reference).angular
+    return turned_back(placement(source, reference).orientation, angular - moving)
+
+
+def _clock(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return source.times.copy()
+
+
+_BY_KIND: dict[SensorKind, Measure] = {
+    SensorKind.GYRO: _gyro,
+    SensorKind.VELOCIMETER: _velocimeter,
+    SensorKind.MAGNETOMETER: _magnetometer,
+    SensorKind.RANGE_FINDER: _range,
+    SensorKind.FRAME_POSITION: _position,
+    SensorKind.FRAME_QUATERNION: _quaternion,
+    SensorKind.FRAME_X_AXIS: _axis(0),
+    SensorKind.FRAME_Y_AXIS: _axis(1),
+    SensorKind.FRAME_Z_AXIS: _axis(2),
+    SensorKind.FRAME_LINEAR_VELOCITY: _linear_velocity,
+    SensorKind.FRAME_ANGULAR_VELOCITY: _angular_velocity,
+    SensorKind.CLOCK: _clock,
+    **OF_JOINTS,
+    **OF_LOADS,
+    **OF_SUBTREES,
+}

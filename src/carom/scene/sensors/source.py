@@ -1,0 +1,84 @@
+"""Where sensors get their numbers from: a world, or many that are measured together."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+
+import numpy as np
+
+from carom.checks import Array
+from carom.engine.engine import Engine
+from carom.engine.parameters import EngineParameters
+from carom.scene.body import Body
+
+
+class Source(ABC):
+    """Arrays of one world or more; the first axis of all arrays is the world.
+
+    Attributes:
+        bodies: The bodies by their numbers.
+    """
+
+    def __init__(self, bodies: Mapping[int, Body]) -> None:
+        self.bodies: Mapping[int, Body] = bodies
+
+    @property
+    @abstractmethod
+    def engine(self) -> Engine:
+        """The engine, with everything a step needs written to its arrays."""
+
+    @property
+    @abstractmethod
+    def parameters(self) -> EngineParameters:
+        """Parameters of the engine."""
+
+    @property
+    @abstractmethod
+    def times(self) -> Array:
+        """Simulated time of each world [s], (count,)."""
+
+    @property
+    @abstractmethod
+    def seeds(self) -> np.ndarray:
+        """Seed of the noise of each world, (count,) unsigned integers of 64 bits."""
+
+    @abstractmethod
+    def poses(self, body: Body) -> Array:
+        """World poses of inertial frames for the present coordinates; rows of links of the body are valid."""
+
+    @abstractmethod
+    def velocities(self, body: Body) -> Array:
+        """Their linear, then angular velocities, likewise, (count, links of all bodies, 6)."""
+
+    @abstractmethod
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+        """Results of one ray in each world: fractions, bodies and links, (count,) each.
+
+        Args:
+            starts: Start points, (count, 3).
+            ends: End points, likewise.
+            number: 0 for the first link that the ray hits, 1 for the second.
+        """
+
+    @property
+    def count(self) -> int:
+        """Number of worlds."""
+        return self.engine.arrays.world_count
+
+    def state(self, name: str) -> Array:
+        """A field of `State`, on the host."""
+        return np.asarray(self.engine.arrays.state.numpy[name])
+
+    def contacts(self, name: str) -> np.ndarray:
+        """A field of `Contacts`, on the host."""
+        return np.asarray(self.engine.contact_arrays.contacts.numpy[name])
+
+    def parameter(self, name: str, row: int) -> Array:
+        """A row of a field of `Model` in each world, (count, ...)."""
+        values = np.asarray(self.engine.arrays.model.numpy[name])[:, row]
+        return np.broadcast_to(values, (self.count, *values.shape[1:]))
+
+    def topology(self, name: str) -> np.ndarray:
+        """A field of `Model` that all worlds share."""
+        return np.asarray(self.engine.arrays.model.numpy[name])

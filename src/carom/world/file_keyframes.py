@@ -1,0 +1,108 @@
+"""Keyframes of MJCF files: the states of all joints, as states of the bodies they belong to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.description.keyframe import BodyKeyframe
+from carom.description.pose import Pose, Vector3
+from carom.description.transform import rotate
+from carom.model.body_spec import BASE
+
+if TYPE_CHECKING:
+    from carom.formats.mjcf.compiled.model import CompiledModel, FileKeyframe
+    from carom.scene.body import Body
+
+_FREE, _BALL = "free", "spherical"
+# Numbers of a joint in `qpos` and `qvel`.
+_COUNTS = {_FREE: (7, 6), _BALL: (4, 3)}
+
+
+@dataclass
+class _Part:
+    """What a keyframe says of one body: of its base if that is free, and of joints by index."""
+
+    pose: Pose | None = None
+    linear: Vector3 | None = None
+    angular: Vector3 | None = None
+    positions: dict[int, list[float]] = field(default_factory=dict)
+    velocities: dict[int, list[float]] = field(default_factory=dict)
+
+
+def give_keyframes(bodies: Sequence[Body], model: CompiledModel) -> None:
+    """Add the keyframes of a file to its bodies, to those that can move or have actuators."""
+    for state in model.keyframes.values():
+        for body, part in zip(bodies, _parts(bodies, model, state), strict=True):
+            controls, activations = _of_actuators(body, model, state)
+            if part.positions or part.velocities or part.pose or part.linear or controls:
+                body.add_keyframe(
+                    BodyKeyframe(
+                        state.name, state.time, part.pose, part.linear, part.angular,
+                        _in_order(part.positions), _in_order(part.velocities), controls, activations,
+                    )
+                )  # fmt: skip
+
+
+def _parts(bodies: Sequence[Body], model: CompiledModel, state: FileKeyframe) -> list[_Part]:
+    places = {
+        link.joint_name: (number, index)
+        for number, body in enumerate(bodies)
+        for index, link in enumerate(body.spec.links)
+    }
+    free = {body.spec.base.name: number for number, body in enumerate(bodies)}
+    parts = [_Part() for _ in bodies]
+    position = velocity = 0
+    for name, body_name, kind in model.joints:
+        counts = _COUNTS.get(kind, (1, 1))
+        q = list(state.positions[position : position + counts[0]])
+        v = list(state.velocities[velocity : velocity + counts[1]])
+        position, velocity = position + counts[0], velocity + counts[1]
+        if kind == _FREE:
+            number = free[body_name]
+            _put_base(bodies[number], parts[number], q, v)
+            continue
+        number, joint = places[name]
+        if q:
+            parts[number].positions[joint] = [*q[1:], q[0]] if kind == _BALL else q
+        if v:
+            parts[number].velocities[joint] = v
+    return parts
+
+
+def _put_base(body: Body, part: _Part, q: list[float], v: list[float]) -> None:
+    """The state of a free body: that of its link frame, its angular velocity in its own axes."""
+    if q:
+        px, py, pz, w, x, y, z = q
+        part.pose = Pose((px, py, pz), (x, y, z, w))
+    if v:
+        turn = part.pose or body.links[BASE].pose
+        x, y, z, wx, wy, wz = v
+        part.linear, part.angular = (x, y, z), rotate(turn.orientation, (wx, wy, wz))
+
+
+def _of_actuators(
+    body: Body, model: CompiledModel, state: FileKeyframe
+) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
+    """Controls and activations of a body's actuators, in their order; None if it has none."""
+    if not body.spec.actuators:
+        return None, None
+    controls = _by_name([it.name for it in model.actuators], state.controls)
+    activations = _by_name([it.name for it in model.actuators if it.has_activation], state.activations)
+    names = [it.name for it in body.actuators]
+    return tuple(controls.get(name, 0.0) for name in names), tuple(
+        activations.get(name, 0.0) for name in names
+    )
+
+
+def _by_name(names: Sequence[str], values: Sequence[float]) -> dict[str, float]:
+    return dict(zip(names, values, strict=True)) if values else {}
+
+
+def _in_order(of_joints: dict[int, list[float]]) -> tuple[float, ...] | None:
+    if not of_joints:
+        return None
+    return tuple(np.concatenate([of_joints[joint] for joint in sorted(of_joints)]).tolist())

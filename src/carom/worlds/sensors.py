@@ -1,0 +1,129 @@
+"""Sites and sensors of bodies in many worlds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.checks import Array
+from carom.description.sensor import SensorObject
+from carom.engine.engine import Engine
+from carom.engine.parameters import EngineParameters
+from carom.scene.body import Body
+from carom.scene.sensors.frames import frame_of, placement
+from carom.scene.sensors.reading import StepWatch, forget, reading, remembered
+from carom.scene.sensors.source import Source
+from carom.world.world import World
+from carom.worlds.batch import Batch
+from carom.worlds.checks import choose
+from carom.worlds.poses import PoseFinder
+from carom.worlds.rays import RayCaster
+
+
+class BatchSource(Source):
+    """Many worlds as a source for sensors; `times` are those of `Worlds`."""
+
+    def __init__(self, scene: World, engine: Engine, times: Array) -> None:
+        super().__init__(scene.bodies)
+        self._scene = scene
+        self._engine = engine
+        self._times = times
+        first = scene.parameters.sensor_seed
+        self.own_seeds: np.ndarray = np.arange(first, first + engine.arrays.world_count, dtype=np.int64)
+        self._finders: dict[int, PoseFinder] = {}
+        self._casters: dict[int, RayCaster] = {}
+        self.remembered: list[tuple[Body, int]] = remembered(list(scene.bodies.values()))
+
+    @property
+    def engine(self) -> Engine:
+        """See `Source`."""
+        return self._engine
+
+    @property
+    def parameters(self) -> EngineParameters:
+        """See `Source`."""
+        return self._scene.parameters
+
+    @property
+    def times(self) -> Array:
+        """See `Source`."""
+        return self._times
+
+    @property
+    def seeds(self) -> np.ndarray:
+        """See `Source`."""
+        return self.own_seeds.view(np.uint64)
+
+    def poses(self, body: Body) -> Array:
+        """See `Source`."""
+        return np.asarray(self._finder(body).poses())
+
+    def velocities(self, body: Body) -> Array:
+        """See `Source`."""
+        return np.asarray(self._finder(body).velocities())
+
+    def hits(self, starts: Array, ends: Array, number: int) -> tuple[Array, np.ndarray, np.ndarray]:
+        """See `Source`."""
+        if number not in self._casters:
+            # A link that was hit is not hit again along the whole ray.
+            places = self._scene.link_places
+            self._casters[number] = RayCaster(self._engine, places, hit_number=number, separation=1.0)
+        found = self._casters[number](starts[:, None], ends[:, None], -1)
+        bodies, links = np.asarray(found.bodies)[:, 0], np.asarray(found.links)[:, 0]
+        return np.asarray(found.fractions)[:, 0], bodies, links
+
+    def watch(self) -> StepWatch | None:
+        """Begin to measure in a step, if some sensor has a memory."""
+        return StepWatch(self, self.remembered) if self.remembered else None
+
+    def forget(self, body: Body, worlds: np.ndarray) -> None:
+        """Empty the memories of a body's sensors in some worlds."""
+        forget(self, body, worlds)
+
+    def _finder(self, body: Body) -> PoseFinder:
+        if body.id not in self._finders:
+            self._finders[body.id] = PoseFinder(self._engine, body.rows.tree)
+        return self._finders[body.id]
+
+
+class SensorBatch(Batch):
+    """The part of `BodyBatch` that is about sites and sensors."""
+
+    def __init__(self, body: Body, scene: World, engine: Engine, source: BatchSource) -> None:
+        super().__init__(body, scene, engine)
+        self._source = source
+
+    @property
+    def sensor_names(self) -> list[str]:
+        """Names of the sensors."""
+        return [spec.name for spec in self._body.spec.sensors]
+
+    def sensor(self, sensor: int | str) -> Array:
+        """What a sensor shows in each world, as `BodySensor.read`: (count, dim), on the host.
+
+        Args:
+            sensor: The sensor by index or name.
+
+        Raises:
+            IndexError, KeyError: There is no such sensor.
+        """
+        return reading(self._source, self._body, choose("sensor", self.sensor_names, sensor)).copy()
+
+    def read_sensors(self) -> dict[str, Array]:
+        """What each sensor shows, by name; see `sensor`."""
+        return {name: self.sensor(index) for index, name in enumerate(self.sensor_names)}
+
+    def site_poses(self, site: int | str) -> Array:
+        """World poses of a site for the present coordinates: a copy (count, 7), on the host.
+
+        Position [m] and quaternion (x, y, z, w).
+
+        Args:
+            site: The site by index or name.
+
+        Raises:
+            IndexError, KeyError: There is no such site.
+        """
+        names = [spec.name for spec in self._body.spec.sites]
+        name = names[choose("site", names, site)]
+        found = placement(self._source, frame_of(self._body, SensorObject.SITE, name))
+        return np.concatenate(found, axis=1)
