@@ -88,7 +88,10 @@ def _balls(seen: Seen) -> set[tuple[int, int]]:
         if call["f"] == "loadURDF":
             types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
     return {
-        (body, joint) for body, joints in types.items() for joint, kind in enumerate(joints) if kind == SPHERICAL
+        (body, joint)
+        for body, joints in types.items()
+        for joint, kind in enumerate(joints)
+        if kind == SPHERICAL
     }
 
 
@@ -148,8 +151,7 @@ def _exchanges_points(seen: Seen) -> bool:
     """Whether the points of two links of one body are exchanged."""
     theirs, ours = seen.difference.place[1:3]
     return theirs[1] == theirs[2] and all(
-        abs(a - b) < _EXCHANGED
-        for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
+        abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
     )
 
 
@@ -162,6 +164,18 @@ def _names_another_face(seen: Seen) -> bool:
 def _nothing_hit_before_the_first_step(seen: Seen) -> bool:
     theirs = seen.difference.place.theirs
     return seen.difference.phase == "start" and seen.differs("rayTest") and theirs[0] == -1
+
+
+def _rounder(seen: Seen) -> bool:
+    """Whether depths of an image are less than PyBullet's, whose balls are polyhedra inside of ours."""
+    said, ours = seen.difference.place[1:3]
+    return float(str(said).split("differ: ")[1].split(" of ")[0]) > ours
+
+
+def _reaches_from_positions(seen: Seen) -> bool:
+    """Whether an answer of inverse kinematics, for a target in the base's inertial frame, is further off."""
+    made = seen.call["a"][2]["whole"]
+    return any(call["id"] == made and "currentPositions" in call["k"] for call in seen.before)
 
 
 def _casts_shadows(seen: Seen) -> bool:
@@ -226,6 +240,18 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getClosestPoints normal") and _names_another_face(seen),
     ),
     Known("PyBullet does not hit what a ray passes outside", _nothing_hit_before_the_first_step),
+    Known(
+        "Boxes, cylinders and planes from MJCF files have a margin of 1 mm",
+        lambda seen: seen.differs("getDynamicsInfo .11") and seen.loads(".xml"),
+    ),
+    Known(
+        "**Round shapes are round.**",
+        lambda seen: seen.differs("getCameraImage depth") and _rounder(seen),
+    ),
+    Known(
+        "With `currentPositions` the target is in the inertial frame of the base",
+        lambda seen: seen.differs("@reach worse") and _reaches_from_positions(seen),
+    ),
     Known(
         "Where PyBullet darkens everything in reach of the light",
         lambda seen: seen.differs("getCameraImage colour") and _casts_shadows(seen),

@@ -189,9 +189,7 @@ def reach(body, links, answer, targets, turn):
     states: list = [p.getLinkState(body, link, computeForwardKinematics=1) for link in links]
     for joint, (position, velocity) in zip(joints, before):
         p.resetJointState(body, joint, position, velocity)
-    far = sum(
-        (a - b) ** 2 for state, target in zip(states, targets) for a, b in zip(state[4], target)
-    ) ** 0.5
+    far = sum((a - b) ** 2 for state, target in zip(states, targets) for a, b in zip(state[4], target)) ** 0.5
     angle = 0.0
     if turn is not None:
         angle = abs(p.getAxisAngleFromQuaternion(p.getDifferenceQuaternion(states[0][5], turn))[1])
