@@ -103,6 +103,21 @@ def soft(p: Any) -> None:
     p.stepSimulation()
 
 
+def landscapes(p: Any) -> None:
+    """Fields of heights with the checks they have, and with a texture that is the same on no two sides."""
+    waves = [0.05 * ((3 * place) % 7) for place in range(42)]
+    for x in (-1.6, 1.6):
+        shape = p.createCollisionShape(
+            p.GEOM_HEIGHTFIELD,
+            meshScale=[0.5, 0.4, 1],
+            heightfieldData=waves,
+            numHeightfieldRows=6,
+            numHeightfieldColumns=7,
+        )
+        body = p.createMultiBody(0, shape, -1, [x, 0, 0])
+    p.changeVisualShape(body, -1, textureUniqueId=p.loadTexture(str(ASSETS / "uvmap.png")))
+
+
 SCENES = (
     Scene("panda", panda, (1.2, -0.8, 1.0), (0.2, 0.0, 0.4), 50),
     Scene("r2d2", r2d2, (2.0, -2.0, 1.5), (0.0, 0.0, 0.4), 50),
@@ -110,6 +125,7 @@ SCENES = (
     Scene("kuka", kuka, (1.2, 0.8, 0.9), (0.2, 0.0, 0.4), 60),
     Scene("close_by", close_by, (0.0, 0.0, 0.3), (0.0, 1.0, 0.2), 80),
     Scene("painted", painted, (1.5, -2.5, 1.8), (-0.3, 0.0, 0.4), 60),
+    Scene("landscapes", landscapes, (0.3, -2.6, 3.0), (0.0, 0.0, 0.0), 60),
     Scene("soft", soft, (0.4, -2.4, 2.0), (0.4, 0.2, 0.5), 50),
 )
 

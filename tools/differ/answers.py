@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from collections.abc import Callable
 from typing import Any
@@ -9,13 +10,14 @@ from typing import Any
 from tools.differ.values import Place, first_difference, lost
 
 _SIZE_OF_FRACTION, _SAME_FRACTION, _NORMAL_OF_RAY = 2e-3, 1e-7, 1e-4
-_DISTANCE, _NORMAL, _TOUCHING = 2e-5, 1e-2, 1e-3
+_DISTANCE, _DEPTH_OF_HULLS, _NORMAL, _TOUCHING = 2e-5, 1e-4, 1e-2, 1e-3
 _FURTHER, _TURNED = 2e-3, 0.02
 _ARRIVED, _ARRIVED_TURNED, _OTHER_POSE = 1e-4, 1e-3, 1e-3
 _LIMIT = 2.5
 _SHARE_OF_SEGMENTS, _SHARE_OF_DEPTHS, _SHARE_OF_COLOURS = 0.06, 0.04, 0.08
 _DEPTH, _COLOUR = 2e-3, 12
-_CORNER, _SHARE_OF_CORNERS = 1e-5, 0.01
+_CORNER, _LARGE_HULL = 1e-5, 32
+_DIRECTIONS, _STANDS_OUT = 200, 1e-3
 
 
 def of_rays(theirs: Any, ours: Any) -> Place | None:
@@ -43,7 +45,8 @@ def of_nearest(theirs: Any, ours: Any) -> Place | None:
     for links in a:
         v, w = (min(points[links], key=lambda point: point[8]) for points in (a, b))
         error = abs(v[8] - w[8])
-        if error > _DISTANCE:
+        # PyBullet's search for a depth ends where a tenth of a millimetre is left.
+        if error > (_DISTANCE if max(v[8], w[8]) > 0 else _DEPTH_OF_HULLS):
             return Place("distance" if v[8] > 0 else "depth", v, w, error)
         alone = len(a[links]) == len(b[links]) == 1
         if alone and abs(v[8]) > _TOUCHING and _furthest(v[7], w[7]) > _NORMAL:
@@ -66,8 +69,8 @@ def of_reach(theirs: Any, ours: Any) -> Place | None:
     """Whether an answer of inverse kinematics is worse than PyBullet's, or another where that arrives."""
     if lost(theirs) or any(abs(position) > _LIMIT for position in theirs[2]):
         return None
-    error = ours[0] - theirs[0]
-    if error > _FURTHER or (error > -_FURTHER / 2 and ours[1] > theirs[1] + _TURNED):
+    error = math.hypot(*ours[:2]) - math.hypot(*theirs[:2])
+    if error > _FURTHER or (ours[0] > theirs[0] - _FURTHER / 2 and ours[1] > theirs[1] + _TURNED):
         return Place("worse", theirs, ours, error)
     arrived = theirs[0] < _ARRIVED and theirs[1] < _ARRIVED_TURNED
     if arrived and _furthest(theirs[2], ours[2]) > _OTHER_POSE:
@@ -81,13 +84,35 @@ def of_kinematics(theirs: Any, ours: Any) -> Place | None:
 
 
 def of_meshes(theirs: Any, ours: Any) -> Place | None:
-    """Corners of meshes, in whatever order; of large hulls a few may be others."""
+    """Corners of meshes, in whatever order; of large hulls those that hardly stand out may be others."""
     if not theirs or not ours:
         return first_difference(theirs, ours, 0)
     gone, new = _not_among(theirs[1], ours[1]), _not_among(ours[1], theirs[1])
-    if max(len(gone), len(new)) > _SHARE_OF_CORNERS * len(theirs[1]):
+    if not gone and not new:
+        return None
+    if min(len(theirs[1]), len(ours[1])) < _LARGE_HULL:
         return Place("corners", gone, new)
-    return None
+    error = max(
+        abs(_extent(theirs[1], direction) - _extent(ours[1], direction))
+        / (_extent(theirs[1], direction) + _extent(theirs[1], [-part for part in direction]))
+        for direction in _directions()
+    )
+    return Place("hull", gone, new, error) if error > _STANDS_OUT else None
+
+
+def _extent(corners: list[list[float]], direction: list[float]) -> float:
+    """How far corners reach in a direction."""
+    return max(sum(a * b for a, b in zip(corner, direction, strict=True)) for corner in corners)
+
+
+def _directions() -> list[list[float]]:
+    """Directions all around, on a spiral from pole to pole."""
+    heights = [(2 * number + 1) / _DIRECTIONS - 1 for number in range(_DIRECTIONS)]
+    turns = [number * math.pi * (3 - math.sqrt(5)) for number in range(_DIRECTIONS)]
+    return [
+        [math.sqrt(1 - z * z) * math.cos(turn), math.sqrt(1 - z * z) * math.sin(turn), z]
+        for z, turn in zip(heights, turns, strict=True)
+    ]
 
 
 def _not_among(corners: list[list[float]], others: list[list[float]]) -> list[list[float]]:

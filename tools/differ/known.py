@@ -6,10 +6,11 @@ with the words that docs/differences has about it, or with a reason why it is no
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from tools.differ.assets import SPHERICAL
+from tools.differ.assets import FILES, FIXED, GEAR, PRISMATIC, SPHERICAL
 from tools.differ.compare import Difference
 from tools.differ.programs import Call
 
@@ -62,6 +63,9 @@ _MASSES = (
     "calculateInverseKinematics",
 )
 _SHAPE_OF_HEIGHTS = 9
+_NEAR_PLANE_OF_SHADOWS = 0.05
+_HALF_A_TURN = 1e-6
+_EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _GEAR, _NO_SUCH_LINK = "of a gear has to be", "has no link"
 _GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
@@ -77,20 +81,111 @@ def _pybullet_raises(seen: Seen) -> bool:
     return seen.difference.place.field == "error/ok"
 
 
-def _aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
-    """Whether position control of one number drives a spherical joint of a body made of shapes."""
-    balls = {
-        (call["id"], joint)
-        for call in seen.before
-        for joint, kind in enumerate(call["k"].get("linkJointTypes", ()))
+def _balls(seen: Seen) -> set[tuple[int, int]]:
+    """The spherical joints of bodies: the call that made the body, and the joint."""
+    types = {call["id"]: call["k"].get("linkJointTypes", ()) for call in seen.before}
+    for call in seen.before:
+        if call["f"] == "loadURDF":
+            types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
+    return {
+        (body, joint)
+        for body, joints in types.items()
+        for joint, kind in enumerate(joints)
         if kind == SPHERICAL
     }
+
+
+def _aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
+    """Whether position control of one number drives a spherical joint."""
+    balls = _balls(seen)
     return any(
         call["f"] == "setJointMotorControl2"
         and call["a"][2] == _POSITION_CONTROL
         and (call["a"][0]["$"], call["a"][1]) in balls
         for call in seen.before
     )
+
+
+def _starts_with_a_ball_joint(seen: Seen) -> bool:
+    """Whether inverse kinematics of a body with a spherical joint is given `currentPositions`."""
+    asks = seen.call["f"].startswith("calculateInverseKinematics") and "currentPositions" in seen.call["k"]
+    return asks and any(body == seen.call["a"][0].get("$") for body, _ in _balls(seen))
+
+
+def _poses(seen: Seen) -> Iterator[Call]:
+    """The constraints made before that hold poses: not gears, nor points alone."""
+    for call in seen.before:
+        if call["f"] == "createConstraint" and call["a"][4] in (PRISMATIC, FIXED):
+            yield call
+
+
+def _holds_links(seen: Seen) -> bool:
+    """Whether a constraint holds a link, by rows along some of which it may have no freedom."""
+    return any(
+        call["f"] == "createConstraint"
+        and call["a"][4] != GEAR
+        and (call["a"][1] >= 0 or (call["a"][2] != -1 and call["a"][3] >= 0))
+        for call in seen.before
+    )
+
+
+def _half_turned(value: Any) -> bool:
+    """Whether there is half a turn among quaternions."""
+    if not isinstance(value, list):
+        return False
+    if len(value) == 4 and all(isinstance(part, (int, float)) for part in value):
+        return abs(value[3]) < _HALF_A_TURN and any(value[:3])
+    return any(map(_half_turned, value))
+
+
+def _holds_half_a_turn(seen: Seen) -> bool:
+    """Whether there is a constraint of poses, and a frame that is turned by exactly 180 degrees."""
+    return any(_poses(seen)) and any(
+        _half_turned([*call["a"], *call["k"].values()])
+        for call in seen.before
+        if call["f"].startswith(("create", "load", "resetBase"))
+    )
+
+
+def _exchanges_points(seen: Seen) -> bool:
+    """Whether the points of two links of one body are exchanged."""
+    theirs, ours = seen.difference.place[1:3]
+    return theirs[1] == theirs[2] and all(
+        abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
+    )
+
+
+def _names_another_face(seen: Seen) -> bool:
+    """Whether shapes are in each other, equally deep in both."""
+    theirs, ours = seen.difference.place[1:3]
+    return theirs[8] < 0 and abs(theirs[8] - ours[8]) < _AS_NEAR
+
+
+def _nothing_hit_before_the_first_step(seen: Seen) -> bool:
+    theirs = seen.difference.place.theirs
+    return seen.difference.phase == "start" and seen.differs("rayTest") and theirs[0] == -1
+
+
+def _rounder(seen: Seen) -> bool:
+    """Whether depths of an image are less than PyBullet's, whose balls are polyhedra inside of ours."""
+    said, ours = seen.difference.place[1:3]
+    return float(str(said).split("differ: ")[1].split(" of ")[0]) > ours
+
+
+def _reaches_from_positions(seen: Seen) -> bool:
+    """Whether an answer of inverse kinematics, for a target in the base's inertial frame, is further off."""
+    made = seen.call["a"][2]["whole"]
+    return any(call["id"] == made and "currentPositions" in call["k"] for call in seen.before)
+
+
+def _casts_shadows(seen: Seen) -> bool:
+    """Whether an image has shadows that in PyBullet may be everywhere."""
+    if seen.call["k"].get("shadow") == 0:
+        return False
+    projection = seen.call["a"][3]["whole"]
+    made = next(call for call in seen.before if call["id"] == projection)
+    near = made["a"][4 if made["f"] == "computeProjectionMatrix" else 2]
+    return near >= _NEAR_PLANE_OF_SHADOWS
 
 
 def _makes(seen: Seen, *kinds: int) -> bool:
@@ -129,6 +224,47 @@ KNOWN: tuple[Known, ...] = (
         ),
     ),
     Known(
+        "PyBullet numbers the fixed joints it makes of MJCF bodies",
+        lambda seen: seen.differs("getJointInfo .1 ") and "jointfix" in str(seen.difference.place.theirs),
+    ),
+    Known(
+        "`calculateJacobian` refuses links that do not exist",
+        lambda seen: seen.call["f"] == "calculateJacobian" and _NO_SUCH_LINK in _error(seen),
+    ),
+    Known(
+        "PyBullet exchanges the points of some pairs of links of one body",
+        lambda seen: seen.differs("getClosestPoints normal") and _exchanges_points(seen),
+    ),
+    Known(
+        "or name another face that is about as near",
+        lambda seen: seen.differs("getClosestPoints normal") and _names_another_face(seen),
+    ),
+    Known("PyBullet does not hit what a ray passes outside", _nothing_hit_before_the_first_step),
+    Known(
+        "Boxes, cylinders and planes from MJCF files have a margin of 1 mm",
+        lambda seen: seen.differs("getDynamicsInfo .11") and seen.loads(".xml"),
+    ),
+    Known(
+        "**Round shapes are round.**",
+        lambda seen: seen.differs("getCameraImage depth") and _rounder(seen),
+    ),
+    Known(
+        "With `currentPositions` the target is in the inertial frame of the base",
+        lambda seen: seen.differs("@reach worse") and _reaches_from_positions(seen),
+    ),
+    Known(
+        "Where PyBullet darkens everything in reach of the light",
+        lambda seen: seen.differs("getCameraImage colour") and _casts_shadows(seen),
+    ),
+    Known(
+        "Rows of constraints along which nothing can move",
+        lambda seen: seen.differs("@probe") and seen.difference.phase == "free" and _holds_links(seen),
+    ),
+    Known(
+        "Which way a constraint turns back what is turned by exactly 180 degrees",
+        lambda seen: seen.differs("@probe") and _holds_half_a_turn(seen),
+    ),
+    Known(
         "`applyExternalForce` and `applyExternalTorque` refuse links that do not exist.",
         lambda seen: seen.call["f"].startswith("applyExternal") and _NO_SUCH_LINK in _error(seen),
     ),
@@ -139,6 +275,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "PyBullet **remembers masses and inertias** from the first call",
         lambda seen: seen.call["f"] in _MASSES and not _error(seen) and seen.has("changeDynamics"),
+    ),
+    Known(
+        "PyBullet refuses `currentPositions` of robots with spherical joints",
+        _starts_with_a_ball_joint,
     ),
     Known(
         "Where PyBullet finds no answer at all for a body, it raises; here there is one.",

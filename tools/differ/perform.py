@@ -181,7 +181,7 @@ def probe():
 
 
 def reach(body, links, answer, targets, turn):
-    """An answer of inverse kinematics: how far from the targets, by which angle turned, and the answer."""
+    """An answer of inverse kinematics: how far from all targets, by which angle turned, and the answer."""
     joints = [joint for joint in range(p.getNumJoints(body)) if p.getJointInfo(body, joint)[3] >= 0]
     before = [p.getJointState(body, joint)[:2] for joint in joints]
     for joint, position in zip(joints, answer):
@@ -189,9 +189,7 @@ def reach(body, links, answer, targets, turn):
     states: list = [p.getLinkState(body, link, computeForwardKinematics=1) for link in links]
     for joint, (position, velocity) in zip(joints, before):
         p.resetJointState(body, joint, position, velocity)
-    far = max(
-        sum((a - b) ** 2 for a, b in zip(state[4], target)) ** 0.5 for state, target in zip(states, targets)
-    )
+    far = sum((a - b) ** 2 for state, target in zip(states, targets) for a, b in zip(state[4], target)) ** 0.5
     angle = 0.0
     if turn is not None:
         angle = abs(p.getAxisAngleFromQuaternion(p.getDifferenceQuaternion(states[0][5], turn))[1])

@@ -22,8 +22,6 @@ from carom.render.primitives import primitive_mesh
 _log = Logger("carom")
 
 _NOTHING = mesh_of([], [], [], [])
-_TEXTURE_SIDE = 2.0
-"""Side of the square of a height field that the texture covers once [m]."""
 
 
 def shape_mesh(shape: Geometry) -> RenderMesh:
@@ -67,8 +65,14 @@ def _from_memory(shape: ConvexHull | TriangleMesh | Heightfield) -> RenderMesh:
         return _given_triangles(shape)
     if isinstance(shape, ConvexHull):
         return flat_mesh(_corners(convex_hull(shape.points)))
-    landscape = flat_mesh(_corners(heightfield_surface(shape)))
-    return replace(landscape, uvs=landscape.positions[:, :2] / np.float32(_TEXTURE_SIDE))
+    return _landscape(flat_mesh(_corners(heightfield_surface(shape))))
+
+
+def _landscape(surface: RenderMesh) -> RenderMesh:
+    """A height field with its texture stretched over it once, from the greatest x and y to the least."""
+    places = surface.positions[:, :2]
+    low, high = places.min(axis=0), places.max(axis=0)
+    return replace(surface, uvs=((high - places) / (high - low)).astype(np.float32))
 
 
 def _given_triangles(shape: TriangleMesh) -> RenderMesh:

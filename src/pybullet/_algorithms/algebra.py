@@ -24,6 +24,7 @@ Matrix = tuple[tuple[float, ...], ...]
 
 _FULL_MODEL = 1
 _BASE_POSITIONS, _BASE_VELOCITIES = 7, 6
+_NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _INVERSE_DYNAMICS = "Error in calculateInverseDynamics, please check arguments."
 _INVERSE_DYNAMICS_SIZES = (
     "calculateInverseDynamics numDofs needs to be positive and [joint velocities] and[joint accelerations] "
@@ -73,7 +74,7 @@ def calculateInverseDynamics(
     The state of the body is neither used nor changed. The coordinates are those of the joints
     that are not fixed, in the order of `getJointInfo`; a spherical joint has roll, pitch and yaw for its
     position. With a floating base the base comes first: in positions as position (3) and quaternion (4),
-    in velocities, accelerations and forces as six numbers.
+    in velocities, accelerations and forces as six numbers. A quaternion of four zeros means no turn.
 
     Gravity is PyBullet's: a fixed base's inertial frame is taken as parallel to the world frame, and a
     floating base is rotated by yaw, pitch and roll in the wrong order. So for a rotated base the gravity
@@ -148,6 +149,9 @@ def calculateInverseDynamics(
     from carom.algorithms.mechanism import mechanism_of
 
     if floating:
+        if not any(q[3:_BASE_POSITIONS]):
+            # Scripts that fill a list with zeros mean no turn, and in PyBullet get it.
+            q = (*q[:3], *_NO_TURN, *q[_BASE_POSITIONS:])
         _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
     forces = client.bodies.forces_of_motion[body.id] = mechanism_of(body).forces_in_pybullet
     with _refusing_overflow(_INVERSE_DYNAMICS):
