@@ -25,6 +25,7 @@ from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
 from carom.viewer.items import Choice, Handle, Slider
+from carom.viewer.last_words import LastWords
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -119,6 +120,9 @@ class Viewer:
         self._chores = Chores(self.lock)
         self._moments = Moments(world, self._board)
         self._leaving = Leaving(self._close_by_user)
+        self._last_words = LastWords(
+            self._board, lambda revision: self._server.has_sent(revision), lambda: self._server.stop()
+        )
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
         self._picking = Picking(world, self.lock)
@@ -381,6 +385,7 @@ class Viewer:
     def close(self) -> None:
         """Closes the viewer; pages then show that the simulation has ended."""
         self.is_open = False
+        self._last_words.forget()
         self._leaving.cancel()
         self.pause_control.open()
         if self._step_lock in self._world.observers:
@@ -473,6 +478,8 @@ class Viewer:
 
     def _close_by_user(self) -> None:
         self.is_open = False
+        # The script may end by the error that there is no connection any more.
+        self._last_words.forget()
         self._leaving.cancel()
         self.pause_control.open()
         self._update_hold()

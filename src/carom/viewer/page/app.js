@@ -32,9 +32,9 @@ const SETTLED = 1;
 export class App {
   /**
    * @param {(message: object) => void} send sends a message to the simulation
-   * @param {(text: ?string) => void} say shows a notice
+   * @param {Notices} notices
    */
-  constructor(send, say) {
+  constructor(send, notices) {
     this.send = send;
     this.canvas = document.getElementById("view");
     const labels = document.getElementById("labels");
@@ -49,7 +49,7 @@ export class App {
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
-    this.panel = new Panel(send, this.options);
+    this.panel = new Panel(send, this.options, notices);
     this.toggles = new Toggles(this.options, () => this.optionsChanged());
     this.timeline = new Timeline(this.player, send);
     this.plots = new Plots(this.scene, this.history, this.player, () => this.tellWants());
@@ -57,7 +57,7 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
     this.legend = new Legend();
     this.previews = new Previews();
-    this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), say);
+    this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
     this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);

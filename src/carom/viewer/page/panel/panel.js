@@ -3,13 +3,19 @@
 import { makeSlider } from "./slider.js";
 
 export class Panel {
-  constructor(send, options) {
+  /**
+   * @param {(message: object) => void} send
+   * @param {Options} options
+   * @param {Notices} notices
+   */
+  constructor(send, options, notices) {
     this.send = send;
+    this.notices = notices;
     this.options = options;
     this.root = document.getElementById("panel");
     this.sliders = document.getElementById("sliders");
     this.controls = new Map();
-    document.getElementById("close").addEventListener("click", () => send({ type: "close" }));
+    document.getElementById("close").addEventListener("click", () => this.askToClose());
     document.getElementById("fold").addEventListener("click", () => this.fold(!this.folded));
     this.pause = document.getElementById("pause");
     this.step = document.getElementById("step");
@@ -32,6 +38,11 @@ export class Panel {
     const button = document.getElementById("fold");
     button.textContent = folded ? "▾" : "▴";
     button.title = folded ? "Expand the panel" : "Collapse the panel";
+  }
+
+  /** Asks before the script is ended: the cross is close to the fold arrow. */
+  askToClose() {
+    this.notices.ask("End the script?", "End it", "Let it run", () => this.send({ type: "close" }));
   }
 
   /** Pauses or continues. It is shown at once, so that a second press before the answer undoes the first. */
