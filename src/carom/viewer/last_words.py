@@ -12,6 +12,7 @@ from weakref import WeakSet
 
 if TYPE_CHECKING:
     from carom.viewer.board import Board
+    from carom.viewer.server import PageServer
 
 # Maximum length of the line on a page, and how long the end of a script waits for pages to take it [s].
 _MOST_CHARACTERS = 300
@@ -23,23 +24,22 @@ class LastWords:
 
     Args:
         board: The messages of the viewer.
-        heard: Whether all open pages have a revision of the board; True without pages.
-        close: Closes the viewer's sockets, so that what was sent arrives.
+        server: Returns the server of its pages.
     """
 
-    def __init__(self, board: Board, heard: Callable[[int], bool], close: Callable[[], None]) -> None:
+    def __init__(self, board: Board, server: Callable[[], PageServer]) -> None:
         self._board = board
-        self._heard = heard
-        self._close = close
+        self._server = server
         _all.add(self)
 
     def say(self, line: str) -> None:
         """Tells the pages a line, and closes the viewer."""
         self._board.put("ending", {"type": "ending", "error": line[:_MOST_CHARACTERS]})
         give_up = time.monotonic() + _PATIENCE
-        while not self._heard(self._board.revision) and time.monotonic() < give_up:
+        while not self._server().has_sent(self._board.revision) and time.monotonic() < give_up:
             time.sleep(0.01)
-        self._close()
+        # What was sent arrives before the sockets close.
+        self._server().stop()
 
     def forget(self) -> None:
         """Says nothing more, because the viewer is closed."""

@@ -120,9 +120,7 @@ class Viewer:
         self._chores = Chores(self.lock)
         self._moments = Moments(world, self._board)
         self._leaving = Leaving(self._close_by_user)
-        self._last_words = LastWords(
-            self._board, lambda revision: self._server.has_sent(revision), lambda: self._server.stop()
-        )
+        self._last_words = LastWords(self._board, lambda: self._server)
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
         self._picking = Picking(world, self.lock)

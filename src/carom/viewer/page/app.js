@@ -21,6 +21,7 @@ import { Readings } from "./view/readings.js";
 import { Renderer } from "./view/renderer.js";
 import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
+import { Shots } from "./time/shots.js";
 import { Timeline } from "./time/timeline.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
@@ -57,7 +58,7 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
     this.legend = new Legend();
     this.previews = new Previews();
-    this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), (...told) => notices.say(...told));
+    this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
     this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);
@@ -259,6 +260,8 @@ export class App {
 
   draw(now) {
     requestAnimationFrame((now) => this.draw(now));
+    // While the recording is filmed, all time is for the film.
+    if (this.saving.rendering) return;
     const passed = now - this.last;
     if (this.drawn) this.renderer.pace.note(passed);
     this.last = now;
@@ -309,7 +312,6 @@ export class App {
     this.legend.show(this.shownScales(), camera.height / (2 * camera.distance));
     this.viewpoint.show();
     this.plots.draw();
-    this.saving.drawn();
   }
 
   /** Scales of the arrows that are drawn; 0 for those that are not. */
