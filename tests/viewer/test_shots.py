@@ -17,11 +17,12 @@ FILM = """async (text) => {
   const bytes = Uint8Array.from(atob(text), (each) => each.charCodeAt(0));
   const video = document.createElement("video");
   video.src = URL.createObjectURL(new Blob([bytes], { type: "video/webm" }));
-  await new Promise((done, failed) => { video.onloadeddata = done; video.onerror = () => failed(video.error.message); });
+  await new Promise((done) => (video.onloadeddata = done));
   const shown = async (time) => {
     video.currentTime = time;
     await new Promise((done) => (video.onseeked = done));
-    const canvas = Object.assign(document.createElement("canvas"), { width: video.videoWidth, height: video.videoHeight });
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [video.videoWidth, video.videoHeight];
     const context = canvas.getContext("2d");
     context.drawImage(video, 0, 0);
     return [...context.getImageData(0, 0, canvas.width, canvas.height).data];

@@ -56,7 +56,7 @@ export class Keys {
       this.app.options[name] = !this.app.options[name];
       // As in PyBullet's window, the grid is hidden and shown with the panel.
       if (name === "panel") this.app.options.grid = this.app.options.panel;
-      this.app.optionsChanged();
+      this.app.optionSet(name);
     } else this.acts[key]?.();
   }
 
