@@ -1,6 +1,7 @@
 // The list of bodies, and the data of the selected body, with sliders that drive its joints.
 
 import { makeSlider } from "./slider.js";
+import { press } from "./states.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
 /** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
@@ -60,7 +61,7 @@ export class Bodies {
   }
 
   mark() {
-    for (const button of this.list.querySelectorAll("button")) button.classList.toggle("on", Number(button.dataset.body) === this.selected);
+    for (const button of this.list.querySelectorAll("button")) press(button, Number(button.dataset.body) === this.selected);
   }
 
   select(body, link = null) {

@@ -1,6 +1,7 @@
 // The panel: time and speed, and the sliders and buttons of the script.
 
 import { makeSlider } from "./slider.js";
+import { unfold } from "./states.js";
 
 export class Panel {
   /**
@@ -38,6 +39,7 @@ export class Panel {
     const button = document.getElementById("fold");
     button.textContent = folded ? "▾" : "▴";
     button.title = folded ? "Expand the panel" : "Collapse the panel";
+    unfold(button, !folded);
   }
 
   /** Asks before the script is ended: the cross is close to the fold arrow. */

@@ -2,6 +2,7 @@
 
 import { download } from "./download.js";
 import { filmOf } from "./film.js";
+import { press } from "../panel/states.js";
 import { removalOf } from "./history.js";
 import { encoded } from "./recording.js";
 
@@ -55,7 +56,7 @@ export class Saving {
     const from = live || clock >= history.end ? history.start : clock;
     const label = button.textContent;
     this.rendering = true;
-    button.classList.add("on");
+    press(button, true);
     const draw = (moment) => {
       moments.running = false;
       moments.seek(moment);
@@ -72,7 +73,7 @@ export class Saving {
       this.say(`The video could not be made: ${error.message}`);
     } finally {
       this.rendering = false;
-      button.classList.remove("on");
+      press(button, false);
       button.textContent = label;
       if (live) moments.goLive();
       else moments.seek(clock);
@@ -93,12 +94,12 @@ export class Saving {
     film.onstop = () => {
       this.film = null;
       this.filming(false);
-      this.filmButton.classList.remove("on");
+      press(this.filmButton, false);
       download(new Blob(parts, { type: kind }), `${this.title()}.${kind.startsWith("video/mp4") ? "mp4" : "webm"}`);
     };
     film.start();
     this.film = film;
-    this.filmButton.classList.add("on");
+    press(this.filmButton, true);
     this.changed();
   }
 
