@@ -1,5 +1,6 @@
 // The panel: time and speed, and the sliders and buttons of the script.
 
+import { fixed } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { unfold } from "./states.js";
 
@@ -70,8 +71,8 @@ export class Panel {
   }
 
   showTime({ time, rate }) {
-    document.getElementById("clock").textContent = time.toFixed(3);
-    if (rate !== undefined) document.getElementById("rate").textContent = rate.toFixed(2);
+    document.getElementById("clock").textContent = fixed(time, 3);
+    if (rate !== undefined) document.getElementById("rate").textContent = fixed(rate, 2);
   }
 
   showFps(fps) {

@@ -2,6 +2,7 @@
 
 import { boundsOfBody, boundsOfScene, downToFloor } from "../view/bounds.js";
 import { PRESETS } from "../view/camera.js";
+import { fixed } from "./numbers.js";
 
 export class Viewpoint {
   /**
@@ -116,7 +117,7 @@ export class Viewpoint {
 
   show() {
     const { distance, yaw, pitch, target } = this.camera;
-    const text = `${distance.toFixed(2)}, ${yaw.toFixed(1)}, ${pitch.toFixed(1)}, [${target.map((x) => x.toFixed(2)).join(", ")}]`;
+    const text = `${fixed(distance, 2)}, ${fixed(yaw, 1)}, ${fixed(pitch, 1)}, [${target.map((x) => fixed(x, 2)).join(", ")}]`;
     if (this.numbers.textContent !== text) this.numbers.textContent = text;
   }
 

@@ -1,5 +1,6 @@
 // The time bar below the view: scrubbing, playback, loops, marks, and the return to the live simulation.
 
+import { fixed } from "../panel/numbers.js";
 import { press, unfold } from "../panel/states.js";
 
 const NEAR = 8;
@@ -82,7 +83,7 @@ export class Timeline {
     [this.scrubber.min, this.scrubber.max] = [history.start, Math.max(history.end, history.start + 1e-3)];
     this.scrubber.value = clock;
     const { time } = history.frames[Math.max(player.index, 0)].header;
-    this.label.textContent = player.live ? `${time.toFixed(2)} s` : `${time.toFixed(3)} s, ${(clock - history.end).toFixed(2)}`;
+    this.label.textContent = player.live ? `${fixed(time, 2)} s` : `${fixed(time, 3)} s, ${fixed(clock - history.end, 2)}`;
     this.playing.textContent = player.running ? "❚❚" : "▶";
     this.playing.title = player.running ? "Pause the playback" : "Play the recording";
     press(this.live, player.live);
