@@ -2,11 +2,14 @@
 
 from pathlib import Path
 
+import pytest
 from tests.viewer.watcher import Watcher
 
 import pybullet as p
 import pybullet_data
+from carom import World
 from carom.viewer.viewer import Viewer
+from pybullet._clients.clients import clients
 
 DATA = pybullet_data.getDataPath()
 GREEN, YELLOW, RED, BLUE = [60, 186, 84], [244, 194, 13], [219, 50, 54], [72, 133, 237]
@@ -67,3 +70,24 @@ def test_links_take_turns_and_a_stated_colour_stays(viewer: Viewer):
         assert colours(watcher, white) == colours(watcher, painted) == [[256, 256, 256]]
     # What scripts are told is white, as PyBullet tells them.
     assert [shape[7] for shape in p.getVisualShapeData(chain)] == [(1, 1, 1, 1)] * 3
+
+
+def in_the_window(viewer: Viewer, bodies: list[int]) -> list[list[float]]:
+    with Watcher(viewer.address) as watcher:
+        return [colours(watcher, body)[0] for body in bodies]
+
+
+@pytest.mark.parametrize("shown_before", [True, False])
+def test_a_saved_world_keeps_the_colours_of_its_window(viewer: Viewer, tmp_path: Path, shown_before: bool):
+    boxes = [box() for _ in range(4)]
+    p.removeBody(boxes[0])
+    p.changeVisualShape(boxes[3], -1, rgbaColor=[1, 1, 1, 1])
+    if shown_before:
+        assert in_the_window(viewer, boxes[1:]) == [RED, BLUE, [256, 256, 256]]
+    clients[0].world.save(tmp_path / "boxes.carom")
+    loaded = World()
+    loaded.load(tmp_path / "boxes.carom")
+    again = Viewer(loaded, port=0)
+    assert in_the_window(again, boxes[1:]) == [RED, BLUE, [256, 256, 256]]
+    again.close()
+    assert loaded.load_urdf(f"{DATA}/cube_small.urdf").links_before == 4

@@ -66,12 +66,12 @@ def test_a_hundred_equal_boxes_are_drawn_with_few_calls(replay: Page):
     assert replay.page.evaluate(CALLS)[0] <= 4
 
 
-def test_lines_are_drawn_with_one_call(replay: Page):
+def test_lines_are_drawn_with_one_call_and_arrows_with_another(replay: Page):
     alone, _ = replay.page.evaluate(CALLS)
     replay.page.evaluate("app.player.seek(1), Object.assign(app.options, { frames: true, forces: true })")
     calls, instances = replay.page.evaluate(CALLS)
     assert replay.page.evaluate("app.overlays.lines.count") > 3 * SIDE**2
-    assert calls == alone + 1
+    assert calls == alone + 2
     assert instances <= 2
 
 

@@ -283,6 +283,7 @@ def test_the_loop_of_a_script_ends_by_the_close_button(page: Page):
     thread = threading.Thread(target=script)
     thread.start()
     page.page.get_by_title("End the simulation").click()
+    page.page.get_by_role("button", name="End it").click()
     assert ended.wait(PATIENCE)
     thread.join()
     page.page.get_by_text("has ended").wait_for()

@@ -22,12 +22,16 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class SavedLook:
-    """Colours and texture of one shape; `texture` is an index into the saved textures, -1 for none."""
+    """Colours and texture of one shape; `texture` is an index into the saved textures, -1 for none.
+
+    `coloured` tells whether a file or a script has said the colour; in files of earlier versions it always has.
+    """
 
     rgba: Rgba
     specular: Vector3
     texture: int
     two_sided: bool
+    coloured: bool = True
 
 
 @dataclass(slots=True)
@@ -60,7 +64,7 @@ def save(world: World, writer: Writer) -> Any:
                 place = NO_TEXTURE
                 if look.texture != NO_TEXTURE and look.texture in appearance.textures:
                     place = places.setdefault(look.texture, len(places))
-                looks.append(SavedLook(look.rgba, look.specular, place, look.two_sided))
+                looks.append(SavedLook(look.rgba, look.specular, place, look.two_sided, look.coloured))
             links.append(looks)
         bodies.append(links)
     images = [np.asarray(appearance.textures.image(number)) for number in places]
@@ -99,7 +103,7 @@ def load(bodies: list[Body], reader: Reader, data: Any) -> None:
                     body,
                     link,
                     place,
-                    rgba=look.rgba,
+                    rgba=look.rgba if look.coloured else None,
                     specular=look.specular,
                     texture=numbers[look.texture],
                     two_sided=look.two_sided,

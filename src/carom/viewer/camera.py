@@ -35,11 +35,12 @@ class SharedCamera:
         self._board = board
         self.orbit: Orbit = Orbit(width=width, height=height)
         self.chosen: bool = False
+        self._by_script: bool = False
         board.put("camera", self._message())
 
     def move(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """Moves the cameras of all pages, for a script."""
-        self.chosen = True
+        self.chosen = self._by_script = True
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
         self._board.put("camera", self._message())
 
@@ -49,7 +50,7 @@ class SharedCamera:
         """Records the camera pose of a page: set by its user or, if not `chosen`, by the page itself."""
         if self.chosen and not chosen:
             return
-        self.chosen = chosen
+        self.chosen, self._by_script = chosen, False
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
         self._board.amend("camera", self._message())
 
@@ -59,4 +60,4 @@ class SharedCamera:
 
     def _message(self) -> dict[str, object]:
         view = {name: getattr(self.orbit, name) for name in ("distance", "yaw", "pitch", "target")}
-        return {"type": "camera", **view, "chosen": self.chosen}
+        return {"type": "camera", **view, "chosen": self.chosen, "script": self._by_script}

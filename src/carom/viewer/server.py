@@ -143,6 +143,10 @@ class PageServer:
         """Numbers of the open pages, as passed to `receive`."""
         return {page.number for page in self._pages}
 
+    def has_sent(self, revision: int) -> bool:
+        """Whether all open pages have a revision of the board."""
+        return not len(self._pages) or self._pages.oldest_revision >= revision
+
     def stop(self) -> None:
         """Closes all sockets; pages then show that the simulation has ended."""
         loop = self._loop

@@ -181,6 +181,10 @@ def _link(body: Body, link: int) -> dict[str, Any]:
         lower, upper = body.joints[link].limits
         if isfinite(lower) and isfinite(upper) and lower < upper:
             facts["limits"] = (lower, upper)
+        facts |= {
+            "effort": spec.effort if isfinite(spec.effort) else 0.0,
+            "speed": spec.velocity if isfinite(spec.velocity) else 0.0,
+        }
     return facts
 
 

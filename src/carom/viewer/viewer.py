@@ -18,13 +18,14 @@ from carom.viewer.details import NOTHING, Details, Wish
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
 from carom.viewer.input.controls import Controls
-from carom.viewer.input.drives import drive
+from carom.viewer.input.drives import MODES, JointHands
 from carom.viewer.input.handles import Handles
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
 from carom.viewer.items import Choice, Handle, Slider
+from carom.viewer.last_words import LastWords
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -117,8 +118,10 @@ class Viewer:
         self.lock: Any = RLock() if lock is None else lock
         self._world = world
         self._chores = Chores(self.lock)
+        self._joint_hands = JointHands(world)
         self._moments = Moments(world, self._board)
         self._leaving = Leaving(self._close_by_user)
+        self._last_words = LastWords(self._board, lambda: self._server)
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
         self._picking = Picking(world, self.lock)
@@ -138,6 +141,7 @@ class Viewer:
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             "want": lambda page, told: self._want(page, Wish.told(told)),
             "drive": self._take_drive,
+            "give back": self._give_back,
             "handle": self._take_handle,
             "sleep": lambda page, told: self._chores.add(self._sleeping.toggle),
             "profile": lambda page, told: self.on_profile(bool(told["running"])),
@@ -381,6 +385,7 @@ class Viewer:
     def close(self) -> None:
         """Closes the viewer; pages then show that the simulation has ended."""
         self.is_open = False
+        self._last_words.forget()
         self._leaving.cancel()
         self.pause_control.open()
         if self._step_lock in self._world.observers:
@@ -461,7 +466,14 @@ class Viewer:
 
     def _take_drive(self, page: int, told: dict[str, Any]) -> None:
         body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])
-        self._chores.add(lambda: drive(self._world, body, joint, target, place=self.pause_control.closed))
+        mode = told.get("mode", "position")
+        if mode not in MODES:
+            raise ValueError(f"a joint has no mode {mode!r}")
+        hands, pause = self._joint_hands, self.pause_control
+        self._chores.add(lambda: hands.drive(body, joint, mode, target, place=pause.closed))
+
+    def _give_back(self, page: int, told: dict[str, Any]) -> None:
+        self._chores.add(partial(self._joint_hands.give_back, int(told["body"]), int(told["joint"])))
 
     def _take_handle(self, page: int, told: dict[str, Any]) -> None:
         x, y, z, w = map(float, told["orientation"])
@@ -473,6 +485,8 @@ class Viewer:
 
     def _close_by_user(self) -> None:
         self.is_open = False
+        # The script may end by the error that there is no connection any more.
+        self._last_words.forget()
         self._leaving.cancel()
         self.pause_control.open()
         self._update_hold()

@@ -69,6 +69,7 @@ class SavedBody:
     """One body; `spec` is an index in `SavedWorld.specs`.
 
     `links`, `groups` and `masks` have an entry for each link, the base first; `sensors` one for each joint.
+    By `links_before` the window chooses the body's colours; earlier files do not have it.
     """
 
     id: int
@@ -84,6 +85,7 @@ class SavedBody:
     groups: list[int]
     masks: list[int]
     sensors: list[bool]
+    links_before: int | None = None
 
 
 @dataclass(slots=True)
@@ -166,6 +168,7 @@ class SavedWorld:
         filters: Pairs of links whose collisions a user has switched on or off.
         user_data: Texts attached to bodies.
         anchors: Anchors of nodes of soft bodies.
+        links_loaded: See `World`; earlier files do not have it.
     """
 
     carom: str
@@ -181,6 +184,7 @@ class SavedWorld:
     filters: list[SavedFilter]
     user_data: list[UserDatum]
     anchors: list[SavedAnchor] = field(default_factory=list)
+    links_loaded: int | None = None
 
 
 def save_world(world: World, path: Path, parts: Parts) -> None:
@@ -213,6 +217,7 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
             write_state(world, bodies, state, whole=alone)
             if alone:
                 world.free_ids, world.next_id = saved.free_ids, saved.next_id
+                world.links_loaded = saved.links_loaded or world.links_loaded
                 world.user_constraints.next_id = saved.next_tie
                 _set_parameters(world, saved.parameters)
             world.scene_changed()
@@ -290,6 +295,7 @@ def _saved(world: World) -> SavedWorld:
             if isinstance(body, SoftBody)
             for anchor in body.anchors
         ],
+        links_loaded=world.links_loaded,
     )
 
 
@@ -316,6 +322,7 @@ def _saved_body(body: Body, spec: int) -> SavedBody:
         shapes["link_group"][links].tolist(),
         shapes["link_mask"][links].tolist(),
         [body.has_sensor(joint) for joint in range(body.joint_count)],
+        body.links_before,
     )
 
 
@@ -375,6 +382,8 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
     count = 1 + body.joint_count
     if not len(record.links) == len(record.groups) == len(record.masks) == len(record.sensors) + 1 == count:
         raise ValueError(f"body {record.id} has {count} links, but a list of another length")
+    if record.links_before is not None:
+        body.links_before = record.links_before
     if record.fixed_base != body.fixed_base:
         change_base_freedom(body.world, body, free=not record.fixed_base)
     for place in range(count):

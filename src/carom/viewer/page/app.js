@@ -10,6 +10,7 @@ import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
 import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Legend } from "./panel/legend.js";
+import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
@@ -21,6 +22,7 @@ import { Readings } from "./view/readings.js";
 import { Renderer } from "./view/renderer.js";
 import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
+import { Shots } from "./time/shots.js";
 import { Timeline } from "./time/timeline.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
@@ -32,9 +34,9 @@ const SETTLED = 1;
 export class App {
   /**
    * @param {(message: object) => void} send sends a message to the simulation
-   * @param {(text: ?string) => void} say shows a notice
+   * @param {Notices} notices
    */
-  constructor(send, say) {
+  constructor(send, notices) {
     this.send = send;
     this.canvas = document.getElementById("view");
     const labels = document.getElementById("labels");
@@ -42,6 +44,7 @@ export class App {
     this.scene = new Scene(this.renderer.gl, this.renderer.byProcessor);
     this.camera = new Camera();
     this.options = new Options();
+    this.memory = new Memory();
     this.readings = new Readings();
     this.history = new History();
     this.player = new Player(this.history, (header, payload) => this.show(header, payload));
@@ -49,15 +52,15 @@ export class App {
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
-    this.panel = new Panel(send, this.options);
-    this.toggles = new Toggles(this.options, () => this.optionsChanged());
+    this.panel = new Panel(send, this.options, notices);
+    this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
     this.timeline = new Timeline(this.player, send);
-    this.plots = new Plots(this.scene, this.history, this.player, () => this.tellWants());
+    this.plots = new Plots(this.scene, this.history, this.player, this.memory, () => this.tellWants());
     this.bodies = new Bodies(this.scene, this.readings, send);
-    this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, () => this.cameraMoved());
+    this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.legend = new Legend();
     this.previews = new Previews();
-    this.saving = new Saving(this.canvas, this.history, () => document.title, () => this.facts(), say);
+    this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
     this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);
@@ -76,7 +79,12 @@ export class App {
     this.awaited = null;
     this.told = 0;
     document.addEventListener("visibilitychange", () => this.tellVisibility());
-    for (const element of document.querySelectorAll("details")) element.addEventListener("toggle", () => this.tellWants());
+    for (const element of document.querySelectorAll("details")) {
+      element.addEventListener("toggle", () => {
+        this.memory.put("sections", { ...this.memory.get("sections"), [element.id]: element.open });
+        this.tellWants();
+      });
+    }
     this.startDrawing();
   }
 
@@ -96,7 +104,10 @@ export class App {
   makeAnswers() {
     const { scene, drawings, panel, overlays } = this;
     return {
-      title: (header) => panel.showTitle(header),
+      title: (header) => {
+        panel.showTitle(header);
+        if (this.memory.begin(header.title)) this.recall();
+      },
       mesh: (header, payload) => scene.addMesh(header, payload),
       "no mesh": (header) => scene.removeMesh(header),
       texture: (header, payload) => scene.addTexture(header, payload),
@@ -131,12 +142,12 @@ export class App {
       mark: (header) => this.timeline.addMark(header),
       "no mark": (header) => this.timeline.removeMark(header),
       camera: (header) => {
-        this.camera.set(header);
-        if (header.chosen) this.viewpoint.undecided = false;
+        if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
       options: (header) => {
         this.options.take(header);
         this.scriptOptions = header;
+        if (this.switchesToRecall) this.recallSwitches();
         this.optionsChanged();
       },
     };
@@ -148,8 +159,7 @@ export class App {
     for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
-    this.viewpoint.undecided = true;
-    this.viewpoint.fitted = null;
+    this.viewpoint.begin();
     this.tellVisibility();
     this.tellSize();
     this.tellWants();
@@ -208,6 +218,29 @@ export class App {
     this.changed();
   }
 
+  /** The user has set a display option, which is kept for the next run of the script. */
+  optionSet(name) {
+    this.memory.put("switches", { ...this.memory.get("switches"), [name]: this.options[name] });
+    this.optionsChanged();
+  }
+
+  /** Shows what the browser has kept for the script: folded sections and switches. */
+  recall() {
+    for (const [id, open] of Object.entries(this.memory.get("sections") ?? {})) {
+      const element = document.getElementById(id);
+      if (element) element.open = open;
+    }
+    this.recallSwitches();
+    this.optionsChanged();
+  }
+
+  /** Sets the switches that the user has set, over what the script sets when it starts. */
+  recallSwitches() {
+    const switches = Object.entries(this.memory.get("switches") ?? {});
+    for (const [name, on] of switches) if (typeof this.options[name] === "boolean") this.options[name] = on;
+    this.switchesToRecall = this.scriptOptions === undefined;
+  }
+
   optionsChanged() {
     this.camera.yUp = this.options.yUp;
     this.camera.update();
@@ -220,6 +253,7 @@ export class App {
 
   cameraMoved() {
     this.viewpoint.undecided = false;
+    this.viewpoint.remember();
     this.cameraToTell = true;
     this.changed();
   }
@@ -259,6 +293,8 @@ export class App {
 
   draw(now) {
     requestAnimationFrame((now) => this.draw(now));
+    // While the recording is filmed, all time is for the film.
+    if (this.saving.rendering) return;
     const passed = now - this.last;
     if (this.drawn) this.renderer.pace.note(passed);
     this.last = now;
@@ -309,7 +345,6 @@ export class App {
     this.legend.show(this.shownScales(), camera.height / (2 * camera.distance));
     this.viewpoint.show();
     this.plots.draw();
-    this.saving.drawn();
   }
 
   /** Scales of the arrows that are drawn; 0 for those that are not. */

@@ -24,7 +24,7 @@ function surviveLostGraphics() {
 
 function watch() {
   const send = (message) => connection.send(message);
-  const app = (window.app = new App(send, say));
+  const app = (window.app = new App(send, notices));
   const runs = new Runs(app, notices, () => connection.reopen());
   const connection = new Connection(
     (header, payload) => runs.receive(header, payload),
@@ -35,7 +35,7 @@ function watch() {
 async function start() {
   surviveLostGraphics();
   const recording = document.getElementById("recording");
-  if (recording) await playRecording(recording.textContent.trim(), (window.app = new App(() => {}, say)));
+  if (recording) await playRecording(recording.textContent.trim(), (window.app = new App(() => {}, notices)));
   else watch();
 }
 

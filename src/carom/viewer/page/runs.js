@@ -18,11 +18,14 @@ export class Runs {
     /** The run of the present connection: null until it has told its title. */
     this.present = null;
     this.allowed = false;
+    /** The last line of the exception that has ended the present run; null if there was none. */
+    this.error = null;
   }
 
   /** Takes a message of the connection, which shows it unless the run that has ended is still shown. */
   receive(header, payload) {
     if (header.type === "title" && this.present === null) this.meet(header);
+    if (header.type === "ending") this.error = header.error;
     if (this.present !== null && this.present === this.shown) this.app.receive(header, payload);
   }
 
@@ -36,6 +39,7 @@ export class Runs {
   accept() {
     this.shown = this.present;
     this.allowed = false;
+    this.error = null;
     this.notices.stand(null);
     this.app.begin();
   }
@@ -63,6 +67,7 @@ export class Runs {
     this.present = null;
     // The page itself has closed the connection, to let the next run in.
     if (this.allowed && wasThere) return;
-    this.notices.stand("The simulation has ended. Waiting for the next one…");
+    const end = this.error === null ? "The simulation has ended." : `The script has ended by an error: ${this.error}`;
+    this.notices.stand(`${end} Waiting for the next one…`);
   }
 }

@@ -1,11 +1,18 @@
 // The list of bodies, and the data of the selected body, with sliders that drive its joints.
 
+import { fixed } from "./numbers.js";
 import { makeSlider } from "./slider.js";
+import { press } from "./states.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
 /** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
 const FULL_TURN = Math.PI;
 const SLIDE = 1;
+/** Ranges of the sliders for speed [rad/s, m/s] and torque [N m, N] of a joint whose file does not say how much. */
+const SPEED = { prismatic: 1, other: 2 * Math.PI };
+const EFFORT = 100;
+/** What a slider can set, and the field of a reading that has it now. */
+const MODES = ["position", "velocity", "torque"];
 
 export class Bodies {
   /**
@@ -60,7 +67,7 @@ export class Bodies {
   }
 
   mark() {
-    for (const button of this.list.querySelectorAll("button")) button.classList.toggle("on", Number(button.dataset.body) === this.selected);
+    for (const button of this.list.querySelectorAll("button")) press(button, Number(button.dataset.body) === this.selected);
   }
 
   select(body, link = null) {
@@ -90,15 +97,41 @@ export class Bodies {
   }
 
   jointSlider(body, joint, link) {
+    const key = `${body},${joint}`;
     const control = makeSlider(`joint-${body}-${joint}`, link.joint, (value) => {
-      this.send({ type: "drive", body, joint, target: value });
+      const slider = this.sliders.get(key);
+      slider.byHand = value;
+      back.disabled = false;
+      this.send({ type: "drive", body, joint, mode: slider.mode, target: value });
     });
+    const mode = Object.assign(document.createElement("select"), { title: `What the slider of ${link.joint} sets` });
+    mode.append(...MODES.map((name) => new Option(name)));
+    const back = Object.assign(document.createElement("button"), { textContent: "Give back", disabled: true });
+    back.title = `Give ${link.joint} back to the script: its motor is as before it was moved here`;
+    const release = () => {
+      Object.assign(this.sliders.get(key), { byHand: null });
+      back.disabled = true;
+    };
+    back.addEventListener("click", () => {
+      release();
+      this.send({ type: "give back", body, joint });
+    });
+    mode.addEventListener("change", () => {
+      Object.assign(this.sliders.get(key), { mode: mode.value, byHand: null });
+      control.begin();
+      this.show();
+    });
+    const hand = Object.assign(document.createElement("div"), { className: "hand" });
+    hand.append(mode, back);
     const now = Object.assign(document.createElement("small"), { className: "now" });
-    control.element.append(now);
+    control.element.append(hand, now);
     const reach = link.kind === "prismatic" ? SLIDE : FULL_TURN;
     const [lower, upper] = link.limits ?? [-reach, reach];
     const unit = link.kind === "prismatic" ? ["m", "m/s", "N"] : ["rad", "rad/s", "N·m"];
-    this.sliders.set(`${body},${joint}`, { ...control, now, lower, upper, unit, set: false });
+    const fastest = link.speed || (link.kind === "prismatic" ? SPEED.prismatic : SPEED.other);
+    const strongest = link.effort || EFFORT;
+    const ranges = { position: [lower, upper], velocity: [-fastest, fastest], torque: [-strongest, strongest] };
+    this.sliders.set(key, { ...control, now, ranges, unit, mode: "position", byHand: null });
     return control.element;
   }
 
@@ -155,9 +188,12 @@ export class Bodies {
   showJoint(slider, reading) {
     if (!reading) return;
     const [length, speed, force] = slider.unit;
-    slider.now.textContent = `${reading.position.toFixed(3)} ${length}, ${reading.velocity.toFixed(2)} ${speed}, ${reading.torque.toFixed(2)} ${force}`;
-    const aim = Number.isNaN(reading.target) ? reading.position : reading.target;
-    slider.show({ lower: slider.lower, upper: slider.upper, value: Math.min(Math.max(aim, slider.lower), slider.upper) });
+    slider.now.textContent = `${fixed(reading.position, 3)} ${length}, ${fixed(reading.velocity, 2)} ${speed}, ${fixed(reading.torque, 2)} ${force}`;
+    const [lower, upper] = slider.ranges[slider.mode];
+    const aim = { position: [reading.target, reading.position], velocity: [reading.targetVelocity, 0], torque: [0, 0] }[slider.mode];
+    const value = slider.mode === "position" ? aim : [slider.byHand, ...aim];
+    const shown = value.find((each) => each !== null && !Number.isNaN(each));
+    slider.show({ lower, upper, value: Math.min(Math.max(shown, lower), upper) });
   }
 }
 
@@ -165,7 +201,7 @@ export class Bodies {
 const MOST_LISTED = 500;
 
 function numbers(values, digits) {
-  return values.map((value) => (value + 0).toFixed(digits)).join("  ");
+  return values.map((value) => fixed(value, digits)).join("  ");
 }
 
 function eulerDegrees([x, y, z, w]) {

@@ -1,5 +1,7 @@
 // The list of keys and mouse actions, shown over the view.
 
+import { unfold } from "./states.js";
+
 const SECTIONS = {
   Mouse: {
     click: "select a body",
@@ -26,7 +28,8 @@ const SECTIONS = {
     p: "while held: record a timing profile",
     F1: "record a video; again to save it",
     "?": "this list",
-    Esc: "close the window, end the connection",
+    Tab: "go to the panel, and through it",
+    Esc: "back to the view, or close the window and end the connection",
   },
 };
 
@@ -36,6 +39,11 @@ export class Help {
     this.root.append(...Object.entries(SECTIONS).map(([title, keys]) => section(title, keys)));
     this.root.addEventListener("click", () => this.toggle());
     document.getElementById("keys").addEventListener("click", () => this.toggle());
+    this.showState();
+  }
+
+  showState() {
+    unfold(document.getElementById("keys"), this.open);
   }
 
   get open() {
@@ -44,6 +52,7 @@ export class Help {
 
   toggle() {
     this.root.hidden = this.open;
+    this.showState();
   }
 }
 

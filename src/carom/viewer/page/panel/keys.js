@@ -13,9 +13,11 @@ const SHORTCUTS = {
   w: "wireframe",
 };
 /** Keys whose default action in the browser is suppressed, because scripts use them. */
-const KEPT_FROM_THE_BROWSER = /^(Arrow.*|Page.*|Home|End|Tab|Backspace| |F([1-46-9]|1[03-5]))$/;
+const KEPT_FROM_THE_BROWSER = /^(Arrow.*|Page.*|Home|End|Backspace| |F([1-46-9]|1[03-5]))$/;
 /** Controls that are done with once they are clicked. */
 const CLICKED = "button, input[type=range], input[type=checkbox], summary";
+/** Controls to which Tab leads. */
+const WALKED = "input, button, summary, select, textarea";
 const TYPING = "input:not([type=range]):not([type=checkbox]), textarea, select";
 
 export class Keys {
@@ -42,7 +44,10 @@ export class Keys {
   down(event) {
     const { target, key } = event;
     const element = target instanceof HTMLElement ? target : null;
-    if (element?.matches(TYPING) || event.isComposing) return;
+    if (event.isComposing) return;
+    // Who walks through the panel with the keyboard goes back to the view; from there Esc ends the script.
+    if (key === "Escape" && element?.matches(WALKED) && !this.app.help.open) return this.app.canvas.focus();
+    if (element?.matches(TYPING)) return;
     const command = event.ctrlKey || event.metaKey;
     const onControl = element?.matches("input, button, summary");
     if (KEPT_FROM_THE_BROWSER.test(key) && !command && !onControl) event.preventDefault();
@@ -56,7 +61,7 @@ export class Keys {
       this.app.options[name] = !this.app.options[name];
       // As in PyBullet's window, the grid is hidden and shown with the panel.
       if (name === "panel") this.app.options.grid = this.app.options.panel;
-      this.app.optionsChanged();
+      this.app.optionSet(name);
     } else this.acts[key]?.();
   }
 

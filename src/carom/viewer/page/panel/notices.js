@@ -6,10 +6,7 @@ const BRIEF_MS = 8000;
 export class Notices {
   constructor() {
     this.root = document.getElementById("notice");
-    this.state = document.createElement("span");
-    this.message = document.createElement("span");
-    this.buttons = Object.assign(document.createElement("span"), { className: "choices" });
-    this.root.append(this.state, this.message, this.buttons);
+    [this.state, this.message] = [new Row(this.root), new Row(this.root)];
     this.timer = null;
   }
 
@@ -20,23 +17,62 @@ export class Notices {
    * @param {Node[]} choices buttons below it
    */
   stand(text, choices = []) {
-    // Told again and again while the page waits; it is announced once.
-    if (this.state.textContent !== (text ?? "")) this.state.textContent = text ?? "";
-    this.buttons.replaceChildren(...choices);
-    this.show();
+    this.state.show(text, choices);
+    this.update();
   }
 
   /** Shows a message, beside what is shown; null ends it. It goes away by itself unless it `lasts`. */
-  say(text, lasts = false) {
+  say(text, lasts = false, choices = []) {
     clearTimeout(this.timer);
-    this.message.textContent = text ?? "";
-    this.show();
+    this.message.show(text, choices);
+    this.update();
     if (text && !lasts) this.timer = setTimeout(() => this.say(null), BRIEF_MS);
   }
 
-  show() {
-    this.message.hidden = this.message.textContent === "";
-    this.root.hidden = this.message.hidden && this.state.textContent === "";
+  /**
+   * Asks for a while whether to do something; without an answer it is not done.
+   *
+   * @param {string} text the question
+   * @param {string} yes what the button says that does it
+   * @param {string} no what the button says that does not
+   * @param {() => void} act called with the answer yes
+   */
+  ask(text, yes, no, act) {
+    const asker = document.activeElement;
+    const end = () => {
+      this.say(null);
+      asker?.focus({ preventScroll: true });
+    };
+    const doing = choice(yes, () => {
+      end();
+      act();
+    });
+    this.say(text, false, [doing, choice(no, end)]);
+    doing.focus({ preventScroll: true });
+  }
+
+  update() {
+    this.root.hidden = this.state.empty && this.message.empty;
+  }
+}
+
+/** A text with buttons below it. */
+class Row {
+  constructor(root) {
+    this.text = document.createElement("span");
+    this.buttons = Object.assign(document.createElement("span"), { className: "choices" });
+    root.append(this.text, this.buttons);
+  }
+
+  show(text, choices) {
+    // Told again and again while the page waits; it is announced once.
+    if (this.text.textContent !== (text ?? "")) this.text.textContent = text ?? "";
+    this.buttons.replaceChildren(...choices);
+    this.text.hidden = this.empty;
+  }
+
+  get empty() {
+    return this.text.textContent === "";
   }
 }
 

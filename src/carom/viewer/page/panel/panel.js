@@ -1,15 +1,23 @@
 // The panel: time and speed, and the sliders and buttons of the script.
 
+import { fixed } from "./numbers.js";
 import { makeSlider } from "./slider.js";
+import { unfold } from "./states.js";
 
 export class Panel {
-  constructor(send, options) {
+  /**
+   * @param {(message: object) => void} send
+   * @param {Options} options
+   * @param {Notices} notices
+   */
+  constructor(send, options, notices) {
     this.send = send;
+    this.notices = notices;
     this.options = options;
     this.root = document.getElementById("panel");
     this.sliders = document.getElementById("sliders");
     this.controls = new Map();
-    document.getElementById("close").addEventListener("click", () => send({ type: "close" }));
+    document.getElementById("close").addEventListener("click", () => this.askToClose());
     document.getElementById("fold").addEventListener("click", () => this.fold(!this.folded));
     this.pause = document.getElementById("pause");
     this.step = document.getElementById("step");
@@ -32,6 +40,12 @@ export class Panel {
     const button = document.getElementById("fold");
     button.textContent = folded ? "▾" : "▴";
     button.title = folded ? "Expand the panel" : "Collapse the panel";
+    unfold(button, !folded);
+  }
+
+  /** Asks before the script is ended: the cross is close to the fold arrow. */
+  askToClose() {
+    this.notices.ask("End the script?", "End it", "Let it run", () => this.send({ type: "close" }));
   }
 
   /** Pauses or continues. It is shown at once, so that a second press before the answer undoes the first. */
@@ -57,8 +71,8 @@ export class Panel {
   }
 
   showTime({ time, rate }) {
-    document.getElementById("clock").textContent = time.toFixed(3);
-    if (rate !== undefined) document.getElementById("rate").textContent = rate.toFixed(2);
+    document.getElementById("clock").textContent = fixed(time, 3);
+    if (rate !== undefined) document.getElementById("rate").textContent = fixed(rate, 2);
   }
 
   showFps(fps) {

@@ -11,8 +11,8 @@ const MOST_SAMPLES = 20000;
 
 export class Plots {
   /** @param {() => void} wantsChanged called when the plots need other data from the simulation */
-  constructor(scene, history, player, wantsChanged) {
-    Object.assign(this, { scene, history, player, wantsChanged });
+  constructor(scene, history, player, memory, wantsChanged) {
+    Object.assign(this, { scene, history, player, memory, wantsChanged });
     this.select = document.getElementById("joint");
     this.root = document.getElementById("charts");
     this.plotted = new Map();
@@ -22,6 +22,7 @@ export class Plots {
     this.select.addEventListener("change", () => {
       if (this.select.value) this.add(this.sources.get(this.select.value));
       this.select.value = "";
+      this.remember();
     });
   }
 
@@ -40,6 +41,17 @@ export class Plots {
     this.select.replaceChildren(new Option("Plot…", ""), ...options);
     document.getElementById("plots").hidden = this.sources.size === 0;
     for (const key of [...this.plotted.keys()]) if (!this.sources.has(key)) this.remove(key);
+    for (const key of this.memory.get("plots") ?? []) this.add(this.sources.get(key));
+  }
+
+  /** Keeps which plots there are, for the next run of the script. */
+  remember() {
+    this.memory.put("plots", [...this.plotted.keys()]);
+  }
+
+  takeAway(key) {
+    this.remove(key);
+    this.remember();
   }
 
   /** The data that the plots need from the simulation. */
@@ -60,7 +72,7 @@ export class Plots {
     const buttons = document.createElement("span");
     for (const [text, title, act] of [
       ["CSV", "Save these numbers", () => this.save(source.key)],
-      ["✕", "Remove", () => this.remove(source.key)],
+      ["✕", "Remove", () => this.takeAway(source.key)],
     ]) {
       const button = Object.assign(document.createElement("button"), { textContent: text, title });
       button.addEventListener("click", act);

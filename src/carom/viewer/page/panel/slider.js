@@ -1,5 +1,7 @@
 // A slider with a number field for its value, and a button that resets it to its first value.
 
+import { digitsFor, fixed } from "./numbers.js";
+
 /**
  * @param {string} id of the slider's element
  * @param {string} name
@@ -19,8 +21,8 @@ export function makeSlider(id, name, moved) {
   let digits = 3;
   let held = false;
   const read = () => {
-    if (document.activeElement !== typed) typed.value = Number(range.value).toFixed(digits);
-    reset.disabled = start === null || Math.abs(Number(range.value) - start) < 1e-12;
+    if (document.activeElement !== typed) typed.value = fixed(Number(range.value), digits);
+    reset.disabled = start === null || Number(range.value) === start;
   };
   const set = (value) => {
     range.value = value;
@@ -37,10 +39,12 @@ export function makeSlider(id, name, moved) {
   const show = ({ lower, upper, value }) => {
     // While the user moves the slider, the value that the simulation sends back is out of date.
     if (held) return;
-    start ??= value;
-    digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(upper - lower || 1))));
+    digits = digitsFor(upper - lower);
     [range.min, range.max, range.value] = [lower, upper, value];
+    start ??= Number(range.value);
     read();
   };
-  return { element, show };
+  /** The next value that is shown is the first one. */
+  const begin = () => (start = null);
+  return { element, show, begin };
 }

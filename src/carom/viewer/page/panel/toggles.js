@@ -39,25 +39,26 @@ const GROUPS = [
 ];
 
 export class Toggles {
-  constructor(options, optionsChanged) {
+  /** @param {(name: string) => void} changed called with the option that the user has set */
+  constructor(options, changed) {
     this.options = options;
     this.boxes = new Map();
     const root = document.getElementById("toggles");
     for (const [title, ...switches] of GROUPS) {
       root.append(Object.assign(document.createElement("h2"), { textContent: title }));
       const group = Object.assign(document.createElement("div"), { className: "toggles" });
-      for (const [name, text, key] of switches) group.append(this.makeSwitch(name, text, key, optionsChanged));
+      for (const [name, text, key] of switches) group.append(this.makeSwitch(name, text, key, changed));
       root.append(group);
     }
     this.show();
   }
 
-  makeSwitch(name, text, key, optionsChanged) {
+  makeSwitch(name, text, key, changed) {
     const label = document.createElement("label");
     const box = Object.assign(document.createElement("input"), { type: "checkbox", name });
     box.addEventListener("change", () => {
       this.options[name] = box.checked;
-      optionsChanged();
+      changed(name);
     });
     label.append(box, text);
     if (key) label.append(Object.assign(document.createElement("kbd"), { textContent: key }));

@@ -1,22 +1,26 @@
 // The camera's controls: presets, following, and the arguments of resetDebugVisualizerCamera.
 
-import { boundsOfBody, boundsOfScene } from "../view/bounds.js";
+import { boundsOfBody, boundsOfScene, downToFloor } from "../view/bounds.js";
 import { PRESETS } from "../view/camera.js";
+import { fixed } from "./numbers.js";
 
 export class Viewpoint {
   /**
    * @param {Camera} camera
    * @param {Scene} scene
    * @param {Options} options
+   * @param {Memory} memory keeps the user's camera for the next run of the script
    * @param {() => void} moved called when the user has moved the camera
    */
-  constructor(camera, scene, options, moved) {
-    Object.assign(this, { camera, scene, options, moved });
+  constructor(camera, scene, options, memory, moved) {
+    Object.assign(this, { camera, scene, options, memory, moved });
     this.numbers = document.getElementById("camera-numbers");
     this.following = document.getElementById("follow");
     this.selection = null;
     /** Whether the page fits the scene into view, because neither script nor user has set the camera. */
     this.undecided = true;
+    /** The first camera that the script has set in this run, as a text; null if it has not. */
+    this.told = null;
     const presets = document.getElementById("presets");
     for (const name of Object.keys(PRESETS)) {
       const button = Object.assign(document.createElement("button"), { textContent: name });
@@ -26,6 +30,52 @@ export class Viewpoint {
     document.getElementById("fit").addEventListener("click", () => this.change(() => this.fit()));
     this.following.addEventListener("change", () => (camera.followed = null));
     document.getElementById("copy-camera").addEventListener("click", () => this.copy());
+  }
+
+  /** The camera is neither the user's nor the script's at the start of a run. */
+  begin() {
+    this.undecided = true;
+    this.fitted = null;
+    this.told = null;
+  }
+
+  /**
+   * Takes the camera of a message; true if the page shows another one. A script that is run again sets the camera
+   * that the user has moved since: it stays where the user has moved it.
+   */
+  take(header) {
+    const { distance, yaw, pitch, target, chosen, script } = header;
+    const first = script && this.told === null;
+    if (first) this.told = JSON.stringify([distance, yaw, pitch, target]);
+    if (chosen) this.undecided = false;
+    if (first && this.recall(this.told)) return true;
+    this.camera.set(header);
+    return false;
+  }
+
+  /** Keeps the camera that the user has moved. */
+  remember() {
+    const over = this.told ?? this.memory.get("camera")?.over ?? null;
+    this.memory.put("camera", { over, view: this.camera.state() });
+  }
+
+  /** Shows the camera that the user has moved from the script's camera, or without one; false if there is none. */
+  recall(told) {
+    const kept = this.memory.get("camera");
+    if (!kept || kept.over !== told) return false;
+    this.camera.set(kept.view);
+    return true;
+  }
+
+  /** How much of the view the panel and the time bar cover [pixels]. */
+  get insets() {
+    const covered = (id, measure) => {
+      const element = document.getElementById(id);
+      return element.hidden ? 0 : measure(element.getBoundingClientRect());
+    };
+    const folded = document.getElementById("panel").classList.contains("folded");
+    const side = folded ? 0 : covered("panel", ({ left }) => this.camera.width - left);
+    return { side, below: covered("timeline", ({ top }) => this.camera.height - top) };
   }
 
   change(act) {
@@ -39,7 +89,7 @@ export class Viewpoint {
     const body = this.selection && this.scene.bodies.get(this.selection.body);
     const collisions = this.options.collisions;
     const bounds = (body && boundsOfBody(this.scene, body, collisions)) ?? boundsOfScene(this.scene, collisions);
-    if (bounds) this.camera.fit(bounds);
+    if (bounds) this.camera.fit(bounds, this.insets);
     return bounds !== null;
   }
 
@@ -52,7 +102,8 @@ export class Viewpoint {
     // The view is fitted again whenever bodies have been added or removed.
     if (key === this.fitted) return false;
     this.fitted = key;
-    this.camera.fit(bounds);
+    if (this.recall(null)) this.undecided = false;
+    else this.camera.fit(downToFloor(this.scene, bounds, false, this.options.yUp ? 1 : 2), this.insets);
     return true;
   }
 
@@ -66,7 +117,7 @@ export class Viewpoint {
 
   show() {
     const { distance, yaw, pitch, target } = this.camera;
-    const text = `${distance.toFixed(2)}, ${yaw.toFixed(1)}, ${pitch.toFixed(1)}, [${target.map((x) => x.toFixed(2)).join(", ")}]`;
+    const text = `${fixed(distance, 2)}, ${fixed(yaw, 1)}, ${fixed(pitch, 1)}, [${target.map((x) => fixed(x, 2)).join(", ")}]`;
     if (this.numbers.textContent !== text) this.numbers.textContent = text;
   }
 

@@ -1,6 +1,8 @@
 // Saving the view as a picture or a video, and the history as a page that replays it.
 
 import { download } from "./download.js";
+import { filmOf } from "./film.js";
+import { press } from "../panel/states.js";
 import { removalOf } from "./history.js";
 import { encoded } from "./recording.js";
 
@@ -14,18 +16,23 @@ export class Saving {
   /**
    * @param {HTMLCanvasElement} canvas
    * @param {History} history
+   * @param {Player} moments plays the recording that is filmed
+   * @param {Shots} shots draws pictures
    * @param {() => string} title returns the name of the files
    * @param {() => object} facts returns the further data of a replay: camera and options
    * @param {(text: ?string) => void} say shows a notice
    */
-  constructor(canvas, history, title, facts, say) {
-    Object.assign(this, { canvas, history, title, facts, say });
-    this.pictureWanted = false;
+  constructor(canvas, history, moments, shots, title, facts, say) {
+    Object.assign(this, { canvas, history, moments, shots, title, facts, say });
     /** The page that replays a history, without one; null until it has come. */
     this.player = null;
     this.film = null;
     this.filmButton = document.getElementById("film");
-    document.getElementById("picture").addEventListener("click", () => this.askForPicture());
+    this.renderButton = document.getElementById("render");
+    /** Whether the recording is being filmed, and whether it shall go on being so. */
+    this.rendering = false;
+    document.getElementById("picture").addEventListener("click", () => this.savePicture());
+    this.renderButton.addEventListener("click", () => this.toggleRendering());
     this.filmButton.addEventListener("click", () => this.toggleFilm());
     document.getElementById("save").addEventListener("click", () => this.saveReplay());
     this.changed = () => {};
@@ -33,31 +40,43 @@ export class Saving {
     this.filming = () => {};
   }
 
-  askForPicture() {
-    this.pictureWanted = true;
-    this.changed();
+  savePicture() {
+    try {
+      this.shots.draw().toBlob((blob) => download(blob, `${this.title()}.png`));
+    } catch (error) {
+      this.say(`The picture could not be saved: ${error.message}`);
+    }
   }
 
-  /** Saves a picture if asked for. Called right after drawing, while the canvas still has its pixels. */
-  drawn() {
-    if (!this.pictureWanted) return;
-    this.pictureWanted = false;
-    const picture = document.createElement("canvas");
-    [picture.width, picture.height] = [this.canvas.width, this.canvas.height];
-    const context = picture.getContext("2d");
-    context.drawImage(this.canvas, 0, 0);
-    this.write(context, this.canvas.width / this.canvas.clientWidth);
-    picture.toBlob((blob) => download(blob, `${this.title()}.png`));
-  }
-
-  /** Draws the texts that are over the view into a picture. */
-  write(context, ratio) {
-    for (const span of document.querySelectorAll("#labels span:not([hidden])")) {
-      const { left, bottom } = span.getBoundingClientRect();
-      const style = getComputedStyle(span);
-      context.font = `${style.fontWeight} ${parseFloat(style.fontSize) * ratio}px ${style.fontFamily}`;
-      context.fillStyle = style.color;
-      context.fillText(span.textContent, left * ratio, (bottom - 4) * ratio);
+  /** Films the recording from the shown moment on, or all of it; a second call ends that. */
+  async toggleRendering() {
+    const { history, moments, renderButton: button } = this;
+    if (this.rendering || history.count === 0) return (this.rendering = false);
+    const { live, clock, speed } = moments;
+    const from = live || clock >= history.end ? history.start : clock;
+    const label = button.textContent;
+    this.rendering = true;
+    press(button, true);
+    const draw = (moment) => {
+      moments.running = false;
+      moments.seek(moment);
+      return this.shots.draw();
+    };
+    const progress = (share) => {
+      button.textContent = `${Math.round(100 * share)} %`;
+      return this.rendering;
+    };
+    try {
+      const film = await filmOf(draw, { from, to: history.end, speed }, progress);
+      if (film) download(film, `${this.title()}.webm`);
+    } catch (error) {
+      this.say(`The video could not be made: ${error.message}`);
+    } finally {
+      this.rendering = false;
+      press(button, false);
+      button.textContent = label;
+      if (live) moments.goLive();
+      else moments.seek(clock);
     }
   }
 
@@ -75,12 +94,12 @@ export class Saving {
     film.onstop = () => {
       this.film = null;
       this.filming(false);
-      this.filmButton.classList.remove("on");
+      press(this.filmButton, false);
       download(new Blob(parts, { type: kind }), `${this.title()}.${kind.startsWith("video/mp4") ? "mp4" : "webm"}`);
     };
     film.start();
     this.film = film;
-    this.filmButton.classList.add("on");
+    press(this.filmButton, true);
     this.changed();
   }
 

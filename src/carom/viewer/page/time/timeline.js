@@ -1,5 +1,8 @@
 // The time bar below the view: scrubbing, playback, loops, marks, and the return to the live simulation.
 
+import { fixed } from "../panel/numbers.js";
+import { press, unfold } from "../panel/states.js";
+
 const NEAR = 8;
 
 export class Timeline {
@@ -36,7 +39,9 @@ export class Timeline {
       this.show();
     });
     const extras = document.getElementById("extras");
-    document.getElementById("more").addEventListener("click", () => extras.classList.toggle("open"));
+    document.getElementById("more").addEventListener("click", (event) => {
+      unfold(event.currentTarget, extras.classList.toggle("open"));
+    });
     document.getElementById("back").addEventListener("click", () => player.step(-1));
     document.getElementById("forth").addEventListener("click", () => player.step(1));
     document.getElementById("mark").addEventListener("click", () => this.send({ type: "mark" }));
@@ -78,11 +83,11 @@ export class Timeline {
     [this.scrubber.min, this.scrubber.max] = [history.start, Math.max(history.end, history.start + 1e-3)];
     this.scrubber.value = clock;
     const { time } = history.frames[Math.max(player.index, 0)].header;
-    this.label.textContent = player.live ? `${time.toFixed(2)} s` : `${time.toFixed(3)} s, ${(clock - history.end).toFixed(2)}`;
+    this.label.textContent = player.live ? `${fixed(time, 2)} s` : `${fixed(time, 3)} s, ${fixed(clock - history.end, 2)}`;
     this.playing.textContent = player.running ? "❚❚" : "▶";
     this.playing.title = player.running ? "Pause the playback" : "Play the recording";
-    this.live.classList.toggle("on", player.live);
-    this.loop.classList.toggle("on", player.looping);
+    press(this.live, player.live);
+    press(this.loop, player.looping);
     this.root.classList.toggle("past", !player.live);
     const span = Math.max(history.end - history.start, 1e-6);
     for (const { clock: at, button } of this.marks.values()) {

@@ -4,6 +4,12 @@ import { add, turned } from "./maths.js";
 
 /** A box larger than this along two axes is a floor or a backdrop, and is not fitted into the view [m]. */
 const FLOOR = 9;
+/** A floor is below a body if the body is at most so deep in it [m]. */
+const UNDER = 0.1;
+/** Bodies that are higher above the floor than this multiple of their size (which counts as at least `LOW` [m]) are
+ * shown without the floor. */
+const HIGH = 20;
+const LOW = 0.2;
 
 /** Lower and upper corner of a link's bounding box, in the world; null for a link without shapes or pose. */
 export function boundsOfLink(scene, body, link, collisions) {
@@ -39,6 +45,19 @@ export function boundsOfScene(scene, collisions) {
     if (!scene.hidden.has(body.body)) boundsOfBody(scene, body, collisions)?.forEach((corner) => extend(box, corner));
   }
   return box[0][0] <= box[1][0] ? box : null;
+}
+
+/** A box, extended to the floor that it is above, if there is one. */
+export function downToFloor(scene, [lower, upper], collisions, axis) {
+  let ground = -Infinity;
+  for (const body of scene.bodies.values()) {
+    body.links.forEach((_, link) => {
+      const bounds = boundsOfLink(scene, body, link, collisions);
+      if (bounds && isFloor(bounds) && bounds[1][axis] <= lower[axis] + UNDER) ground = Math.max(ground, bounds[1][axis]);
+    });
+  }
+  if (lower[axis] - ground > HIGH * Math.max(...upper.map((x, i) => x - lower[i]), LOW)) return [lower, upper];
+  return [lower.map((x, i) => (i === axis ? Math.min(x, ground) : x)), upper];
 }
 
 export function isFloor([lower, upper]) {

@@ -10,6 +10,8 @@ const STEEPEST = 89.9;
 /** Distance of a camera that shows a sphere, in radii (1.41 would just do); and the smallest radius [m]. */
 const FIT_MARGIN = 1.5;
 const LEAST_FIT = 0.15;
+/** What is left free in a small window counts as this share of it at least: some of the view is then covered. */
+const LEAST_FREE = 0.75;
 /** Yaw and pitch of the preset views [degrees]. */
 export const PRESETS = {
   corner: [50, -35],
@@ -84,13 +86,19 @@ export class Camera {
     this.matrix = multiply(this.projection, this.view);
   }
 
-  /** Moves the camera so that a whole box is in view; its direction stays. */
-  fit([lower, upper]) {
+  /**
+   * Moves the camera so that a whole box is in view; its direction stays.
+   *
+   * @param {number[][]} box lower and upper corner
+   * @param {{side: number, below: number}} insets what covers the view at its right and at its bottom [pixels]
+   */
+  fit([lower, upper], { side, below } = { side: 0, below: 0 }) {
     this.target = lower.map((x, i) => 0.5 * (x + upper[i]));
     const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
     // The vertical field of view is 90 degrees; in a tall window the horizontal one is narrower.
-    const narrow = Math.min(1, this.width / Math.max(this.height, 1));
-    this.distance = (FIT_MARGIN * radius) / narrow;
+    const whole = Math.min(this.width, this.height);
+    const free = Math.max(Math.min(this.width - 2 * side, this.height - 2 * below), LEAST_FREE * whole);
+    this.distance = (FIT_MARGIN * radius * this.height) / Math.max(Math.min(free, whole), 1);
     this.update();
   }
 

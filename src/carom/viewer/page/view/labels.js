@@ -1,5 +1,7 @@
 // Short texts at points in the view, such as the positions of joints.
 
+import { fixed } from "../panel/numbers.js";
+
 export class Labels {
   constructor(overlay) {
     this.overlay = overlay;
@@ -53,6 +55,6 @@ export function labelJoints(labels, camera, scene, readings) {
     const pose = link && scene.linkPose(body, joint + 1);
     if (!pose) continue;
     const angle = link.kind !== "prismatic";
-    labels.add(camera, pose.position, angle ? `${((position * 180) / Math.PI).toFixed(1)}°` : `${position.toFixed(4)} m`);
+    labels.add(camera, pose.position, angle ? `${fixed((position * 180) / Math.PI, 1)}°` : `${fixed(position, 4)} m`);
   }
 }

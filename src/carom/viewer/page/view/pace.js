@@ -22,16 +22,18 @@ export class Pace {
     this.durations = [];
     this.unchanged = 0;
     this.held = null;
+    /** Whether a picture is drawn that is saved, with all details. */
+    this.careful = false;
   }
 
-  /** Keeps the present resolution while `holding`, because a video cannot change its size. */
+  /** Keeps one resolution while `holding`, because a video cannot change its size: without a GPU the present one. */
   hold(holding) {
-    this.held = holding ? STEPS[this.step] : null;
+    this.held = holding ? (this.byProcessor ? STEPS[this.step] : 1) : null;
   }
 
   /** Whether nothing has moved for a while, so that there is time for all details. */
   get still() {
-    return this.unchanged > STILL_MS;
+    return this.careful || this.unchanged > STILL_MS;
   }
 
   /** Resolution scale of the next picture: drawn pixels per screen pixel, along an edge. */
