@@ -37,7 +37,7 @@ def describe(scene: Scene, model: CompiledModel) -> None:
 
 
 def _give_sites(bodies: Sequence[Body], model: CompiledModel) -> None:
-    """Add the sites of the file to the bodies whose links they are on; those of the world stay with the scene."""
+    """Add the sites of the file to the bodies with their links; those of the world stay with the scene."""
     places = {
         body.spec.link(index).name: (body, index)
         for body in reversed(bodies)
