@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class SavedLook:
     """Colours and texture of one shape; `texture` is an index into the saved textures, -1 for none.
 
-    `coloured` tells whether a file or a script has said the colour; in files of earlier versions it always has.
+    `coloured` tells whether a file or a script has said the colour; in files of earlier versions it has.
     """
 
     rgba: Rgba

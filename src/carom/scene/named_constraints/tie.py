@@ -10,6 +10,8 @@ import numpy as np
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, conjugate, inverse, multiplied, rotation_matrix
 from carom.layouts.codes import UserConstraintKind
+from carom.native.products import dots, length
+from carom.native.trigonometry import atan2
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -98,13 +100,13 @@ class Weld(Connect):
         """Angle between the axes of both frames [rad]."""
         first, second = self._frames()
         x, y, z, w = multiplied(conjugate(second.orientation), first.orientation)
-        return 2.0 * float(np.arctan2(np.linalg.norm((x, y, z)), abs(w)))
+        return 2.0 * atan2(length(np.array((x, y, z))), abs(w))
 
     @property
     def torque(self) -> np.ndarray:
         """Torque on the first link in the last substep, in world axes [N m], shape (3,); 0 while disabled."""
         first, _ = self._frames()
-        return np.array(rotation_matrix(first.orientation)) @ self._per_time()[3:]
+        return dots(np.array(rotation_matrix(first.orientation)), self._per_time()[3:])
 
 
 def _centre_frame(body: Body, link: int) -> Pose:

@@ -16,6 +16,7 @@ from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
+from carom.native.products import length
 
 _BUILT = ("joint", "connect", "weld")
 _WORLD = "world"
@@ -107,7 +108,7 @@ class EqualityReader:
         text = attributes.get("relpose")
         if text is not None:
             px, py, pz, w, i, j, k = context.numbers(element, "relpose", text, 7, 7)
-            size = float(np.linalg.norm((w, i, j, k)))
+            size = length(np.array((w, i, j, k)))
             if size > 0.0:
                 between = Pose((px, py, pz), (i / size, j / size, k / size, w / size))
         on_b = Pose((x, y, z))

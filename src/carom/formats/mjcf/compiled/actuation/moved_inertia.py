@@ -8,6 +8,7 @@ from carom.description import JointType
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, rotation_matrix
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
+from carom.native.products import dots
 
 
 def moved_inertia(body: CompiledBody, joint: CompiledJoint) -> float:
@@ -22,7 +23,7 @@ def moved_inertia(body: CompiledBody, joint: CompiledJoint) -> float:
             total += part.inertia.mass
             continue
         turn = np.array(rotation_matrix(frame.orientation))
-        arm = np.cross(axis, np.array(frame.position) + turn @ part.inertia.centre - anchor)
-        along = turn.T @ axis
-        total += float(along @ part.inertia.tensor @ along + part.inertia.mass * (arm @ arm))
+        arm = np.cross(axis, np.array(frame.position) + dots(turn, part.inertia.centre) - anchor)
+        along = dots(turn.T, axis)
+        total += float(dots(along, dots(part.inertia.tensor, along)) + part.inertia.mass * dots(arm, arm))
     return float(total)
