@@ -131,7 +131,11 @@ def resting_box() -> Body:
     rubber = ContactParameters(lateral_friction=0.5)
     x, y, z = inertia
     link = LinkSpec(
-        "base", mass=2.0, inertia=(x, y, z), collisions=(Collision(Box((a, b, c))),), contact=rubber
+        "base",
+        mass=2.0,
+        inertia=(x, y, z),
+        collisions=(Collision(Box((a / 2, b / 2, c / 2))),),
+        contact=rubber,
     )
     body = world.load(BodySpec("box", link, is_held=False, link_damping=0.0), (0.0, 0.0, 0.02))
     body.add_site("imu", -1, frame((0.02, 0.03, 0.01), (0.7, 0.1, 0.6, 0.2)))

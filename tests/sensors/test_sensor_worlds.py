@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
@@ -114,15 +113,28 @@ def test_keyframes_reset_bodies_and_chosen_worlds() -> None:
     worlds = Worlds(world, 3)
     worlds.step(5)
     worlds.reset_to("home", where=[False, True, False])
-    assert_array_equal(worlds[body].positions[1], [0.1, -0.2])
+    assert_array_equal(worlds[body].joint_positions[1], [0.1, -0.2])
     assert_array_equal(worlds[body].controls[:, 0], [0.0, 0.5, 0.0])
     assert worlds.times[1] == 2.0 and worlds.times[0] < 0.01
     world.step(5)
-    assert_array_equal(worlds[body].positions[0], body.joints.positions)
+    assert_array_equal(worlds[body].joint_positions[0], body.joints.positions)
     body.reset("home")
     assert_array_equal(body.joints.velocities, [1.0, 2.0])
     world.step(5)
     worlds.step(5)
-    assert_array_equal(worlds[body].positions[1], body.joints.positions)
+    assert_array_equal(worlds[body].joint_positions[1], body.joints.positions)
     with pytest.raises(KeyError, match="no keyframe 'away'; it has 'home'"):
         body.reset("away")
+
+
+def test_specifications_bring_sites_sensors_and_keyframes() -> None:
+    body = equipped()
+    body.add_keyframe(BodyKeyframe("home", positions=(0.3, 0.2), velocities=(1.0, -0.5)))
+    body.world.step(5)
+    other = World(H)
+    other.gravity = (0.0, 0.0, -9.81)
+    same = other.load(body.spec, (0.0, 0.0, 1.0))
+    same.reset("home")
+    other.step(5)
+    for name, shown in body.sensors.read().items():
+        assert_array_equal(same.sensors[name].read(), shown, err_msg=name)
