@@ -62,15 +62,17 @@ def add_bodies(
         for body in added:
             body.update_link_poses()
         world.update_soft_poses()
-        if any(spec.sensors for spec, _ in bodies):
-            _begin_to_measure(world, added)
+        begin_to_measure(world, added)
         if also is not None:
             also(added)
         undo.done()
     return added
 
 
-def _begin_to_measure(world: World, bodies: list[Body]) -> None:
+def begin_to_measure(world: World, bodies: list[Body]) -> None:
+    """Check the sensors of bodies that were added, and switch on what they need."""
+    if not any(body.spec.sensors for body in bodies):
+        return
     from carom.scene.sensors.changes import check_sensor, switch_on
 
     for body in bodies:

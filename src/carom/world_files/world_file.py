@@ -21,7 +21,7 @@ from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, Constrain
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
 from carom.scene.actuators.actuated_joint import actuated_joint
-from carom.scene.changes import append, note_additions
+from carom.scene.changes import append, begin_to_measure, note_additions
 from carom.scene.dynamics_changes import change_base_freedom, dynamics_change
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.link_dynamics import LinkDynamics
@@ -221,6 +221,7 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
                 world.user_constraints.next_id = saved.next_tie
                 _set_parameters(world, saved.parameters)
             world.scene_changed()
+            begin_to_measure(world, bodies)
             undo.done()
         return bodies
 

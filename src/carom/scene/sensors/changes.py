@@ -15,7 +15,6 @@ from carom.scene.handles import world_of
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
-from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.memory_rows import insert_memory
 from carom.scene.sensors.observer import SensorObserver
 
@@ -73,7 +72,7 @@ def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
         loaded_frame(body, spec)
     elif spec.object:
         object_frame(body, spec)
-        reference_frame(LoneSource(world), body, spec)
+        reference_frame(world.bodies, body, spec)
 
 
 def switch_on(world: World, bodies: list[Body]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -79,7 +80,7 @@ def object_frame(body: Body, spec: SensorSpec) -> Frame:
     return frame_of(body, spec.object_type, spec.object)
 
 
-def reference_frame(source: Source, body: Body, spec: SensorSpec) -> Frame | None:
+def reference_frame(bodies: Mapping[int, Body], body: Body, spec: SensorSpec) -> Frame | None:
     """The frame that it is seen from; None for the world.
 
     Raises:
@@ -88,7 +89,7 @@ def reference_frame(source: Source, body: Body, spec: SensorSpec) -> Frame | Non
     if spec.reference_type is SensorObject.NONE:
         return None
     if spec.reference_body:
-        found = [other for other in source.bodies.values() if other.name == spec.reference_body]
+        found = [other for other in bodies.values() if other.name == spec.reference_body]
         if len(found) != 1:
             raise DescriptionError(
                 f"sensor {spec.name!r}: {len(found)} bodies have the name {spec.reference_body!r} of its "

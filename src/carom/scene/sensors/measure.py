@@ -60,7 +60,7 @@ def _range(source: Source, body: Body, spec: SensorSpec) -> Array:
 
 def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
     place = placement(source, object_frame(body, spec))
-    reference = reference_frame(source, body, spec)
+    reference = reference_frame(source.bodies, body, spec)
     if reference is None:
         return place.position
     origin = placement(source, reference)
@@ -69,7 +69,7 @@ def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
 
 def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:
     turn = placement(source, object_frame(body, spec)).orientation
-    reference = reference_frame(source, body, spec)
+    reference = reference_frame(source.bodies, body, spec)
     return turn if reference is None else product(conjugate(placement(source, reference).orientation), turn)
 
 
@@ -83,7 +83,7 @@ def _axis(number: int) -> Measure:
 
 
 def _linear_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
-    frame, reference = object_frame(body, spec), reference_frame(source, body, spec)
+    frame, reference = object_frame(body, spec), reference_frame(source.bodies, body, spec)
     if reference is None:
         return motion(source, frame).linear
     position, velocity = placement(source, frame).position, motion(source, frame).linear
@@ -93,7 +93,7 @@ def _linear_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
 
 
 def _angular_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
-    frame, reference = object_frame(body, spec), reference_frame(source, body, spec)
+    frame, reference = object_frame(body, spec), reference_frame(source.bodies, body, spec)
     if reference is None:
         return motion(source, frame).angular
     angular = motion(source, frame).angular
