@@ -97,6 +97,42 @@ def test_excluded_bodies_do_not_collide(load):
     assert drops(load, "", "", '<contact><exclude body1="b" body2="world"/></contact>')
 
 
+def test_pairs_of_geoms_collide_whatever_their_bits_and_excluded_bodies_say(load):
+    pair = '<contact><exclude body1="b" body2="world"/><pair geom1="ball" geom2="floor"/></contact>'
+    off = 'contype="0" conaffinity="0"'
+    assert drops(load, f'name="ball" {off}', f'name="floor" {off}', pair) is False
+    assert drops(load, f'name="ball" {off}', f'name="floor" {off}') is True
+
+
+def test_a_pair_of_a_body_with_several_shapes_is_reported(load):
+    scene = load(
+        '<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/><body name="b" pos="0 0 1">'
+        '<freejoint/><geom name="ball" size=".1"/><geom size=".2"/></body></worldbody><contact>'
+        '<pair geom1="ball" geom2="floor" condim="1"/></contact></mujoco>'
+    )
+    assert [it.consequence for it in scene.ignored.that_matter] == [
+        "all geoms of both bodies collide",
+        "contacts and limits are Carom's own",
+    ]
+    with pytest.raises(DescriptionError, match="no geom 'no'"):
+        load(
+            '<mujoco><worldbody><geom name="a" size="1"/></worldbody><contact><pair geom1="a" geom2="no"/>'
+            "</contact></mujoco>"
+        )
+
+
+@pytest.mark.parametrize("joints", ["<freejoint/>", '<joint type="slide" axis="0 0 1"/>'])
+def test_gravity_is_compensated_by_its_share(load, joints):
+    scene = load(
+        f'<mujoco><worldbody><body name="b" gravcomp=".75">{joints}<geom size=".1"/></body></worldbody>'
+        "</mujoco>"
+    )
+    scene.world.gravity = (0, 0, -10)
+    scene.world.step(10)
+    velocity = scene[0].links["b"].velocity.linear[2]
+    assert_allclose(velocity, -0.25 * 10 * 10 * scene.world.parameters.time_step, rtol=1e-12)
+
+
 def overlapping(joint, flag=""):
     return (
         f'<mujoco>{flag}<worldbody><body name="a"><freejoint/><geom size=".2"/><body name="c" pos=".1 0 0">'

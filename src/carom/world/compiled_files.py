@@ -15,14 +15,15 @@ if TYPE_CHECKING:
 
 
 def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
-    """Put joints where the file has them, and let no links collide that MuJoCo keeps apart."""
+    """Put joints where the file has them, and let links collide or not as in MuJoCo."""
     for body in bodies:
         for index, link in enumerate(body.spec.links):
             start = model.starts.get(link.joint_name)
             if start is not None:
                 body.set_joint_state(index, [start], None)
-    for a, b in sorted(set(_kept_apart(bodies, model))):
-        bodies[0].world.contact_arrays.shapes.filters.set(a, b, enabled=False)
+    for pairs, enabled in ((model.excluded, False), (model.paired, True)):
+        for a, b in sorted(set(_rows_of(bodies, pairs))):
+            bodies[0].world.contact_arrays.shapes.filters.set(a, b, enabled=enabled)
 
 
 def describe(scene: Scene, model: CompiledModel) -> None:
@@ -49,15 +50,15 @@ def _give_sites(bodies: Sequence[Body], model: CompiledModel) -> None:
             body.add_site(site.name, link, site.frame, shape=site.kind, size=site.size)
 
 
-def _kept_apart(bodies: Sequence[Body], model: CompiledModel) -> Iterator[tuple[int, int]]:
-    """Rows of links with shapes that do not collide."""
+def _rows_of(bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]) -> Iterator[tuple[int, int]]:
+    """Rows of pairs of links with shapes, by the names of bodies."""
     rows: dict[str, int] = {}
     for body in bodies:
         for index in range(BASE, len(body.spec.links)):
             link = body.spec.link(index)
             if link.collisions:
                 rows[link.name] = body.first_link + 1 + index
-    for first, second in model.excluded:
+    for first, second in pairs:
         if first in rows and second in rows and first != second:
             a, b = rows[first], rows[second]
             yield (min(a, b), max(a, b))

@@ -65,6 +65,7 @@ _READ = {
     "connect": f"anchor {_EQUALITY}",
     "weld": f"anchor relpose {_EQUALITY}",
     "equality": "active class",
+    "pair": "class geom1 geom2 name",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
 }
@@ -89,6 +90,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ],
     ("general", "inheritrange", _LAW, _YET),
     *[(tag, "solimp solref", _RIGID, _YET) for tag in ("connect", "weld", "equality", "equality/joint")],
+    ("pair", "adhesion condim friction gap margin solimp solref solreffriction", _SOFT, _YET),
     ("weld", "torquescale", _RIGID, _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )
@@ -125,7 +127,6 @@ _ELEMENTS = (
     Rule("sensor/*", "there is no such sensor", _YET),
     Rule("tendon/*", "it does not pull", _YET),
     Rule("equality/*", "this constraint does not hold", _YET),
-    Rule("contact/pair", "the pair collides as its groups say", _YET),
     Rule("deformable/*", "it is missing", "flexes and skins are not built"),
     Rule("deformable/skin", _NO_LOSS, "skins are not drawn"),
     Rule("mujoco/extension", "plugins do not run", "plugins are programs of MuJoCo"),

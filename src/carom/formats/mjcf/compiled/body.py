@@ -36,6 +36,8 @@ class BodyReader:
         model: What has been read so far, apart from bodies.
         bodies: All bodies, without the world, in document order.
         elements: The walk through all elements of bodies.
+        geom_bodies: Name of the body of each geom, by name.
+        paired: Names of geoms, without prefixes, that collide in pairs whatever their bits say.
         missing_meshes: Geoms whose mesh is missing are left out and reported.
     """
 
@@ -43,6 +45,8 @@ class BodyReader:
         self.model = model
         self.bodies: list[CompiledBody] = []
         self.missing_meshes = missing_meshes
+        self.geom_bodies: dict[str, str] = {}
+        self.paired: set[str] = set()
         self.elements = Elements()
         self._meshes = Meshes()
         self._lines: dict[str, dict[str, int]] = {}
@@ -93,6 +97,7 @@ class BodyReader:
                     body.children.append(self._read_body(child, within, is_top=is_world))
                 case "geom":
                     if (geom := self._read_geom(child, within)) is not None:
+                        self.geom_bodies[geom.name] = body.name
                         geoms.append(geom)
                         body.contact = _contact(within, child, body.contact)
                 case "joint" | "freejoint":
@@ -115,7 +120,7 @@ class BodyReader:
         body.collisions = [
             Collision(geom.geometry, geom.frame, name=geom.name, group=geom.kinds[0], mask=geom.kinds[1])
             for geom in geoms
-            if geom.kinds != (0, 0)
+            if geom.kinds != (0, 0) or geom.is_paired
         ]
         if not is_world:
             self._set_inertia(element, scope, body, geoms, stated)
@@ -126,7 +131,9 @@ class BodyReader:
         if name:
             self._name("geom", element, scope, name)
         try:
-            return read_geom(scope, element, self._meshes)
+            geom = read_geom(scope, element, self._meshes)
+            is_paired = geom is not None and element.attributes.get("name") in self.paired
+            return replace(geom, is_paired=True) if geom is not None and is_paired else geom
         except MissingFile as problem:
             if not self.missing_meshes:
                 raise

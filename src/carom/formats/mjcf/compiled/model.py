@@ -201,6 +201,7 @@ class CompiledModel:
         joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
         starts: Positions of joints whose reference is not 0, by name.
         excluded: Pairs of bodies that don't collide with each other.
+        paired: Pairs of bodies that collide with each other whatever their groups say.
         options: Gravity, time step and other numbers and words of `<option>`, by name.
         sites: By name.
         cameras: By name.
@@ -216,6 +217,7 @@ class CompiledModel:
     joints: list[tuple[str, str, str]] = field(default_factory=list)
     starts: dict[str, float] = field(default_factory=dict)
     excluded: list[tuple[str, str]] = field(default_factory=list)
+    paired: list[tuple[str, str]] = field(default_factory=list)
     options: dict[str, Any] = field(default_factory=dict)
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)

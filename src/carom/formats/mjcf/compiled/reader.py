@@ -18,6 +18,7 @@ from carom.formats.mjcf.compiled.keyframe import read_keyframes
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
+from carom.formats.mjcf.compiled.pairs import paired_geoms, read_pairs
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.defaults import read_defaults
@@ -67,6 +68,7 @@ def compile_mjcf(
     for element in context.root.all("option"):
         read_option(context, element, model.options)
     reader = BodyReader(model, missing_meshes=missing_meshes)
+    reader.paired = paired_geoms(context)
     scope, whole = Scope(context), CompiledBody(WORLD, context.root)
     for world in context.root.all("worldbody"):
         whole = reader.read_world(world, scope)
@@ -92,6 +94,7 @@ def compile_mjcf(
     ActuatorReader(model, names).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
     EqualityReader(model, names, whole).read(scope)
+    read_pairs(model, names, scope, reader.geom_bodies, whole)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)

@@ -50,6 +50,7 @@ class Geom:
         mass: Its mass; None if it has none.
         group: The number of its group, for `inertiagrouprange`.
         kinds: Bits `contype` and `conaffinity`.
+        is_paired: A `<pair>` lets it collide whatever its bits.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Geom:
     mass: GeomMass | None
     group: int
     kinds: tuple[int, int]
+    is_paired: bool = False
 
 
 def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
