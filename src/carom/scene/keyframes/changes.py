@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
-from carom.scene.body import Body
 from carom.scene.handles import world_of
 from carom.scene.keyframes.state import captured, changes, check_keyframe, keyframe_of
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 def add_keyframe(body: Body, keyframe: BodyKeyframe | str) -> None:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.description.keyframe import BodyKeyframe
-from carom.scene.body import Body
 from carom.scene.handles import world_of
 from carom.scene.keyframes.changes import reset
 from carom.scene.keyframes.state import keyframe_of
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 class Keyframe:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.scene.body import Body
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 _QUATERNION = 4
 

@@ -11,12 +11,12 @@ from carom.description.sensor import SensorKind, SensorSpec
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
-from carom.model.sensor_rows import insert_memory
 from carom.scene.handles import world_of
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
 from carom.scene.sensors.observer import SensorObserver
+from carom.scene.sensors.rows import insert_memory
 
 if TYPE_CHECKING:
     from carom.scene.body import Body

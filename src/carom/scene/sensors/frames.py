@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from carom.description.pose import IDENTITY, Pose
 from carom.description.sensor import SensorObject, SensorSpec
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
-from carom.scene.body import Body
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, product, turned
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 class Frame(NamedTuple):

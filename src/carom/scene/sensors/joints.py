@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +11,11 @@ from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorSpec
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind, JointCode
-from carom.scene.body import Body
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import turned
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 _SINGLE = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 _OF_BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)

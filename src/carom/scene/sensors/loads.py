@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +12,13 @@ from carom.description.sensor import SensorKind, SensorSpec
 from carom.errors import DescriptionError
 from carom.layouts.codes import JointCode
 from carom.layouts.contacts import THERE
-from carom.scene.body import Body
 from carom.scene.sensors.frames import Frame, object_frame, placement
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, turned_back
 from carom.scene.sensors.volumes import is_touched
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 def loaded_frame(body: Body, spec: SensorSpec) -> Frame:

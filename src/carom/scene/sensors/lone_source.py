@@ -9,10 +9,10 @@ import numpy as np
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
-from carom.scene.body import Body
 from carom.scene.sensors.source import Source
 
 if TYPE_CHECKING:
+    from carom.scene.body import Body
     from carom.world.world import World
 
 

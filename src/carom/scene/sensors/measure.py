@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorSpec
-from carom.scene.body import Body
 from carom.scene.sensors.frames import motion, object_frame, placement, reference_frame
 from carom.scene.sensors.joints import OF_JOINTS
 from carom.scene.sensors.loads import OF_LOADS
@@ -16,7 +16,10 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.subtrees import OF_SUBTREES
 from carom.scene.sensors.vectors import conjugate, cross, product, turned, turned_back
 
-Measure = Callable[[Source, Body, SensorSpec], Array]
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+Measure = Callable[[Source, "Body", SensorSpec], Array]
 
 
 def measured(source: Source, body: Body, spec: SensorSpec) -> Array:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.description.sensor import OF_STEPS, POSITIVE, UNBOUNDED, SensorKind, SensorSpec
-from carom.scene.body import Body
 from carom.scene.sensors.frames import Motion, motion, object_frame, placement
 from carom.scene.sensors.measure import measured
 from carom.scene.sensors.memory import due, push, recall
 from carom.scene.sensors.noise import gaussian
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import turned_back
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 def reading(source: Source, body: Body, index: int) -> Array:

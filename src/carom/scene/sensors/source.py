@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
-from carom.scene.body import Body
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 class Source(ABC):

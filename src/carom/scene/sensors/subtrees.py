@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array
 from carom.description.sensor import SensorKind, SensorObject, SensorSpec
-from carom.scene.body import Body
 from carom.scene.sensors.frames import frame_of
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, turned, turned_back
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
 
 
 def _rows(body: Body, spec: SensorSpec) -> list[int]:
