@@ -81,7 +81,7 @@ def answers() -> list[Any]:
 
 
 @contextlib.contextmanager
-def ringing(handler: Callable[[], None], every: float = 3e-4) -> Iterator[list[int]]:
+def ringing(handler: Callable[[], object], every: float = 3e-4) -> Iterator[list[int]]:
     """Calls a handler from signals, again and again; gives the number of times."""
     rings, within = [0], [False]
 

@@ -55,6 +55,7 @@ class Own:
         assert (info[0], info[1]) == (joint, b"head_swivel"), info
         p.setJointMotorControl2(self.body, joint, p.POSITION_CONTROL, targetPosition=angle)
         states = p.getJointStates(self.body, range(p.getNumJoints(self.body)))
+        assert states is not None
         assert len(states) == 15
 
 

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-import mujoco
+import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
 from compiled_cases import CASES
 

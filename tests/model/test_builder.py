@@ -107,6 +107,7 @@ def test_coordinates_are_counted_by_joint_type():
         **{"tree": 1, "link": 6, "position": 7 + 9, "dof": 6 + 8, "block": 14 * 4, "delta": 4},
         "node": 0,
         "actuator": 0,
+        "sensor": 0,
     }
     model = arrays.model.numpy
     assert model["link_joint_type"][1:6].tolist() == [

@@ -10,7 +10,7 @@ call. What it breaks off, `carom.native.undo` repairs.
 
 from __future__ import annotations
 
-import _signal
+import _signal  # pyright: ignore[reportMissingImports]
 import gc
 import sys
 import threading

@@ -79,9 +79,10 @@ def _put_base(body: Body, part: _Part, q: list[float], v: list[float]) -> None:
         px, py, pz, w, x, y, z = q
         part.pose = Pose((px, py, pz), (x, y, z, w))
     if v:
-        turn = part.pose or body.links[BASE].pose
         x, y, z, wx, wy, wz = v
-        part.linear, part.angular = (x, y, z), rotate(turn.orientation, (wx, wy, wz))
+        turn = body.links[BASE].pose.orientation.tolist() if part.pose is None else part.pose.orientation
+        i, j, k, w = turn
+        part.linear, part.angular = (x, y, z), rotate((i, j, k, w), (wx, wy, wz))
 
 
 def _of_actuators(

@@ -80,7 +80,7 @@ def told() -> list[Any]:
                 p.getBasePositionAndOrientation(body),
                 p.getBaseVelocity(body),
                 [p.getJointStateMultiDof(body, joint)[:2] for joint in joints],
-                [p.getLinkState(body, joint, 1)[:8] for joint in joints],
+                [(p.getLinkState(body, joint, 1) or ())[:8] for joint in joints],
             ]
         )
     return answers

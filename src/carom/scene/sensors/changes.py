@@ -15,8 +15,8 @@ from carom.scene.handles import world_of
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
-from carom.scene.sensors.memory_rows import insert_memory
 from carom.scene.sensors.observer import SensorObserver
+from carom.scene.sensors.rows import insert_memory
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
