@@ -24,7 +24,8 @@ def test_a_dark_theme_follows_the_system(page: Page):
 
 @needs_browser
 def test_bodies_of_one_name_are_told_apart_by_their_files(page: Page, tmp_path: Path):
-    text = Path(DATA, "cube_small.urdf").read_text()
+    visual = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
+    text = f'<robot name="ball"><link name="base">{visual}</link></robot>'
     for name in ("left.urdf", "right.urdf"):
         (tmp_path / name).write_text(text)
         p.loadURDF(str(tmp_path / name))
