@@ -155,6 +155,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         "type": "body",
         "body": body.id,
         "name": body.name,
+        "file": None if body.spec.source is None else body.spec.source.name,
         "links": [
             {**_link(body, link), "moves": moves} for link, moves in enumerate(moving_links(body), start=BASE)
         ],

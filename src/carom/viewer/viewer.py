@@ -124,7 +124,7 @@ class Viewer:
         self._last_words = LastWords(self._board, lambda: self._server)
         self._feed = SceneFeed(world, self.lock, self._board)
         self.previews: Previews = Previews(self._board)
-        self._picking = Picking(world, self.lock)
+        self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
         self._details = Details(world, self.lock, self._board)
         self._sleeping = Sleeping(world)
         self._values: dict[str, float] = {}
@@ -166,7 +166,8 @@ class Viewer:
         if token is None:
             # With the user's own token an open page can reconnect to the next script. Addresses for other
             # machines are valid for one script only.
-            token = user_token() if is_loopback(host) else fresh_token()
+            # So are those in notebooks, whose outputs are saved and passed on.
+            token = user_token() if is_loopback(host) and not in_notebook() else fresh_token()
         access = Access(host, token, named)
 
         def receive(page: int, told: dict[str, Any]) -> None:

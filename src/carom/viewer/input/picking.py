@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Pose
 from carom.description.pose import Vector3
+from carom.description.transform import compose
 from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BASE
 from carom.scene.joint_constraints import moving_links
@@ -46,9 +48,13 @@ class _Hand:
 
 
 class Picking:
-    """The pulls of all pages. For use by one thread; only `apply` changes the world, under its lock."""
+    """The pulls of all pages. For use by one thread; only `apply` changes the world, under its lock.
 
-    def __init__(self, world: World, lock: Any) -> None:
+    While the simulation is `paused`, bodies with a free base are moved at once; their velocity stays.
+    """
+
+    def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:
+        self._paused = paused
         self._world = world
         self._world_lock = lock
         self._picking: dict[int, _Hand] = {}
@@ -95,6 +101,17 @@ class Picking:
                 self._world.untie(tie)
         self._released.clear()
 
+    def _carry(self, hand: _Hand) -> None:
+        """Moves a body with a free base so that the pulled point is at the mouse."""
+        body = self._world.bodies[hand.body]
+        if body.fixed_base or body.spec.soft is not None:
+            return
+        base, *_ = poses = self._world.link_pose[body.first_link : body.first_link + 1 + body.joint_count]
+        held = Pose(tuple(poses[hand.link - BASE][:3]), tuple(poses[hand.link - BASE][3:]))
+        point = compose(held, Pose(hand.point, _NO_TURN)).position
+        position = [float(base[i]) + hand.target[i] - point[i] for i in range(3)]
+        body.set_base_pose(position, base[3:].tolist())
+
     def _hold(self, hand: _Hand) -> bool:
         """Updates the constraint of a pull; false if the body or link no longer exists."""
         world = self._world
@@ -103,6 +120,8 @@ class Picking:
                 return False
             hand.tie.child_frame = Pose(hand.target, _NO_TURN)
             world.user_constraints.write(world.contact_arrays, world.arrays.state)
+            if hand.moved and self._paused():
+                self._carry(hand)
             hand.moved = False
             return True
         body = world.bodies.get(hand.body)

@@ -37,13 +37,15 @@ export class Bodies {
   /** Updates the list of bodies. */
   offer() {
     const bodies = [...this.scene.bodies.values()];
-    const known = JSON.stringify(bodies.map(({ body, name, links }) => [body, name, links.length]));
+    const known = JSON.stringify(bodies.map(({ body, name, links, file }) => [body, name, links.length, file]));
+    const shared = (wanted) => bodies.filter(({ name }) => name === wanted).length > 1;
     if (known === this.known) return;
     this.known = known;
     document.getElementById("bodies-count").textContent = bodies.length;
     this.list.replaceChildren(
-      ...bodies.slice(0, MOST_LISTED).map(({ body, name }) => {
-        const button = Object.assign(document.createElement("button"), { textContent: `${body}  ${name}` });
+      ...bodies.slice(0, MOST_LISTED).map(({ body, name, file }) => {
+        const text = `${body}  ${name}${file && shared(name) ? ` (${file})` : ""}`;
+        const button = Object.assign(document.createElement("button"), { textContent: text, title: text });
         button.dataset.body = body;
         button.addEventListener("click", () => this.select(body === this.selected ? null : body));
         const row = document.createElement("div");
