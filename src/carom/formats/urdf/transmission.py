@@ -17,7 +17,7 @@ _SIMPLE = "SimpleTransmission"
 
 
 def read_transmissions(context: FileContext, joints: Sequence[Joint]) -> tuple[ActuatorSpec, ...]:
-    """The motors that simple transmissions of a robot describe: the joint feels the reduction times the force.
+    """The motors of simple transmissions of a robot: the joint feels the reduction times the force.
 
     Their force is bounded so that the joint gets at most its effort limit. A transmission without a
     reduction is one of 1. Transmissions of other kinds are reported.
