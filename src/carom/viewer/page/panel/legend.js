@@ -1,6 +1,6 @@
 // The legend of arrows, over the view: how many newtons an arrow of the drawn length is.
 
-import { niceScale } from "../view/arrow_scale.js";
+import { niceScale } from "../view/arrows/arrow_scale.js";
 
 /** Length of the legend's arrow, at least [pixels]. */
 const LEAST_PIXELS = 36;

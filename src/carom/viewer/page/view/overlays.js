@@ -2,10 +2,10 @@
 
 import { add, scale, turned } from "./maths.js";
 import { boundsOfBody, boundsOfLink } from "./bounds.js";
-import { ArrowScale } from "./arrow_scale.js";
+import { ArrowScale } from "./arrows/arrow_scale.js";
 import { addContacts, addJoints } from "./forces.js";
 import { Lines } from "./lines.js";
-import { Solids } from "./solids.js";
+import { Solids } from "./arrows/solids.js";
 
 const AXES = [
   [1, 0, 0],

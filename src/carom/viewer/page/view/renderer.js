@@ -5,7 +5,7 @@ import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
 import { Pace } from "./pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
-import { SolidBatch } from "./solid_batch.js";
+import { SolidBatch } from "./arrows/solid_batch.js";
 import { Surfaces } from "./surfaces.js";
 
 const GRID_EXTENT = 60;

@@ -1,6 +1,6 @@
 // Solid arrows, rods and cones on the GPU: one mesh, drawn as instances, over everything else.
 
-import { Program } from "./gpu.js";
+import { Program } from "../gpu.js";
 import { SOLID_FLOATS } from "./solids.js";
 
 const SIDES = 14;

@@ -1,6 +1,6 @@
 // Solid arrows, rods and cones for forces and torques: the numbers of each, in one array that grows.
 
-import { add, cross, scale } from "./maths.js";
+import { add, cross, scale } from "../maths.js";
 
 /** Start, vector, colour with alpha, radius of the shaft, radius and length of the head. */
 export const SOLID_FLOATS = 13;
