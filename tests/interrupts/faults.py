@@ -12,6 +12,7 @@ from typing import Any
 
 import carom
 import pybullet
+from carom.native import uninterrupted
 
 # Python 3.13 does not report the instructions of a function's first call that is traced, only its lines.
 _LINES = sys.version_info >= (3, 13)
@@ -40,30 +41,34 @@ class Fuse:
 
     def blow(self, call: Callable[[], Any]) -> Any:
         """Make the call; raises the fault, and whatever the call raises."""
-        before = sys.gettrace()
+        state = uninterrupted._State
+        before, state.keeps_tracing = sys.gettrace(), True
         sys.settrace(self._trace)
         try:
             return call()
         finally:
             sys.settrace(before)
+            state.keeps_tracing = False
 
     def _trace(self, frame: FrameType, event: str, _argument: Any) -> Any:
-        if not frame.f_code.co_filename.startswith(_OURS):
+        file = frame.f_code.co_filename
+        if not file.startswith(_OURS) or file == uninterrupted.__file__:
             return None
         frame.f_trace_opcodes, frame.f_trace_lines = True, _LINES
         # Instructions without a line are those that end a `with` block or an exception.
         line: int | None = frame.f_lineno
         if event == "call" or not line:
             return self._trace
-        if not _enters_or_leaves_a_context(frame.f_code.co_filename, line):
+        if not _enters_or_leaves_a_section(file, line):
             self.count += 1
             if self.count == self._place:
-                self.where = f"{frame.f_code.co_filename}:{line}"
+                self.where = f"{file}:{line}"
                 raise Fault
         return self._trace
 
 
 @cache
-def _enters_or_leaves_a_context(file: str, line: int) -> bool:
+def _enters_or_leaves_a_section(file: str, line: int) -> bool:
     """Whether signals cannot come there: Python lets no handler run between a lock and its `with` block."""
-    return linecache.getline(file, line).lstrip().startswith("with ")
+    code = linecache.getline(file, line).strip()
+    return code.startswith("with ") or code in ("begin()", "end()")

@@ -30,9 +30,8 @@ class Undo:
     def __init__(self) -> None:
         self._steps: list[Callable[[], None]] = []
 
-    def __enter__(self) -> Undo:
+    def __enter__(self) -> None:
         begin()
-        return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None

@@ -55,8 +55,11 @@ class _State:
     keeps_tracing = False
 
 
-def begin() -> None:
+def begin() -> int:
     """Begin a section; sections may be nested.
+
+    Returns:
+        The number of sections that the thread was in before.
 
     Raises:
         BaseException: What the handler of a signal raises that came before; the section has not begun.
@@ -65,7 +68,7 @@ def begin() -> None:
     depth = _State.depths.get(thread, 0)
     _State.depths[thread] = depth + 1
     if depth:
-        return
+        return depth
     try:
         if thread == threading.main_thread().ident:
             _put_handlers_aside()
@@ -79,18 +82,24 @@ def begin() -> None:
     except BaseException:
         _finish(thread)
         raise
+    return depth
 
 
-def end() -> None:
+def end(outside: int | None = None) -> None:
     """End a section; at the end of the outermost one, call the handlers of signals that have come in it.
+
+    Args:
+        outside: What `begin` returned. Then it can be repeated, and ends sections inside, too: Ctrl-C may come
+            when their end has been called and has done nothing yet.
 
     Raises:
         BaseException: What a handler raises.
     """
     thread = get_ident()
-    depth = _State.depths[thread]
-    if depth > 1:
-        _State.depths[thread] = depth - 1
+    if outside is None:
+        outside = _State.depths[thread] - 1
+    if outside:
+        _State.depths[thread] = outside
         return
     try:
         _finish(thread)

@@ -146,7 +146,8 @@ def tie(world: World, constraint: UserConstraint) -> UserConstraint:
         users.take_back(constraint, numbers)
         world.constraints_changed()
 
-    with world.undo as undo:
+    undo = world.undo
+    with undo:
         undo.settle()
         undo.note(go_back)
         users.put(constraint)

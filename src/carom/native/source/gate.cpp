@@ -74,26 +74,46 @@ bool forget_error() {
     return true;
 }
 
+// False with an error if a handler raised one. Ctrl-C may come before the function has done anything, so it is called
+// once more then.
+bool end_of_section(PyObject* outside) {
+    PyObject* arguments = python.PyTuple_New(1);
+    if (!arguments) {
+        python.Py_DecRef(outside);
+        return false;
+    }
+    python.PyTuple_SetItem(arguments, 0, outside);
+    PyObject* ended = python.PyObject_CallObject(end_section, arguments);
+    if (!ended) {
+        const PutAside error;
+        PyObject* repeated = python.PyObject_CallObject(end_section, arguments);
+        if (repeated)
+            python.Py_DecRef(repeated);
+        else
+            python.PyErr_Clear();
+    }
+    python.Py_DecRef(arguments);
+    if (ended)
+        python.Py_DecRef(ended);
+    return ended;
+}
+
 // What interrupted the call happens at its end, after the lock has been given back.
 PyObject* change(Gate& gate, PyObject* function, Arguments arguments, intptr_t count, PyObject* names) {
-    PyObject* result = nullptr;
+    PyObject *result = nullptr, *outside = nullptr;
     {
         const Inside inside(gate);
         if (inside.outcome != ENTERED)
             return nullptr;
         ++gate.calls;
-        PyObject* begun = python.PyObject_CallObject(begin_section, nullptr);
-        if (!begun)
+        outside = python.PyObject_CallObject(begin_section, nullptr);
+        if (!outside)
             return nullptr;
-        python.Py_DecRef(begun);
         result = python.PyObject_Vectorcall(function, arguments, count, names);
     }
     PutAside error;
-    PyObject* ended = python.PyObject_CallObject(end_section, nullptr);
-    if (ended) {
-        python.Py_DecRef(ended);
+    if (end_of_section(outside))
         return result;
-    }
     error.drop();
     if (result)
         python.Py_DecRef(result);
