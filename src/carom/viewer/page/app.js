@@ -221,6 +221,8 @@ export class App {
   /** The user has set a display option, which is kept for the next run of the script. */
   optionSet(name) {
     this.memory.put("switches", { ...this.memory.get("switches"), [name]: this.options[name] });
+    // The script has started: what it sets from now on counts.
+    this.switchesToRecall = false;
     this.optionsChanged();
   }
 
