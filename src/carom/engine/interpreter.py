@@ -8,43 +8,17 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import partial
-from typing import Any, ClassVar, Protocol
+from itertools import accumulate, chain
+from typing import Protocol
 
 import numpy as np
 
 from carom.engine.program import Program
+from carom.layouts.programs import Program as ProgramRecord
+from carom.layouts.programs import Run
 from carom.native.library import library
 
-# Count of numbers before the launches of a program: address of the first world's status, bytes from one
-# status to the next, and the ends of the five parts.
-_HEADER = 7
-# Count of numbers of a launch: addresses of the function, of the bounds, of the arguments, and of two of
-# these arguments: the world and the number of substeps, 0 if it has none.
-_PER_LAUNCH = 5
-# More launches than in any program.
-_MOST_LAUNCHES = 32
-
 ALL_SUBSTEPS = 2**31 - 1
-
-
-class _Run(ctypes.Structure):
-    """The arguments of a run."""
-
-    _fields_: ClassVar[Any] = [
-        ("program", ctypes.c_void_p),  # the launches, as `Interpreter` writes them
-        ("worlds", ctypes.c_void_p),  # indices of the worlds
-        # Substeps of each step; if it is 0, contacts are found and nothing moves.
-        ("due", ctypes.c_void_p),
-        ("counter", ctypes.c_void_p),  # index in `worlds` of the next chunk, if threads share them
-        ("world_count", ctypes.c_int32),
-        ("step_count", ctypes.c_int32),
-        ("chunk", ctypes.c_int32),  # number of worlds in a chunk
-        ("resumed", ctypes.c_int32),  # 1: continue after the steps that each world has already done
-        ("first_substep", ctypes.c_int32),  # if it is not 0, the step has already begun
-        ("end_substep", ctypes.c_int32),  # the step is ended only after its last substep
-        # 1: a step that fails is undone completely, whatever the reason, for another attempt.
-        ("repeatable", ctypes.c_int32),
-    ]
 
 
 class Stepper(Protocol):
@@ -65,7 +39,7 @@ class Stepper(Protocol):
         ...
 
     def ask(self, **asked: int) -> None:
-        """Set numbers of `_Run` for all later runs."""
+        """Set numbers of `Run` for all later runs."""
         ...
 
 
@@ -82,13 +56,12 @@ class Interpreter(Stepper):
     def __init__(
         self, status: np.ndarray, worlds: np.ndarray, due: np.ndarray, counter: np.ndarray | None
     ) -> None:
-        self._status = status
-        self._numbers = np.zeros(_HEADER + _PER_LAUNCH * _MOST_LAUNCHES, dtype=np.int64)
+        self._record = ProgramRecord(status=status.ctypes.data, status_stride=status.strides[0])
         self.program = Program([], [], [], [], [])
         # The memory that a run points to has to be kept alive.
-        self._kept = (worlds, due, counter)
-        self._asked = _Run(
-            self._numbers.ctypes.data,
+        self._kept = (status, worlds, due, counter)
+        self._asked = Run(
+            ctypes.addressof(self._record),
             worlds.ctypes.data,
             due.ctypes.data,
             None if counter is None else counter.ctypes.data,
@@ -105,12 +78,10 @@ class Interpreter(Stepper):
         # Launches are updated in place when arrays move, so they usually stay the same.
         if program == self.program:
             return
-        ends = np.cumsum([len(part) for part in program])
-        numbers: list[int] = [self._status.ctypes.data, self._status.strides[0], *ends.tolist()]
-        for part in program:
-            for launch in part:
-                numbers.extend(launch.addresses("first_world", "substeps"))
-        self._numbers[: len(numbers)] = numbers
+        self._record.part_ends[:] = list(accumulate(map(len, program)))
+        for record, launch in zip(self._record.launches, chain.from_iterable(program), strict=False):
+            *call, record.first_world, record.substeps = launch.addresses("first_world", "substeps")
+            record.call.function, record.call.bounds, record.call.arguments = call
         self.program = program
 
     def ask(self, **asked: int) -> None:  # noqa: D102

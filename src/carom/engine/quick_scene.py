@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.layouts.quick_world import DAMPING, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
-from carom.native.quick_calls import DAMPING, REPORT_ARRAYS, REPORT_SCALARS, SURFACE, Launch, Scene
 
 if TYPE_CHECKING:
     from ctypes import c_double
@@ -68,8 +68,8 @@ class QuickScene:
         """Forget all addresses: the world has changed."""
         if self._is_empty:
             return
-        self.record.find_poses.function = None
-        self.record.find_twists.function = None
+        self.record.find_poses.call.function = None
+        self.record.find_twists.call.function = None
         self.pause_step()
         self._run, self._stepped = None, ()
         self.forget_queries()
@@ -86,7 +86,7 @@ class QuickScene:
 
     def forget_queries(self) -> None:
         """Forget the addresses for queries of contacts and shapes, which will be replaced."""
-        self.record.report.function = None
+        self.record.report.call.function = None
         self.record.placement.place.function = None
         self.record.placement.changes = -1
         self.record.nearest.search.function = None
@@ -115,7 +115,7 @@ class QuickScene:
         """Set the addresses that depend on these structs only, and return their launch."""
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
         self.record.surface_names[:] = [id(name) for name in _NAMES]
-        self.record.damping[:] = [getattr(model, field).data for field in DAMPING]
+        self.record.damping[:] = [getattr(model, field).data for field in DAMPING.values()]
         self.record.mass, self.record.inertia = model.link_mass.data, model.link_inertia.data
         self.record.mass_name, self.record.inertia_name = id(_MASS), id(_INERTIA)
         self.record.fixed_base_name = id(_FIXED_BASE)
@@ -183,7 +183,7 @@ class QuickScene:
         """Set the addresses that list contacts.
 
         Args:
-            question: The query, whose arrays are a `ContactReport`.
+            question: The query, whose arrays are a `layouts.queries.ContactReport`.
             there: Address of the number of contacts.
             keep: The object that this address points to.
         """
@@ -191,14 +191,14 @@ class QuickScene:
         launch = question.launch
         self.keep(launch, report, keep)
         record = self.record.report
-        # The function last: without it the other addresses are not used.
-        function, record.bounds, record.arguments, *asked = launch.addresses(*REPORT_SCALARS)
-        for name, address in zip(REPORT_SCALARS, asked, strict=True):
-            setattr(record, f"asked_{name}", address)
-        for name in REPORT_ARRAYS:
-            setattr(record, f"found_{name}", getattr(report, f"report_{name}").data)
+        function, record.call.bounds, record.call.arguments, *asked = launch.addresses(*ContactQuery.fields)
+        for name, address in zip(ContactQuery.fields, asked, strict=True):
+            setattr(record.asked, name, address)
+        for name in ContactColumns.fields:
+            setattr(record.found, name, getattr(report, f"report_{name}").data)
         record.there, record.room = there, question.room
-        record.function = function
+        # Last: without it the other addresses are not used.
+        record.call.function = function
 
     @property
     def address(self) -> int:
@@ -206,7 +206,7 @@ class QuickScene:
         return addressof(self.record)
 
 
-def _know(record: Launch, launch: TreeLaunch) -> None:
+def _know(record: TreeCall, launch: TreeLaunch) -> None:
     # The function last: without it the other addresses are not used.
-    function, record.bounds, record.arguments, record.tree = launch.addresses()
-    record.function = function
+    function, record.call.bounds, record.call.arguments, record.tree = launch.addresses()
+    record.call.function = function

@@ -139,5 +139,8 @@ ALONE, FIRST_PART, OTHER_PART = map(int, Part)
 FREE_MOTION = 0
 CONSTRAINT_FEEDBACK = 1
 
+# Frames of external forces; the values are PyBullet's.
+LINK_FRAME, WORLD_FRAME = 1, 2
+
 # Bits of `LinkModel.sensor`: Bullet's force-torque sensor, and what sensors of sites need.
 SENSED, LOADED = 1, 2

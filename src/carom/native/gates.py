@@ -1,6 +1,6 @@
 """Locks of worlds in the native library: builtins take them without a line of Python.
 
-`native/source/gate.h` has the same struct, and describes how they work.
+`native/source/gate.h` describes how they work.
 """
 
 from __future__ import annotations
@@ -10,18 +10,10 @@ from _thread import allocate_lock
 from collections.abc import Callable
 from typing import Any
 
+from carom.layouts.gates import Gate
+
 # Builds `(name, address of the C code, self) -> builtin`.
 BuiltinMaker = Callable[[str, int, Any], Any]
-
-
-class Gate(ctypes.Structure):
-    """The state of a lock; on the objects at `wait` and `wake` threads wait for it."""
-
-    _fields_ = (
-        ("owner", ctypes.c_uint64),
-        *((name, ctypes.c_int64) for name in ("depth", "calls", "waiting", "is_woken")),
-        *((name, ctypes.c_void_p) for name in ("wait", "wake")),
-    )
 
 
 class GateLock:

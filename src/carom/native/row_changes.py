@@ -1,7 +1,7 @@
 """Rows of all arrays of one table or several, put in and taken out by one native call each.
 
-The functions are in `native/source/table_rows.cpp`, which has the same structs. They are called with the GIL
-held, so no signal handler runs between the first array and the last.
+The functions are in `native/source/table_rows.cpp`. They are called with the GIL held, so no signal handler
+runs between the first array and the last.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from struct import Struct
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from carom.layouts.table_rows import RowField, RowReference, RowTable
 
 
 class RowsOfAxis(NamedTuple):
@@ -44,24 +46,6 @@ class RowNumbers(NamedTuple):
     array: np.ndarray
 
 
-def _fields(names: str) -> tuple[tuple[str, Any], ...]:
-    """Fields of a struct: an address where a `*` follows the name, else an integer of 64 bits."""
-    kinds = ((name, ctypes.c_void_p if "*" in name else ctypes.c_int64) for name in names.split())
-    return tuple((name.rstrip("*"), kind) for name, kind in kinds)
-
-
-class _Field(ctypes.Structure):
-    _fields_ = _fields("memory* worlds world_bytes row_bytes axis")
-
-
-class _Reference(ctypes.Structure):
-    _fields_ = _fields("memory* row_bytes numbers axis target")
-
-
-class _Table(ctypes.Structure):
-    _fields_ = _fields("fields* references* field_count reference_count")
-
-
 class RowChanges:
     """Changes of the rows of tables, valid until one of their arrays is replaced.
 
@@ -74,19 +58,19 @@ class RowChanges:
         place = {axis: number for number, axis in enumerate(self._axes)}
         self._zeros = (0,) * len(self._axes)
         self._fields = fields
-        field_records = (_Field * len(fields))()
+        field_records = (RowField * len(fields))()
         for record, (axis, array, per_world) in zip(field_records, fields, strict=True):
             row_bytes = array.itemsize * prod(array.shape[1 + per_world :])
             record.memory, record.axis, record.row_bytes = array.ctypes.data, place[axis], row_bytes
             record.worlds = array.shape[0] if per_world else 1
             record.world_bytes = row_bytes * array.shape[1] if per_world else 0
-        reference_records = (_Reference * len(references))()
+        reference_records = (RowReference * len(references))()
         for record, (axis, target, array) in zip(reference_records, references, strict=True):
             record.memory, record.row_bytes = array.ctypes.data, array.strides[0]
             record.numbers = prod(array.shape[1:])
             record.axis, record.target = place[axis], place[target]
         records = field_records, reference_records
-        table = _Table(*map(ctypes.addressof, records), *map(len, records))
+        table = RowTable(*map(ctypes.addressof, records), *map(len, records))
         self._kept = *records, table
         self._table = ctypes.addressof(table)
         self._pack = Struct(f"{len(self._axes)}q").pack

@@ -89,8 +89,8 @@ def end(outside: int | None = None) -> None:
     """End a section; at the end of the outermost one, call the handlers of signals that have come in it.
 
     Args:
-        outside: What `begin` returned. Then it can be repeated, and ends sections inside, too: Ctrl-C may come
-            when their end has been called and has done nothing yet.
+        outside: What `begin` returned. Then it can be repeated, and ends sections inside, too: Ctrl-C may
+            come when their end has been called and has done nothing yet.
 
     Raises:
         BaseException: What a handler raises.

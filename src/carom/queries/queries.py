@@ -18,6 +18,7 @@ from carom.engine.quick_scene import QuickScene
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
 from carom.layouts.contacts import IN_HIERARCHY, OVERLAPS, PLACED, READINESS, THERE
+from carom.layouts.magnitudes import MAX_DISTANCE
 from carom.model.bounds import Bounds, turned_box
 from carom.native.kernels import link_poses_kernel, place_shapes_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
 # Value of `placement.changes` if no shapes have been placed.
 NEVER = -1
-# A distance that means unlimited [m].
-_FAR = 1e30
 
 
 class Queries:
@@ -173,7 +172,7 @@ class Queries:
         if not pairs.links:
             return []
         self._prepare(PLACED)
-        return self._search(pairs, min(max_distance, _FAR))
+        return self._search(pairs, min(max_distance, MAX_DISTANCE))
 
     def contacts(
         self, body_a: int, link_a: int, body_b: int, link_b: int, time_step: float

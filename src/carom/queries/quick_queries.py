@@ -11,9 +11,9 @@ import numpy as np
 
 if TYPE_CHECKING:
     from carom.engine.quick_scene import QuickScene
+    from carom.layouts.programs import KernelCall
     from carom.model.shape_arrays import ShapeArrays
     from carom.native.launch import Launch
-    from carom.native.quick_calls import KernelCall
     from carom.native.tables import ArrayTable
     from carom.queries.question import Question
 

@@ -22,6 +22,7 @@ from carom.layouts.codes import (
     SENSED,
     Activity,
 )
+from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.tables import NUMPY_REAL
@@ -41,8 +42,6 @@ if TYPE_CHECKING:
     from carom.scene.sensors.site import BodySites
     from carom.world.world import World
 
-# Largest rounding error of the squared length of a unit quaternion.
-ROUNDING = 1e-15
 _NUMBER = np.dtype(NUMPY_REAL)
 _POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 
@@ -277,7 +276,7 @@ class Body:
         x, y, z, w = orientation
         squared = x * x + y * y + z * z + w * w
         # A pose that was read and is written back must not change in the last digit.
-        scale = 1.0 if abs(squared - 1.0) < ROUNDING else 1.0 / sqrt(squared)
+        scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
         _POSE.pack_into(
             self.world.position_memory,
             self.first_position * _NUMBER.itemsize,

@@ -35,6 +35,7 @@ from carom.layouts.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
+from carom.layouts.magnitudes import LEAST_PD_FORCE
 from carom.layouts.motor_commands import MODES, PD, POSITION, TORQUE, VELOCITY
 
 if TYPE_CHECKING:
@@ -42,8 +43,6 @@ if TYPE_CHECKING:
 
 _DOUBLE = 8
 _COLUMNS = 8
-# A PD drive with a smaller maximum force is switched off.
-_LEAST_PD_FORCE = 1.1920928955078125e-07
 
 # The first columns of a motor's row are written at once. A PD drive has the same ones; its bound is a force.
 assert (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD) == (0, 1, 2, 3)
@@ -225,7 +224,7 @@ class AxisMotor(JointMotor):
         elif mode == TORQUE:
             self._torques[self._dof] += force
         elif mode == PD:
-            bound = force if force >= _LEAST_PD_FORCE else 0.0
+            bound = force if force >= LEAST_PD_FORCE else 0.0
             _write_target(self._pd, self._row_at, self._within_limits(position), velocity, kp, kd, bound)
         else:
             super().command(mode, position, velocity, force, kp, kd, clamp)

@@ -21,9 +21,9 @@ from carom.layouts.motor_commands import (
     VELOCITY,
     MotorCommands,
 )
+from carom.layouts.quick_bodies import MotorGroup as Record
 from carom.native.kernels import command_motors_kernel
 from carom.native.launch import Launch
-from carom.native.quick_calls import MotorGroup as Record
 from carom.native.tables import NUMPY_REAL, ArrayTable
 
 if TYPE_CHECKING:

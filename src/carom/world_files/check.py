@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom.description import ConvexHull, Geometry, Heightfield, Pose, TriangleMesh
-from carom.formats.robot.context import MAX_MAGNITUDE
+from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.model.body_spec import BodySpec
 from carom.model.soft_spec import SoftSpec
 

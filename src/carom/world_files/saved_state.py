@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.formats.robot.context import MAX_MAGNITUDE
 from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
+from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.scene.snapshot import BodyLayout, Layout, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader
 

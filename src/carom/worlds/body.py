@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.scene.body import ROUNDING
+from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
@@ -84,7 +84,7 @@ class BodyBatch(JointBatch, ActuatorBatch, SensorBatch):
         if not squared.all():
             raise ValueError("orientations must be quaternions other than 0")
         # A pose that was read and is written back must not change in the last digit, as in a single world.
-        scale = np.where(abs(squared - 1.0) < ROUNDING, 1.0, 1.0 / np.sqrt(squared))
+        scale = np.where(abs(squared - 1.0) < UNIT_ROUNDING, 1.0, 1.0 / np.sqrt(squared))
         self.base_poses[worlds.rows] = np.concatenate([position, turn * scale], axis=1)
         self._engine.contact_arrays.forget_warm_start(worlds.numbers)
 

@@ -18,7 +18,7 @@ from pybullet._maths.rotations import canonical, turned
 if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
     from carom.algorithms.mechanism import Mechanism
-    from carom.native.quick_calls import Body as Record
+    from carom.layouts.quick_bodies import Body as Record
     from carom.scene.body import Body
     from pybullet._bodies.link_box import LinkBox, SoftBox
     from pybullet._bodies.quick_bodies import QuickBodies
@@ -121,7 +121,7 @@ class BodyAccess:
         """Let the native library handle the next changes of a link's mass; -1 is the base."""
         if self.record is None:
             return
-        from carom.native.quick_calls import Moments
+        from carom.layouts.quick_bodies import Moments
         from carom.scene.dynamics_changes import shape_terms
         from pybullet._bodies.quick_bodies import write_moments
 

@@ -12,7 +12,17 @@ from collections.abc import Collection
 from ctypes import Array, addressof, c_void_p
 from typing import TYPE_CHECKING, Any
 
-from carom.native.quick_calls import Body, Box, Client, Joint, Link, Moments
+from carom.layouts.quick_bodies import (
+    MOTOR_NUMBERS,
+    POSE_NUMBERS,
+    SPATIAL_NUMBERS,
+    Body,
+    Box,
+    Client,
+    Joint,
+    Link,
+    Moments,
+)
 
 if TYPE_CHECKING:
     from carom.model.inertia import MassTerms
@@ -22,7 +32,9 @@ if TYPE_CHECKING:
     from pybullet._clients.clients import Client as Connection
 
 _DOUBLE = 8
-_POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = 7 * _DOUBLE, 6 * _DOUBLE, 8 * _DOUBLE
+_POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = (
+    numbers * _DOUBLE for numbers in (POSE_NUMBERS, SPATIAL_NUMBERS, MOTOR_NUMBERS)
+)
 # CPython interns names of attributes.
 _TIME_STEP = sys.intern("time_step")
 _JOINT_COUNT, _NAMES = sys.intern("joint_count"), sys.intern("_encoded_names")

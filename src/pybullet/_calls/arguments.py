@@ -14,16 +14,13 @@ from math import hypot, inf, isfinite, nan
 from operator import index
 from typing import Any, NoReturn, SupportsFloat
 
+from carom.layouts.magnitudes import GREATEST_SQUARE, LEAST_SQUARE, MAX_MAGNITUDE
 from pybullet._calls.errors import fail
 
 _ONLY_INTEGERS = frozenset((int,))
 # Types whose lengths are certainly those of what is read.
 _PLAIN = frozenset((list, tuple, range))
 _LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
-# Range of the squared lengths of valid quaternions: their products neither underflow nor overflow.
-_LEAST_SQUARE, _GREATEST_SQUARE = 1e-60, 1e60
-MAX_MAGNITUDE = 1e30
-"""Greatest magnitude of positions, velocities, masses and similar quantities; the same as in files."""
 MOST_ITEMS = 1 << 24
 """Greatest length of sequences whose length no other argument determines."""
 # Greatest length of lists of joints or links that getters and setters take as they are.
@@ -181,7 +178,7 @@ def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float,
     """A quaternion (x, y, z, w) that can be normalised; raises `pybullet.error` for others."""
     x, y, z, w = vector4(values, problem, name)
     squared = x * x + y * y + z * z + w * w
-    if not _LEAST_SQUARE < squared < _GREATEST_SQUARE:
+    if not LEAST_SQUARE < squared < GREATEST_SQUARE:
         _refuse_rotation((x, y, z, w), problem, name)
     return x, y, z, w
 
@@ -189,7 +186,7 @@ def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float,
 def check_rotation(values: Sequence[float], problem: str, name: str) -> None:
     """Raises `pybullet.error` for a quaternion (x, y, z, w) that cannot be normalised."""
     x, y, z, w = values
-    if not _LEAST_SQUARE < x * x + y * y + z * z + w * w < _GREATEST_SQUARE:
+    if not LEAST_SQUARE < x * x + y * y + z * z + w * w < GREATEST_SQUARE:
         _refuse_rotation(values, problem, name)
 
 

@@ -10,6 +10,7 @@ from math import nan
 from threading import Lock
 from typing import TYPE_CHECKING
 
+from carom.layouts.quick_calls import CHANGE_DYNAMICS
 from pybullet._calls.builtin import Export, exports, vectorcall
 from pybullet._calls.conduct import FREE, client_place, reads
 from pybullet._calls.errors import logger
@@ -46,7 +47,7 @@ _KERNELS: dict[str, tuple[str, str, tuple[int, ...] | None]] = {
     "getJointStates": ("joint_states", "bsc", None),
     "setJointMotorControl2": ("command_motor", "biirrrrrrc", ()),
     "setJointMotorControlArray": ("command_motors", "bsivvvvvc", ()),
-    "changeDynamics": ("change_dynamics", "birrrrrrrrri3rrir3rrrrrrc", ()),
+    "changeDynamics": ("change_dynamics", "".join(CHANGE_DYNAMICS.values()), ()),
     "resetJointState": ("reset_joint", "birrc", ()),
     "stepSimulation": ("step", "c", None),
     "getAABB": ("link_box", "bic", (3, 3)),
@@ -103,7 +104,7 @@ def pause(*, paused: bool) -> None:
 
 
 def _guard(calls: QuickCalls, name: str, export: Export) -> None:
-    from carom.native.quick_calls import Conduct
+    from carom.layouts.gates import Conduct
 
     conduct = Conduct.FREE if name in FREE else Conduct.READS if reads(name) else Conduct.CHANGES
     if name in _KERNELS:

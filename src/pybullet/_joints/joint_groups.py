@@ -14,7 +14,7 @@ from pybullet._joints.joint_access import AxisJoint, JointAccess
 from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 if TYPE_CHECKING:
-    from carom.native.quick_calls import MotorGroup as MotorRecord
+    from carom.layouts.quick_bodies import MotorGroup as MotorRecord
     from pybullet._clients.clients import Client
 
 # Maximum number of cached groups of a body.

@@ -13,6 +13,7 @@ from tools.wheels.faults import faults
 from tools.wheels.structure import read_library
 
 from carom.native.building.cache import MANIFEST
+from carom.native.building.headers import HEADER
 from carom.native.building.library import build
 from carom.native.building.link import remove_time
 from carom.native.digest import source_digest
@@ -33,7 +34,7 @@ def _generate(folder: Path, hash_seed: str) -> dict[str, bytes]:
 def test_generated_code_is_the_same_every_time_and_has_no_paths(tmp_path: Path):
     first = _generate(tmp_path / "first", "1")
     assert first == _generate(tmp_path / "second", "2")
-    assert set(first) == {f"{SMALL_MODULE}.cpp", MANIFEST}
+    assert set(first) == {f"{SMALL_MODULE}.cpp", MANIFEST, HEADER}
     source = first[f"{SMALL_MODULE}.cpp"].decode()
     assert "CAROM_EXPORT void report_contacts_kernel_cpu_forward(" in source
     assert not any(word in source for word in ("<L ", "#line", str(ROOT), "adj_report_contacts"))

@@ -21,8 +21,8 @@ from tests.fuzz.values import spoiled
 
 import pybullet as p
 import pybullet_data
-from carom.native.quick_calls import DAMPING as OF_BODY
-from carom.native.quick_calls import SURFACE
+from carom.layouts.quick_world import DAMPING as OF_BODY
+from carom.layouts.quick_world import SURFACE
 from pybullet._calls import quick
 from pybullet._calls.builtin import exports
 from pybullet._clients.clients import clients
@@ -282,7 +282,11 @@ def _dynamics(client: int) -> list[Any]:
     surfaces = [shapes[field].tobytes() for field in SURFACE.values()]
     infos = [p.getDynamicsInfo(0, link, client) for link in range(-1, 7)]
     infos += [p.getDynamicsInfo(body, -1, client) for body in (1, 2)]
-    return [infos, surfaces, [model[field].tobytes() for field in (*OF_BODY, "link_mass", "link_inertia")]]
+    return [
+        infos,
+        surfaces,
+        [model[field].tobytes() for field in (*OF_BODY.values(), "link_mass", "link_inertia")],
+    ]
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -15,6 +15,7 @@ from carom.formats.reading.cursor import Cursor, TracedElement
 from carom.formats.reading.written import Written
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element, from_calls
+from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
 
 Default = TypeVar("Default")
@@ -31,9 +32,6 @@ _LEADING_BOUND = re.compile(
 _LEAST_BITS = -(1 << 31)
 
 _LONGEST_SHOWN = 60
-
-MAX_MAGNITUDE = 1e30
-"""Numbers beyond this are refused: products of a few of them would overflow."""
 
 
 class MissingFile(DescriptionError):

@@ -6,10 +6,11 @@ import os
 from pathlib import Path
 
 from carom.errors import DescriptionError
-from carom.formats.robot.context import MAX_MAGNITUDE, FileContext, shown
+from carom.formats.robot.context import FileContext, shown
 from carom.formats.search import AssetSearch, path_of
 from carom.formats.shipped import advice
 from carom.formats.xml_element import Element
+from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
 
 _log = Logger(__name__)

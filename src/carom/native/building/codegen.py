@@ -1,4 +1,4 @@
-"""Translate the kernels to C++, and write a manifest of them as JSON.
+"""Translate the kernels to C++, write a manifest of them as JSON, and the header of our own C++.
 
 This runs as a program in a process of its own, because it imports Warp:
 `python -m carom.native.building.codegen DIGEST FOLDER MODULE...`.
@@ -21,6 +21,7 @@ import warp as wp
 from warp._src.context import ModuleBuilder
 
 from carom.native.building.cache import MANIFEST
+from carom.native.building.headers import HEADER, header
 from carom.native.building.manifest import (
     fixed_layouts,
     kernel_entry,
@@ -68,7 +69,7 @@ class _ForwardBuilder(ModuleBuilder):
 
 
 def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
-    """Write a `.cpp` file for each module, and one manifest with the digest of the sources, to a folder.
+    """Write to a folder a `.cpp` file for each module, a manifest with the sources' digest, and `layouts.h`.
 
     Raises:
         KernelClash: Two modules have a kernel of the same name.
@@ -93,6 +94,7 @@ def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
         "kernels": dict(sorted(kernels.items())),
         "structs": dict(sorted(structs.items())),
     }
+    (folder / HEADER).write_text(header(), encoding="utf-8", newline="\n")
     text = json.dumps(manifest, separators=(",", ":"))
     (folder / MANIFEST).write_text(text + "\n", encoding="utf-8", newline="\n")
 

@@ -129,7 +129,7 @@ def build_all(
 
 
 def _generated_code(parts: _Build) -> Path:
-    """The folder with the kernels as C++, and their manifest."""
+    """The folder with the kernels as C++, their manifest, and the header for hand-written C++."""
     # The digest also covers the code generator.
     key = content_key(parts.digest, (parts.warp / "config.py").read_bytes(), *parts.modules)
     folder = parts.cache / "code" / key
@@ -170,7 +170,7 @@ def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
         own.append(_HERE / "windows.cpp")
     kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
     objects = _objects(parts, "kernels", "c++", CPP_FLAGS, kernels, headers, work)
-    objects += _objects(parts, "the rest", "c++", parts.own_flags, own, [*headers, folder], work)
+    objects += _objects(parts, "the rest", "c++", parts.own_flags, own, [*headers, folder, code], work)
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
     return objects + _objects(parts, "maths", "cc", C_FLAGS, maths, folders, work)

@@ -7,12 +7,8 @@
 
 namespace {
 
-enum { WORLD_FRAME = 2, LINK_FRAME = 1 };
-enum { POSE = 7, SPATIAL = 6 };
 // Numbers in the state of a link, and the maximum number of links in one call; more are left to Python.
-enum { LINK_NUMBERS = 3 * POSE + SPATIAL, MOST_LINKS = 32 };
-
-const double ROUNDING = 1e-15;  // rounding error of the squared length of a unit quaternion
+enum { LINK_NUMBERS = 3 * POSE_NUMBERS + SPATIAL_NUMBERS, MOST_LINKS = 32 };
 
 bool is_given(double number) { return number == number; }
 
@@ -25,12 +21,12 @@ struct Pose {
 Pose pose_of(const Body& body, int64_t link) {
     if (link < 0)
         return {vector_at(body.position), canonical(quaternion_at(body.position + 3))};
-    const double* row = body.pose + (link + 1) * POSE;
+    const double* row = body.pose + (link + 1) * POSE_NUMBERS;
     return {vector_at(row), quaternion_at(row + 3)};
 }
 
 void push(const Body& body, int64_t link, Vector force, Vector torque) {
-    double* row = body.wrench + (link + 1) * SPATIAL;
+    double* row = body.wrench + (link + 1) * SPATIAL_NUMBERS;
     put(put(row, vector_at(row) + force), vector_at(row + 3) + torque);
 }
 
@@ -54,12 +50,12 @@ CAROM_QUICK(base_velocity) {
 CAROM_QUICK(apply_force) {
     const Body& body = *call->body;
     const double frame = in[8];
-    if (!has_link(body, in[1]) || (frame != WORLD_FRAME && frame != LINK_FRAME))
+    if (!has_link(body, in[1]) || (frame != codes::WORLD_FRAME && frame != codes::LINK_FRAME))
         return 0;
     const int64_t link = static_cast<int64_t>(in[1]);
     const Pose pose = pose_of(body, link);
     Vector force = vector_at(in + 2), arm = vector_at(in + 5);
-    if (frame == LINK_FRAME)
+    if (frame == codes::LINK_FRAME)
         force = turned(pose.orientation, force), arm = turned(pose.orientation, arm);
     else
         arm = arm - pose.position;
@@ -71,11 +67,11 @@ CAROM_QUICK(apply_force) {
 CAROM_QUICK(apply_torque) {
     const Body& body = *call->body;
     const double frame = in[5];
-    if (!has_link(body, in[1]) || (frame != WORLD_FRAME && frame != LINK_FRAME))
+    if (!has_link(body, in[1]) || (frame != codes::WORLD_FRAME && frame != codes::LINK_FRAME))
         return 0;
     const int64_t link = static_cast<int64_t>(in[1]);
     Vector torque = vector_at(in + 2);
-    if (frame == LINK_FRAME)
+    if (frame == codes::LINK_FRAME)
         torque = turned(pose_of(body, link).orientation, torque);
     push(body, link, {0.0, 0.0, 0.0}, torque);
     return 1;
@@ -86,20 +82,20 @@ CAROM_QUICK(place_base) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
     const Lock lock(*call->client);
-    if (!lock.is_held || !scene.find_poses.function || *scene.contact_count > scene.contact_room)
+    if (!lock.is_held || !scene.find_poses.call.function || *scene.contact_count > scene.contact_room)
         return 0;
     const Quaternion q = quaternion_at(in + 4);
     const double squared = dot(q, q);
     // A pose that was read and is written back stays exactly the same.
-    const double scale = __builtin_fabs(squared - 1.0) < ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
-    for (int i = 0; i < SPATIAL; ++i)
+    const double scale = __builtin_fabs(squared - 1.0) < magnitudes::UNIT_ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
+    for (int i = 0; i < SPATIAL_NUMBERS; ++i)
         body.velocity[i] = 0.0;
-    double before[POSE];
-    for (int i = 0; i < POSE; ++i)
+    double before[POSE_NUMBERS];
+    for (int i = 0; i < POSE_NUMBERS; ++i)
         before[i] = body.position[i];
     put(put(body.position, vector_at(in + 1)), Quaternion{q.x * scale, q.y * scale, q.z * scale, q.w * scale});
     bool moved = false;
-    for (int i = 0; i < POSE; ++i)
+    for (int i = 0; i < POSE_NUMBERS; ++i)
         moved |= body.position[i] != before[i];
     note_reset(scene, body.tree, moved);
     for (int32_t i = 0; i < *scene.contact_count; ++i)
@@ -115,7 +111,7 @@ CAROM_QUICK(set_base_velocity) {
     if (!is_given(in[1]) && !is_given(in[4]))
         return 0;
     const Lock lock(*call->client);
-    if (!lock.is_held || !scene.find_poses.function)
+    if (!lock.is_held || !scene.find_poses.call.function)
         return 0;
     if (is_given(in[1]))
         put(body.velocity + 3, vector_at(in + 1));
@@ -133,7 +129,7 @@ namespace {
 bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
     const Body& body = *call.body;
     const Scene& scene = *call.client->scene;
-    if (!body.links || (with_velocity && !scene.find_twists.function) || (with_poses && !scene.find_poses.function))
+    if (!body.links || (with_velocity && !scene.find_twists.call.function) || (with_poses && !scene.find_poses.call.function))
         return false;
     if (with_poses)
         run(scene.find_poses, body.tree);
@@ -158,14 +154,14 @@ int put_link_state(double* out, const Body& body, int64_t index, bool with_veloc
     const Link& link = body.links[index];
     const Pose pose = pose_of(body, index);
     out = put(put(out, pose.position), pose.orientation);
-    for (int i = 0; i < POSE; ++i)
+    for (int i = 0; i < POSE_NUMBERS; ++i)
         *out++ = link.inertial_frame[i];
     out = put(out, pose.position + turned(pose.orientation, vector_at(link.from_inertial_frame)));
     const Quaternion turn = quaternion_at(link.from_inertial_frame + 3);
     out = put(out, link.is_turned ? canonical(pose.orientation * turn) : pose.orientation);
     if (!with_velocity)
         return 6;
-    const double* twist = body.twist + (index + 1) * SPATIAL;
+    const double* twist = body.twist + (index + 1) * SPATIAL_NUMBERS;
     put(put(out, vector_at(twist)), vector_at(twist + 3));
     return 8;
 }

@@ -6,11 +6,9 @@
 
 namespace {
 
-enum { POSE = 7 };
-
 double along(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-Vector magnitudes(Vector v) { return {__builtin_fabs(v.x), __builtin_fabs(v.y), __builtin_fabs(v.z)}; }
+Vector absolute(Vector v) { return {__builtin_fabs(v.x), __builtin_fabs(v.y), __builtin_fabs(v.z)}; }
 
 }  // namespace
 
@@ -21,7 +19,7 @@ extern "C" CAROM_EXPORT int carom_link_box(const double* in, double* out, const 
         return 0;
     const int64_t link = static_cast<int64_t>(in[1]);
     const Box& box = body.boxes[link + 1];
-    const double* pose = link < 0 ? body.position : body.pose + (link + 1) * POSE;
+    const double* pose = link < 0 ? body.position : body.pose + (link + 1) * POSE_NUMBERS;
     const Quaternion q = quaternion_at(pose + 3);
     if (!(dot(q, q) > 0.0))
         return 0;
@@ -34,7 +32,7 @@ extern "C" CAROM_EXPORT int carom_link_box(const double* in, double* out, const 
             turn.rows[0] = {1.0, 0.0, 0.0}, turn.rows[1] = {0.0, 1.0, 0.0}, turn.rows[2] = {0.0, 0.0, 1.0};
         for (int axis = 0; axis < 3; ++axis) {
             center[axis] = along(turn.rows[axis], vector_at(box.center)) + pose[axis];
-            half[axis] = along(magnitudes(turn.rows[axis]), vector_at(box.half));
+            half[axis] = along(absolute(turn.rows[axis]), vector_at(box.half));
         }
     }
     for (int axis = 0; axis < 3; ++axis) {

@@ -9,12 +9,12 @@ namespace {
 // Larger numbers of contacts are left to Python, which lets other threads run meanwhile.
 enum { MOST_CONTACTS = 64 };
 
-Contact contact_at(const ContactReport& report, int32_t i) {
+Contact contact_at(const ContactColumns& found, int32_t i) {
     return {
-        report.bodies_a[i], report.bodies_b[i], report.links_a[i], report.links_b[i],
-        vector_at(report.points_a + 3 * i), vector_at(report.points_b + 3 * i), vector_at(report.normals + 3 * i),
-        vector_at(report.directions1 + 3 * i), vector_at(report.directions2 + 3 * i),
-        report.distances[i], report.forces[i], report.forces1[i], report.forces2[i],
+        found.body_a[i], found.body_b[i], found.link_a[i], found.link_b[i],
+        vector_at(found.point_a + 3 * i), vector_at(found.point_b + 3 * i), vector_at(found.normal + 3 * i),
+        vector_at(found.direction1 + 3 * i), vector_at(found.direction2 + 3 * i),
+        found.distance[i], found.force[i], found.force1[i], found.force2[i],
     };
 }
 
@@ -22,31 +22,29 @@ Contact contact_at(const ContactReport& report, int32_t i) {
 
 // Arguments: first body, second body, link of the first, link of the second, connection.
 extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const Call* call) {
-    const ContactReport& report = call->client->scene->report;
+    const ContactLister& report = call->client->scene->report;
     double seconds;
-    // Columns of `contact_count`: the numbers of contacts and of overlaps.
-    enum { OVERLAPS = 1 };
-    if (!report.function || *report.there > MOST_CONTACTS)
+    if (!report.call.function || *report.there > MOST_CONTACTS)
         return nullptr;
-    if (*report.there > report.room || report.there[OVERLAPS] > report.room)
+    if (*report.there > report.room || report.there[contacts::OVERLAPS] > report.room)
         return nullptr;
     if (!*report.there)
         return python.PyTuple_New(0);
     if (!read_time_step(*call->client, &seconds))
         return nullptr;
     {
-        const Instead<int32_t> count(report.count, *report.there);
-        const Instead<int32_t> body_a(report.body_a, static_cast<int32_t>(in[0]));
-        const Instead<int32_t> body_b(report.body_b, static_cast<int32_t>(in[1]));
-        const Instead<int32_t> link_a(report.link_a, static_cast<int32_t>(in[2]));
-        const Instead<int32_t> link_b(report.link_b, static_cast<int32_t>(in[3]));
-        const Instead<double> time_step(report.time_step, seconds);
-        run(report);
+        const Instead<int32_t> count(report.asked.count, *report.there);
+        const Instead<int32_t> body_a(report.asked.body_a, static_cast<int32_t>(in[0]));
+        const Instead<int32_t> body_b(report.asked.body_b, static_cast<int32_t>(in[1]));
+        const Instead<int32_t> link_a(report.asked.link_a, static_cast<int32_t>(in[2]));
+        const Instead<int32_t> link_b(report.asked.link_b, static_cast<int32_t>(in[3]));
+        const Instead<double> time_step(report.asked.time_step, seconds);
+        run(report.call);
     }
-    const int32_t found = *report.found;
+    const int32_t found = *report.found.count;
     Contact contacts[MOST_CONTACTS];
     for (int32_t i = 0; i < found; ++i)
-        contacts[i] = contact_at(report, i);
+        contacts[i] = contact_at(report.found, i);
     // From here on the report may be gone: making a tuple can start garbage collection, which may run any code.
     Row rows(found);
     for (int32_t i = 0; rows.tuple && i < found; ++i)

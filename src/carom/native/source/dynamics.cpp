@@ -5,43 +5,19 @@
 
 namespace {
 
-// Indices of the arguments of `changeDynamics` among the numbers; a vector is three numbers.
-enum {
-    BODY,
-    LINK,
-    MASS,
-    LATERAL_FRICTION,
-    SPINNING_FRICTION,
-    ROLLING_FRICTION,
-    RESTITUTION,
-    LINEAR_DAMPING,
-    ANGULAR_DAMPING,
-    CONTACT_STIFFNESS,
-    CONTACT_DAMPING,
-    FRICTION_ANCHOR,
-    INERTIA,
-    LOWER_LIMIT = 24,
-    SLEEP_THRESHOLD = 27,
-    CONNECTION,
-};
-
-// In the order of `Scene::surface` and `Scene::damping`.
-const int OF_SURFACE[] = {
-    LATERAL_FRICTION, SPINNING_FRICTION, ROLLING_FRICTION, RESTITUTION, CONTACT_STIFFNESS, CONTACT_DAMPING,
-};
-const int OF_BODY[] = {LINEAR_DAMPING, ANGULAR_DAMPING};
+using namespace change_dynamics;
 
 bool is_given(double number) { return number == number; }
 
 // Whether an argument has its default.
 bool is_left_out(const double* in, int place) {
-    return !is_given(in[place]) || in[place] == (place == LOWER_LIMIT ? 1.0 : -1.0);
+    return !is_given(in[place]) || in[place] == (place == JOINT_LOWER_LIMIT ? 1.0 : -1.0);
 }
 
 // Whether an argument is given that only Python handles.
 bool has_others(const double* in) {
     for (int place = FRICTION_ANCHOR; place <= SLEEP_THRESHOLD; ++place)
-        if ((place < INERTIA || place > INERTIA + 2) && !is_left_out(in, place))
+        if ((place < LOCAL_INERTIA_DIAGONAL || place > LOCAL_INERTIA_DIAGONAL + 2) && !is_left_out(in, place))
             return true;
     return false;
 }
@@ -88,9 +64,9 @@ bool is_held(const Scene& scene, const Body& body) {
 // Changes the mass of a link, or its moments of inertia alone; false if Python has to handle it: if a base is fixed or
 // freed, or if there are data derived from masses. Fills `tuple`, a new one of three items, with the moments.
 bool change_mass(const double* in, const Scene& scene, const Body& body, PyObject* dynamics, PyObject* tuple) {
-    const int64_t link = static_cast<int64_t>(in[LINK]), row = body.first_link + link + 1;
-    const bool has_mass = in[MASS] >= 0.0, has_inertia = is_given(in[INERTIA]);
-    double moments[3] = {in[INERTIA], in[INERTIA + 1], in[INERTIA + 2]};
+    const int64_t link = static_cast<int64_t>(in[LINK_INDEX]), row = body.first_link + link + 1;
+    const bool has_mass = in[MASS] >= 0.0, has_inertia = is_given(in[LOCAL_INERTIA_DIAGONAL]);
+    double moments[3] = {in[LOCAL_INERTIA_DIAGONAL], in[LOCAL_INERTIA_DIAGONAL + 1], in[LOCAL_INERTIA_DIAGONAL + 2]};
     if (python.PyDict_Size(body.derived))
         return false;
     if (has_mass && (in[MASS] == 0.0 || (link < 0 && is_held(scene, body))))
@@ -121,16 +97,16 @@ bool change_mass(const double* in, const Scene& scene, const Body& body, PyObjec
 bool change(const double* in, const Client& client, const Body& body, PyObject* moments) {
     const Scene& scene = *client.scene;
     const Lock lock(client);
-    if (!lock.is_held || !scene.find_poses.function)
+    if (!lock.is_held || !scene.find_poses.call.function)
         return false;
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < DAMPING_COUNT; ++i)
         if (in[OF_BODY[i]] >= 0.0)
             scene.damping[i][body.tree] = in[OF_BODY[i]];
-    const int64_t link = static_cast<int64_t>(in[LINK]);
+    const int64_t link = static_cast<int64_t>(in[LINK_INDEX]);
     PyObject* dynamics = python.PyList_GetItem(body.dynamics, link + 1);
     if (moments && !change_mass(in, scene, body, dynamics, moments))
         return false;
-    for (int i = 0; i < 6; ++i)
+    for (int i = 0; i < SURFACE_COUNT; ++i)
         if (in[OF_SURFACE[i]] >= 0.0) {
             if (!tell(dynamics, scene.surface_names[i], in[OF_SURFACE[i]]))
                 return false;
@@ -144,7 +120,7 @@ bool change(const double* in, const Client& client, const Body& body, PyObject* 
 // Arguments: those of `changeDynamics`. Python handles all but masses, moments of inertia, friction, restitution,
 // contact stiffness and damping, and calls that change properties of a link together with damping of the body.
 extern "C" CAROM_EXPORT int carom_change_dynamics(const double* in, double* out, const Call* call) {
-    const bool of_mass = in[MASS] >= 0.0 || is_given(in[INERTIA]), of_body = has_one(in, OF_BODY);
+    const bool of_mass = in[MASS] >= 0.0 || is_given(in[LOCAL_INERTIA_DIAGONAL]), of_body = has_one(in, OF_BODY);
     if (has_others(in) || ((of_mass || has_one(in, OF_SURFACE)) && of_body))
         return 0;
     if ((in[CONTACT_STIFFNESS] >= 0.0) != (in[CONTACT_DAMPING] >= 0.0))
@@ -155,9 +131,9 @@ extern "C" CAROM_EXPORT int carom_change_dynamics(const double* in, double* out,
         python.PyErr_Clear();
         return 0;
     }
-    const Client* client = find_client(in[CONNECTION]);
-    const Body* body = client ? find_body(*client, in[BODY]) : nullptr;
-    const bool well = body && has_link(*body, in[LINK]) && change(in, *client, *body, moments);
+    const Client* client = find_client(in[PHYSICS_CLIENT_ID]);
+    const Body* body = client ? find_body(*client, in[BODY_UNIQUE_ID]) : nullptr;
+    const bool well = body && has_link(*body, in[LINK_INDEX]) && change(in, *client, *body, moments);
     if (moments)
         python.Py_DecRef(moments);
     return well;

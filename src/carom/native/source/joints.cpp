@@ -6,11 +6,11 @@
 
 namespace {
 
-enum { SPATIAL = 6, MOST_JOINTS = 64 };
+enum { MOST_JOINTS = 64 };
 
 struct State {
     double position, velocity, torque;
-    double wrench[SPATIAL];
+    double wrench[SPATIAL_NUMBERS];
     bool has_sensor;
 };
 
@@ -25,7 +25,7 @@ State state_of(const Body& body, int64_t index, double seconds) {
         state.torque = body.motor_impulse[joint.velocity] / seconds;
     state.has_sensor = joint.has_sensor;
     if (joint.has_sensor)
-        __builtin_memcpy(state.wrench, body.reaction + (index + 1) * SPATIAL, sizeof state.wrench);
+        __builtin_memcpy(state.wrench, body.reaction + (index + 1) * SPATIAL_NUMBERS, sizeof state.wrench);
     return state;
 }
 
@@ -46,7 +46,7 @@ extern "C" CAROM_EXPORT int carom_joint_state(const double* in, double* out, con
     *out++ = state.position;
     *out++ = state.velocity;
     __builtin_memcpy(out, state.wrench, sizeof state.wrench);
-    out[SPATIAL] = state.torque;
+    out[SPATIAL_NUMBERS] = state.torque;
     return 4;
 }
 
@@ -62,8 +62,8 @@ extern "C" CAROM_EXPORT PyObject* carom_joint_states(const double* in, const Cal
     for (intptr_t i = 0; i < count; ++i)
         states[i] = state_of(body, joints[i], seconds);
     // From here on the body may be gone: making a tuple can start garbage collection, which may run any code.
-    const double zeros[SPATIAL] = {};
-    PyObject* no_wrench = tuple_of(zeros, SPATIAL);
+    const double zeros[SPATIAL_NUMBERS] = {};
+    PyObject* no_wrench = tuple_of(zeros, SPATIAL_NUMBERS);
     Row all(static_cast<int>(count));
     for (intptr_t i = 0; no_wrench && i < count; ++i) {
         const State& state = states[i];
@@ -72,7 +72,7 @@ extern "C" CAROM_EXPORT PyObject* carom_joint_states(const double* in, const Cal
         row.add(state.velocity);
         if (!state.has_sensor)
             python.Py_IncRef(no_wrench);
-        row.add(state.has_sensor ? tuple_of(state.wrench, SPATIAL) : no_wrench);
+        row.add(state.has_sensor ? tuple_of(state.wrench, SPATIAL_NUMBERS) : no_wrench);
         row.add(state.torque);
         all.add(row.tuple);
     }
@@ -91,7 +91,7 @@ extern "C" CAROM_EXPORT int carom_reset_joint(const double* in, double* out, con
         return 0;
     const Joint joint = body.joints[static_cast<int64_t>(in[1])];
     const Lock lock(*call->client);
-    if (!lock.is_held || !scene.find_poses.function || joint.dof_count != 1)
+    if (!lock.is_held || !scene.find_poses.call.function || joint.dof_count != 1)
         return 0;
     note_reset(scene, body.tree, body.position[joint.position] != in[2]);
     body.position[joint.position] = in[2];

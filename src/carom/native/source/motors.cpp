@@ -5,11 +5,7 @@
 
 namespace {
 
-enum { VELOCITY = 0, TORQUE = 1, POSITION = 2, PD = 3 };
-enum { COLUMNS = 8, VELOCITY_CLAMP = 5 };
-
-// A PD drive with a smaller maximum force is switched off.
-const double LEAST_PD_FORCE = 1.1920928955078125e-07;
+using namespace motor_commands;
 
 double clipped(double position, const Joint& joint) {
     return position < joint.lower ? joint.lower : position > joint.upper ? joint.upper : position;
@@ -44,19 +40,19 @@ extern "C" CAROM_EXPORT int carom_command_motor(const double* in, double* out, c
     double seconds;
     if (joint.dof_count != 1 || !read_time_step(*call->client, &seconds))
         return 0;
-    double* const motor = body.motor + joint.velocity * COLUMNS;
+    double* const motor = body.motor + joint.velocity * MOTOR_NUMBERS;
     if (mode == POSITION) {
         write_target(motor, clipped(position, joint), velocity, kp, kd, force * seconds);
         if (clamp > 0.0)
-            motor[VELOCITY_CLAMP] = clamp;
+            motor[codes::MOTOR_VELOCITY_CLAMP] = clamp;
     } else if (mode == VELOCITY) {
         write_target(motor, 0.0, velocity, 0.0, kd, force * seconds);
-        motor[VELOCITY_CLAMP] = __builtin_inf();
+        motor[codes::MOTOR_VELOCITY_CLAMP] = __builtin_inf();
     } else if (mode == TORQUE) {
         body.torque[joint.velocity] += force;
     } else if (mode == PD) {
-        const double bound = force >= LEAST_PD_FORCE ? force : 0.0;
-        write_target(body.pd + joint.velocity * COLUMNS, clipped(position, joint), velocity, kp, kd, bound);
+        const double bound = force >= magnitudes::LEAST_PD_FORCE ? force : 0.0;
+        write_target(body.pd + joint.velocity * MOTOR_NUMBERS, clipped(position, joint), velocity, kp, kd, bound);
     } else {
         return 0;
     }
@@ -70,7 +66,7 @@ extern "C" CAROM_EXPORT int carom_command_motors(const double* in, double* out, 
     const double mode = in[1];
     if (!group || !are_those_of(*group, call->sequences[0]) || (mode != VELOCITY && mode != TORQUE && mode != POSITION))
         return 0;
-    double* const places[] = {group->positions, group->velocities, group->forces, group->kps, group->kds};
+    double* const places[] = {group->position, group->velocity, group->force, group->kp, group->kd};
     double seconds;
     int32_t given = 0;
     for (int i = 0; i < 5; ++i)

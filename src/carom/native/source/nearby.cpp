@@ -7,9 +7,6 @@ namespace {
 
 // Larger numbers are left to Python, which lets other threads run meanwhile.
 enum { MOST_SHAPES = 256, MOST_PAIRS = 64 };
-enum { PLACED = 1, PLANE = 4, ANY_LINK = -2 };
-// Greatest search distance, which stands for all larger ones [m].
-const double FAR = 1e30;
 
 // Copies numbers; returns whether any bit has changed.
 bool copy(double* to, const double* from, int64_t count) {
@@ -35,7 +32,7 @@ bool place(Placement& at) {
     if (!well)
         return false;
     const bool moved = copy(at.placed_at, at.positions, at.position_count);
-    if (moved || *at.readiness < PLACED || at.changes != changes) {
+    if (moved || *at.readiness < contacts::PLACED || at.changes != changes) {
         // After a step these are the poses at the start of its last substep, which other functions have to return.
         copy(at.poses_before, at.poses, at.pose_count);
         run(at.find_poses);
@@ -53,7 +50,7 @@ struct Range {
 // Rows of one link, or of all links of a body.
 Range rows_of(const Body& body, double link) {
     const int64_t first = body.first_link, end = first + 1 + body.link_count;
-    if (link <= ANY_LINK)
+    if (link <= queries::ANY_LINK)
         return {first, end};
     const int64_t row = first + 1 + static_cast<int64_t>(link);
     return row < end ? Range{row, row + 1} : Range{first, first};
@@ -92,7 +89,7 @@ struct Place {
 };
 
 bool meets(const Placement& at, int64_t shape, const double* lower, const double* upper) {
-    if (at.kind[shape] == PLANE)
+    if (at.kind[shape] == codes::PLANE)
         return true;
     for (int axis = 0; axis < 3; ++axis)
         if (!(at.lower[3 * shape + axis] <= upper[axis] && at.upper[3 * shape + axis] >= lower[axis]))
@@ -124,7 +121,7 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
     Candidate points[MOST_PAIRS];
     if (count) {
         const Instead<int32_t> asked(nearest.count, count);
-        const Instead<double> reach(nearest.max_distance, in[2] < FAR ? in[2] : FAR);
+        const Instead<double> reach(nearest.max_distance, in[2] < magnitudes::MAX_DISTANCE ? in[2] : magnitudes::MAX_DISTANCE);
         run(nearest.search);
         for (found = 0; found < *nearest.found; ++found) {
             of[found] = nearest.pairs[found];

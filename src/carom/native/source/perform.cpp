@@ -8,19 +8,17 @@
 
 namespace {
 
-// Columns of a world's status.
-enum { STATUS = 0, STEPS_DONE = 3 };
-// The status of a step that is to be performed again.
-enum { OVERFLOW = -1 };
+// The parts of a program.
+enum { BEGINNING, DETECTION, MOTION, END, ABANDONED };
 
 bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status) {
     for (int64_t i = from; i < to; ++i) {
-        const Program::Launch& launch = program.launches[i];
-        *launch.world = world;
+        const WorldCall& launch = program.launches[i];
+        *launch.first_world = world;
         if (launch.substeps)
             *launch.substeps = substeps;
-        launch.function(launch.bounds, launch.arguments);
-        if (status && status[STATUS])
+        run(launch.call);
+        if (status && status[status::STATUS])
             return false;
     }
     return true;
@@ -28,24 +26,25 @@ bool perform(const Program& program, int64_t from, int64_t to, int world, int su
 
 void take_through_steps(const Run& run, int world) {
     const Program& program = *run.program;
+    const int64_t* ends = program.part_ends;
     int32_t* status = reinterpret_cast<int32_t*>(program.status + world * program.status_stride);
     if (!run.resumed)
-        status[STEPS_DONE] = 0;
-    for (int step = status[STEPS_DONE]; step < run.step_count; ++step) {
+        status[status::STEPS_DONE] = 0;
+    for (int step = status[status::STEPS_DONE]; step < run.step_count; ++step) {
         const int substeps = run.due[step], rounds = substeps > 0 ? substeps : 1;
-        const int64_t round_end = substeps > 0 ? program.motion_end : program.detection_end;
-        bool well = run.first_substep > 0 || perform(program, 0, program.begin_end, world, substeps, status);
+        const int64_t round_end = substeps > 0 ? ends[MOTION] : ends[DETECTION];
+        bool well = run.first_substep > 0 || perform(program, 0, ends[BEGINNING], world, substeps, status);
         for (int k = run.first_substep; well && k < run.end_substep && k < rounds; ++k)
-            well = perform(program, program.begin_end, round_end, world, substeps, status);
+            well = perform(program, ends[BEGINNING], round_end, world, substeps, status);
         if (well && run.end_substep >= rounds)
-            well = perform(program, program.motion_end, program.end_end, world, substeps, status);
+            well = perform(program, ends[MOTION], ends[END], world, substeps, status);
         if (!well) {
             if (run.repeatable)
-                status[STATUS] = OVERFLOW;
-            perform(program, program.end_end, program.abandon_end, world, substeps, nullptr);
+                status[status::STATUS] = status::OVERFLOW;
+            perform(program, ends[END], ends[ABANDONED], world, substeps, nullptr);
             return;
         }
-        status[STEPS_DONE] = step + 1;
+        status[status::STEPS_DONE] = step + 1;
     }
 }
 

@@ -16,28 +16,7 @@ extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused;
 
 namespace {
 
-enum { MOST_CALLS = 192, MOST_PARAMETERS = 26, MOST_NUMBERS = 32, MOST_RESULTS = 32, MOST_GROUPS = 8 };
 enum { RECORDS = 0x1C };  // PyBUF_RECORDS_RO
-
-// Bounds of numbers and of squared lengths of quaternions. Calls with others are left to Python.
-const double GREATEST = 1e30, LEAST_SQUARE = 1e-60, GREATEST_SQUARE = 1e60;
-
-struct Parameter {
-    PyObject* name;  // interned
-    double missing;  // its default; NaN for None
-    int32_t kind;    // a letter, see `read`
-    int32_t is_required;
-};
-
-struct QuickCall {
-    Kernel kernel;
-    Maker maker;  // used instead of a kernel if it is not null
-    int64_t parameter_count;
-    Parameter parameters[MOST_PARAMETERS];
-    // Lengths of the groups of results, 0 for a number alone, and -1 after the last one.
-    int32_t groups[MOST_GROUPS + 1];
-    int32_t is_flat;  // there is one group, and it is the result
-};
 
 // What follows from the parameters of a call, found once.
 struct Arrangement {
@@ -65,7 +44,7 @@ bool read_number(PyObject* value, double* number) {
     } else {
         return false;
     }
-    return __builtin_fabs(*number) <= GREATEST;
+    return __builtin_fabs(*number) <= magnitudes::MAX_MAGNITUDE;
 }
 
 bool read_array(PyObject* value, int count, double* numbers) {
@@ -87,7 +66,7 @@ bool read_array(PyObject* value, int count, double* numbers) {
             __builtin_memcpy(&single, item, sizeof single);
             numbers[i] = single;
         }
-        well = __builtin_fabs(numbers[i]) <= GREATEST;
+        well = __builtin_fabs(numbers[i]) <= magnitudes::MAX_MAGNITUDE;
     }
     python.PyBuffer_Release(&buffer);
     return well;
@@ -139,7 +118,7 @@ bool read(int kind, PyObject* value, double* numbers, PyObject** sequence) {
             return false;
         const double x = numbers[0], y = numbers[1], z = numbers[2], w = numbers[3];
         const double squared = x * x + y * y + z * z + w * w;
-        return LEAST_SQUARE < squared && squared < GREATEST_SQUARE;
+        return magnitudes::LEAST_SQUARE < squared && squared < magnitudes::GREATEST_SQUARE;
     }
     case 'v':  // numbers, or None
         *sequence = value;
@@ -363,12 +342,12 @@ intptr_t read_indices(PyObject* sequence, int64_t end, intptr_t most, int64_t* i
     return count;
 }
 
-void run(const Launch& launch, int64_t tree) {
+void run(const TreeCall& call, int64_t tree) {
     // The host relies on the tree that it set last.
-    const int32_t before = *launch.tree;
-    *launch.tree = static_cast<int32_t>(tree);
-    run(static_cast<const KernelCall&>(launch));
-    *launch.tree = before;
+    const int32_t before = *call.tree;
+    *call.tree = static_cast<int32_t>(tree);
+    run(call.call);
+    *call.tree = before;
 }
 
 // Names of the functions and objects that the host writes to the table `python`, in order.
@@ -381,9 +360,6 @@ extern "C" CAROM_EXPORT const char carom_python_objects[] = CAROM_PYTHON_OBJECTS
 
 // Not 0 while Python has to handle all calls that name a connection.
 extern "C" CAROM_EXPORT int32_t carom_quick_calls_paused = 0;
-
-extern "C" CAROM_EXPORT int carom_most_quick_calls() { return MOST_CALLS; }
-extern "C" CAROM_EXPORT int carom_most_clients() { return MOST_CLIENTS; }
 
 // Gives the host the addresses of the tables of Python's functions, of quick calls, of guards and of clients. Returns 0 if another
 // interpreter of the process already has them.

@@ -1,45 +1,14 @@
 // Bodies in the arrays of a world: their rows are put in or taken out in all arrays of a table by one call, which no
-// signal can interrupt. `carom.native.row_changes` has the same structs.
-
-#include <stdint.h>
-
+// signal can interrupt. 
 #include "export.h"
-
-namespace {
-
-// An array: for each of `worlds`, the rows of one axis.
-struct Field {
-    char* memory;
-    int64_t worlds;
-    int64_t world_bytes;
-    int64_t row_bytes;
-    int64_t axis;
-};
-
-// Row numbers of the axis `target`, so many in each row of `axis`; negative ones stand for no row.
-struct Reference {
-    char* memory;
-    int64_t row_bytes;
-    int64_t numbers;
-    int64_t axis;
-    int64_t target;
-};
-
-struct Table {
-    const Field* fields;
-    const Reference* references;
-    int64_t field_count;
-    int64_t reference_count;
-};
-
-}  // namespace
+#include "layouts.h"
 
 // Put rows into unused places. `data` has the rows of each field in turn, as in a table without other rows; `first` and
 // `count` say for each axis where they go and how many there are. Each world gets the same.
 extern "C" CAROM_EXPORT void carom_put_rows(
-    const Table* table, const char* data, const int64_t* first, const int64_t* count) {
-    for (int64_t i = 0; i < table->field_count; ++i) {
-        const Field& field = table->fields[i];
+    const RowTable* table, const char* data, const int64_t* first, const int64_t* count) {
+    for (int64_t i = 0; i < table->column_count; ++i) {
+        const RowField& field = table->columns[i];
         const int64_t bytes = count[field.axis] * field.row_bytes;
         char* memory = field.memory + first[field.axis] * field.row_bytes;
         for (int64_t world = 0; world < field.worlds; ++world)
@@ -47,7 +16,7 @@ extern "C" CAROM_EXPORT void carom_put_rows(
         data += bytes;
     }
     for (int64_t i = 0; i < table->reference_count; ++i) {
-        const Reference& reference = table->references[i];
+        const RowReference& reference = table->references[i];
         const int64_t moved = first[reference.target];
         char* row = reference.memory + first[reference.axis] * reference.row_bytes;
         for (int64_t k = 0; moved && k < count[reference.axis]; ++k, row += reference.row_bytes) {
@@ -62,11 +31,11 @@ extern "C" CAROM_EXPORT void carom_put_rows(
 // Take consecutive rows out of each axis, of the rows in use on it; later rows move up, and the rows that become free
 // are zero. Nothing happens if `done` is set, as this function does.
 extern "C" CAROM_EXPORT void carom_take_rows(
-    const Table* table, const int64_t* first, const int64_t* count, const int64_t* used, int32_t* done) {
+    const RowTable* table, const int64_t* first, const int64_t* count, const int64_t* used, int32_t* done) {
     if (*done)
         return;
-    for (int64_t i = 0; i < table->field_count; ++i) {
-        const Field& field = table->fields[i];
+    for (int64_t i = 0; i < table->column_count; ++i) {
+        const RowField& field = table->columns[i];
         const int64_t size = field.row_bytes, from = first[field.axis], gone = count[field.axis];
         const int64_t kept = used[field.axis] - gone;
         for (int64_t world = 0; gone && world < field.worlds; ++world) {
@@ -76,7 +45,7 @@ extern "C" CAROM_EXPORT void carom_take_rows(
         }
     }
     for (int64_t i = 0; i < table->reference_count; ++i) {
-        const Reference& reference = table->references[i];
+        const RowReference& reference = table->references[i];
         const int64_t gone = count[reference.target], after = first[reference.target] + gone;
         const int64_t kept = used[reference.axis] - count[reference.axis];
         char* row = reference.memory;

@@ -1,0 +1,35 @@
+"""Rows of tables, as native code puts them in and takes them out."""
+
+from carom.layouts.records import Bytes, Int64, Read, c_record
+
+
+@c_record()
+class RowField:
+    """An array: for each of `worlds`, the rows of one axis."""
+
+    memory: Bytes
+    worlds: Int64
+    world_bytes: Int64
+    row_bytes: Int64
+    axis: Int64
+
+
+@c_record()
+class RowReference:
+    """Row numbers of the axis `target`, so many in each row of `axis`; negative ones stand for no row."""
+
+    memory: Bytes
+    row_bytes: Int64
+    numbers: Int64
+    axis: Int64
+    target: Int64
+
+
+@c_record()
+class RowTable:
+    """The arrays of one table or several, and those of them that contain row numbers."""
+
+    columns: Read[RowField]
+    references: Read[RowReference]
+    column_count: Int64
+    reference_count: Int64
