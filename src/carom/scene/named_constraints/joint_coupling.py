@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY
 from carom.layouts.codes import UserConstraintKind
+from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -14,13 +15,10 @@ if TYPE_CHECKING:
     from carom.scene.joint import Joint
     from carom.world.world import World
 
-UNBOUNDED = 1e30
-"""Greatest impulse of a coupling per substep [N m s or N s]; no solver gets there."""
-
 _SINGLE_DOF = 1
 
 
-class JointCoupling:
+class JointCoupling(NamedConstraint):
     """Holds a joint, the follower, at a polynomial of the position of another one, its leader.
 
     A file's couplings hold from the start: followers are placed where they follow. In each substep the solver
@@ -28,10 +26,7 @@ class JointCoupling:
     `parameters.joint_erp` of the error. Both joints feel the force of the coupling.
     """
 
-    __slots__ = ("_tie",)
-
-    def __init__(self, tie: UserConstraint) -> None:
-        self._tie = tie
+    __slots__ = ()
 
     def __repr__(self) -> str:
         leader = "" if self.leader is None else f" of {self.leader.name!r}"
@@ -39,35 +34,23 @@ class JointCoupling:
         return f"<JointCoupling {self.name!r}: {self.follower.name!r} = {self.coefficients}{leader}{state}>"
 
     @property
-    def name(self) -> str:
-        """Name: in URDF files that of the joint with the `<mimic>`."""
-        return self._tie.name
-
-    @property
     def follower(self) -> Joint:
         """The joint that follows."""
-        return self._tie.parent.joints[self._tie.parent_link]
+        return self._constraint.parent.joints[self._constraint.parent_link]
 
     @property
     def leader(self) -> Joint | None:
         """The joint that it follows; None if it is held at a constant."""
-        return None if self._tie.child is None else self._tie.child.joints[self._tie.child_link]
+        return (
+            None
+            if self._constraint.child is None
+            else self._constraint.child.joints[self._constraint.child_link]
+        )
 
     @property
     def coefficients(self) -> tuple[float, float, float, float, float]:
         """Of the polynomial, from the constant to the fourth power; of `<mimic>` offset and multiplier."""
-        return (self._tie.relative_position_target, *self._tie.polynomial)
-
-    @property
-    def enabled(self) -> bool:
-        """Whether it holds; settable. Where it is switched on again, it pulls the follower back."""
-        return self._tie.enabled
-
-    @enabled.setter
-    def enabled(self, value: bool) -> None:
-        if self._tie.enabled != bool(value):
-            self._tie.enabled = bool(value)
-            self._tie.parent.world.constraints_changed()
+        return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
     def error(self) -> float:
@@ -89,7 +72,7 @@ class JointCoupling:
         """Set position and velocity of the follower to those that follow from the leader's."""
         wanted, slope = self._wanted()
         rate = 0.0 if self.leader is None else slope * float(self.leader.velocity)
-        self._tie.parent.set_joint_state(self._tie.parent_link, [wanted], [rate])
+        self._constraint.parent.set_joint_state(self._constraint.parent_link, [wanted], [rate])
 
     @property
     def force(self) -> float:
@@ -97,21 +80,12 @@ class JointCoupling:
 
         The leader feels this times minus the slope of the polynomial.
         """
-        world = self._tie.parent.world
-        if not self.enabled:
-            return 0.0
-        impulse = world.user_constraints.impulses(self._tie, world.arrays.state)[0]
-        return float(impulse) / (world.parameters.time_step / max(1, world.parameters.substeps))
+        return float(self._forces(1)[0])
 
 
 def couplings_of(world: World, bodies: Sequence[Body]) -> list[JointCoupling]:
     """The couplings of some bodies of a world."""
-    ties = [] if len(world.user_constraints) == 0 else world.user_constraints.all
-    return [
-        JointCoupling(tie)
-        for tie in ties
-        if tie.kind == UserConstraintKind.COUPLING and any(tie.parent is body for body in bodies)
-    ]
+    return [JointCoupling(each) for each in constraints_of(world, bodies, (UserConstraintKind.COUPLING,))]
 
 
 def place_followers(body: Body, joint: int) -> None:

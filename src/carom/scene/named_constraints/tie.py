@@ -12,6 +12,7 @@ from carom.description.transform import compose, conjugate, inverse, multiplied,
 from carom.layouts.codes import UserConstraintKind
 from carom.native.products import dots, length
 from carom.native.trigonometry import atan2
+from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -19,17 +20,11 @@ if TYPE_CHECKING:
     from carom.scene.link import Link
     from carom.world.world import World
 
-UNBOUNDED = 1e30
-"""Greatest impulse of each row of a tie per substep [N s or N m s]; no solver gets there."""
 
-
-class Connect:
+class Connect(NamedConstraint):
     """Holds a point of a link at a point of another one, or of the world, as a ball joint does."""
 
-    __slots__ = ("_tie",)
-
-    def __init__(self, tie: UserConstraint) -> None:
-        self._tie = tie
+    __slots__ = ()
 
     def __repr__(self) -> str:
         second = "the world" if self.second is None else repr(self.second.name)
@@ -37,30 +32,18 @@ class Connect:
         return f"<{type(self).__name__} {self.name!r}: {self.first.name!r} to {second}{state}>"
 
     @property
-    def name(self) -> str:
-        """Name in the file."""
-        return self._tie.name
-
-    @property
     def first(self) -> Link:
         """The first link."""
-        return self._tie.parent.links[self._tie.parent_link]
+        return self._constraint.parent.links[self._constraint.parent_link]
 
     @property
     def second(self) -> Link | None:
         """The second link; None for the world."""
-        return None if self._tie.child is None else self._tie.child.links[self._tie.child_link]
-
-    @property
-    def enabled(self) -> bool:
-        """Whether it holds; settable. Where it is switched on again, it pulls the links together."""
-        return self._tie.enabled
-
-    @enabled.setter
-    def enabled(self, value: bool) -> None:
-        if self._tie.enabled != bool(value):
-            self._tie.enabled = bool(value)
-            self._tie.parent.world.constraints_changed()
+        return (
+            None
+            if self._constraint.child is None
+            else self._constraint.child.links[self._constraint.child_link]
+        )
 
     @property
     def error(self) -> np.ndarray:
@@ -71,19 +54,11 @@ class Connect:
     @property
     def force(self) -> np.ndarray:
         """Force on the first link in the last substep, in world axes [N], shape (3,); 0 while disabled."""
-        return self._per_time()[:3].copy()
-
-    def _per_time(self) -> np.ndarray:
-        """Force, and if it is a weld torque along the axes of the first frame, shape (6,)."""
-        world, result = self._tie.parent.world, np.zeros(6)
-        if self.enabled:
-            impulses = world.user_constraints.impulses(self._tie, world.arrays.state)
-            result[: len(impulses)] = impulses
-        return result / (world.parameters.time_step / max(1, world.parameters.substeps))
+        return self._forces(6)[:3].copy()
 
     def _frames(self) -> tuple[Pose, Pose]:
         """World poses of the frames that coincide where it holds."""
-        it = self._tie
+        it = self._constraint
         first = compose(_centre_frame(it.parent, it.parent_link), it.parent_frame)
         if it.child is None:
             return first, it.child_frame
@@ -106,7 +81,7 @@ class Weld(Connect):
     def torque(self) -> np.ndarray:
         """Torque on the first link in the last substep, in world axes [N m], shape (3,); 0 while disabled."""
         first, _ = self._frames()
-        return dots(np.array(rotation_matrix(first.orientation)), self._per_time()[3:])
+        return dots(np.array(rotation_matrix(first.orientation)), self._forces(6)[3:])
 
 
 def _centre_frame(body: Body, link: int) -> Pose:
@@ -155,8 +130,4 @@ def _from_centre(body: Body, link: int, frame: Pose) -> Pose:
 def ties_of(world: World, bodies: Sequence[Body]) -> list[Connect]:
     """The named ties of some bodies of a world."""
     kinds = {UserConstraintKind.FIXED: Weld, UserConstraintKind.POINT_TO_POINT: Connect}
-    return [
-        kinds[tie.kind](tie)
-        for tie in (world.user_constraints.all if len(world.user_constraints) else ())
-        if tie.kind in kinds and tie.name and any(tie.parent is body for body in bodies)
-    ]
+    return [kinds[tie.kind](tie) for tie in constraints_of(world, bodies, tuple(kinds)) if tie.name]

@@ -1,0 +1,62 @@
+"""What named constraints of a world have in common: their name, whether they hold, and their impulses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.codes import UserConstraintKind
+from carom.scene.user_constraints import UserConstraint
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+UNBOUNDED = 1e30
+"""Greatest impulse of each row of a named constraint per substep [N s or N m s]; no solver gets there."""
+
+
+class NamedConstraint:
+    """A constraint of a file, or of the modern API, that can be switched off and on."""
+
+    __slots__ = ("_constraint",)
+
+    def __init__(self, constraint: UserConstraint) -> None:
+        self._constraint = constraint
+
+    @property
+    def name(self) -> str:
+        """Name in the file; in URDF files of `<mimic>` that of the joint."""
+        return self._constraint.name
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it holds; settable. Where it is switched on again, it pulls what it constrains back."""
+        return self._constraint.enabled
+
+    @enabled.setter
+    def enabled(self, value: bool) -> None:
+        if self._constraint.enabled != bool(value):
+            self._constraint.enabled = bool(value)
+            self._constraint.parent.world.constraints_changed()
+
+    def _forces(self, rows: int) -> np.ndarray:
+        """Impulse of each row of the last substep per its duration [N or N m]; 0 while disabled."""
+        world, result = self._constraint.parent.world, np.zeros(rows)
+        if self.enabled:
+            impulses = world.user_constraints.impulses(self._constraint, world.arrays.state)
+            result[: len(impulses)] = impulses
+        return result / (world.parameters.time_step / max(1, world.parameters.substeps))
+
+
+def constraints_of(
+    world: World, bodies: Sequence[Body], kinds: Sequence[UserConstraintKind]
+) -> list[UserConstraint]:
+    """The constraints of some kinds of some bodies of a world."""
+    return [
+        constraint
+        for constraint in (world.user_constraints.all if len(world.user_constraints) else ())
+        if constraint.kind in kinds and any(constraint.parent is body for body in bodies)
+    ]
