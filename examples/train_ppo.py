@@ -133,12 +133,13 @@ def advantages(played, last_value):
     return found
 
 
-def improve(agent, optimiser, played, found, entropy_share):
-    """Some epochs of gradient steps on what was played."""
+def improve(agent, optimiser, played, found, entropy_share, epochs=EPOCHS, batch=BATCH):
+    """Some epochs of gradient steps on what was played; returns how far the policy moved (KL divergence)."""
     flat = {name: values.flatten(0, 1) for name, values in played.items()}
     gains, targets = found.flatten(), (found + played["value"]).flatten()
-    for _ in range(EPOCHS):
-        for rows in torch.randperm(len(gains)).split(BATCH):
+    moved = []
+    for _ in range(epochs):
+        for rows in torch.randperm(len(gains)).split(batch):
             distribution = agent.distribution(flat["observation"][rows])
             ratio = (distribution.log_prob(flat["action"][rows]) - flat["log"][rows]).exp()
             gain = gains[rows]
@@ -150,6 +151,8 @@ def improve(agent, optimiser, played, found, entropy_share):
             loss.backward()
             nn.utils.clip_grad_norm_(agent.parameters(), LARGEST_GRADIENT)
             optimiser.step()
+            moved.append((ratio - 1.0 - ratio.log()).mean().item())
+    return float(np.mean(moved))
 
 
 def show(done, total, finished, started):
