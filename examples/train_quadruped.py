@@ -143,7 +143,7 @@ class Learner:
             60.0 * self.watched.falls / seconds,
             float(np.mean(self.watched.errors)), float(np.mean(self.watched.turn_errors)),
             float(self.env.levels.mean()), move, self.optimiser.param_groups[0]["lr"],
-            float(self.agent.log_spread.exp().mean()),
+            float(self.agent.log_spread.detach().exp().mean()),
         ))  # fmt: skip
 
     def adapt_rate(self, move):

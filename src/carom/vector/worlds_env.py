@@ -33,9 +33,9 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
     """A vector environment: environments of the same kind, one for each of many worlds.
 
     A subclass defines how an episode begins (`begin`), what an action does (`act`), the observation
-    (`observe`), the reward (`reward`) and when an episode is over (`terminated`, `truncated`), each for all environments
-    at once: the first axis of arrays is the environment. A step calls the last four in this order, with the
-    worlds stepped between `act` and `observe`. If a reward needs data from before the step, `act` has to keep
+    (`observe`), the reward (`reward`) and when an episode is over (`terminated`, `truncated`), each for all
+    environments at once: the first axis of arrays is the environment. A step calls the last five in this
+    order, with the worlds stepped between `act` and `observe`. If a reward needs data from before the step, `act` has to keep
     them; `observe` may be called several times for a state, and must not change it. It may draw noise from
     `random`: if it is called for environments that begin, the others keep their observations and draw none.
 

@@ -28,6 +28,8 @@ _TURN, _LIMIT = 0.35, 2.0
 _GAIT = 1.8
 """Strides of the clock per second."""
 _PHASES = np.array([0.0, 0.5, 0.5, 0.0])
+_LIFT = np.array([0.0, 0.3, -0.6])
+"""How far the joints of a leg bend in the middle of the time that its foot is in the air [rad]."""
 _START = 0.33
 """Height of the trunk above the ground at the start [m]."""
 _FOOT = 0.02
@@ -42,8 +44,9 @@ class Quadruped(ManagerEnv):
     other, and levels of difficulty one behind the other. Each world has its kind, and its level rises when its
     robot walks as far as commanded, and falls when it does not.
 
-    Action: deviations of the targets of the twelve joints from a stance, in units of 0.35 rad, at most 2. They
-    are followed by springs with dampers. Observations, rewards, terminations, events, commands and curriculum
+    Action: deviations of the targets of the twelve joints from a gait, in units of 0.35 rad, at most 2. The
+    gait is to tread on the spot, diagonal pairs of legs in turn, or to stand if that is the command. The
+    targets are followed by springs with dampers. Observations, rewards, terminations, events, commands and curriculum
     are in `carom.vector.quadruped.terms.TASK`. A step lasts 1/50 s.
 
     Attributes:
@@ -83,7 +86,7 @@ class Quadruped(ManagerEnv):
         self._foot_rows = np.array([names.index(foot) for foot in self.feet])
         # `links_in_contact` has the base in front.
         self._leg_rows = np.array(
-            [[1 + names.index(f"{leg}_{part}") for part in ("hip", "upper", "lower")] for leg in _LEGS]
+            [[1 + names.index(f"{leg}_{part}") for part in ("hip", "upper")] for leg in _LEGS]
         )
         self._upright = self.robot.base_poses[0].copy()
         self.levels = np.zeros(self.num_envs, dtype=np.int64)
@@ -102,7 +105,9 @@ class Quadruped(ManagerEnv):
 
     def apply(self, actions: Array) -> None:
         """Set the targets of the joints."""
-        self._targets[...] = self.home + _TURN * np.clip(actions, -_LIMIT, _LIMIT)
+        lifts = np.sin(2.0 * np.pi * self._phases())[:, :, None] * ~self.wanted_touching()[:, :, None]
+        gait = self.home - (lifts * _LIFT).reshape(self.num_envs, -1)
+        self._targets[...] = gait + _TURN * np.clip(actions, -_LIMIT, _LIMIT)
         self.robot.set_springs(self._targets, stiffness=self.stiffness, damping=self.damping)
 
     def simulate(self) -> None:
@@ -144,7 +149,7 @@ class Quadruped(ManagerEnv):
         self.touching: Mask = found[:, 1 + self._foot_rows]
         """Which feet touch the ground, (num_envs, 4)."""
         self.bumping: Mask = found[:, self._leg_rows].any(axis=2)
-        """Which legs touch it with something else, (num_envs, 4)."""
+        """Which legs touch it with the hip or the thigh, (num_envs, 4)."""
         self.trunk_touching: Mask = found[:, 0].copy()
         """Whether the trunk touches it, (num_envs,)."""
 
@@ -179,9 +184,12 @@ class Quadruped(ManagerEnv):
 
     def wanted_touching(self) -> Mask:
         """Which feet should be on the ground, (num_envs, 4): diagonal pairs in turn; all when standing."""
-        phase = (_GAIT * self.duration * self.episode_steps[:, None] + _PHASES) % 1.0
         standing = ~self.commands["velocity"].any(axis=1)
-        return (phase < 0.5) | standing[:, None]
+        return (self._phases() < 0.5) | standing[:, None]
+
+    def _phases(self) -> Array:
+        """Phases of the legs in the stride, from 0 to 1, (num_envs, 4); from 0.5 on the foot is in the air."""
+        return (_GAIT * self.duration * self.episode_steps[:, None] + _PHASES) % 1.0
 
     def torques(self) -> Array:
         """Torques of the springs at the end of the step [N m], (num_envs, 12)."""

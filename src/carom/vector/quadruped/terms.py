@@ -41,6 +41,12 @@ def follow_velocity(env: Quadruped) -> Array:
     return np.exp(-error / _SIGMA)
 
 
+def lag(env: Quadruped) -> Array:
+    """How far the velocity is off [m/s]; unlike `follow_velocity` it guides from afar."""
+    error = np.square(env.velocities[:, :2] - env.commands["velocity"][:, :2]).sum(axis=1)
+    return np.sqrt(error)
+
+
 def follow_turn(env: Quadruped) -> Array:
     return np.exp(-np.square(env.rates[:, 2] - env.commands["velocity"][:, 2]) / _SIGMA)
 
@@ -86,7 +92,7 @@ def effort(env: Quadruped) -> Array:
 
 
 def bumps(env: Quadruped) -> Array:
-    """Number of legs that touch the ground with something else than the foot."""
+    """Number of legs that touch the ground with the hip or the thigh."""
     return env.bumping.sum(axis=1).astype(float)
 
 
@@ -174,14 +180,15 @@ TASK = Task(
     },
     rewards={
         "follow velocity": Reward(follow_velocity, 2.0),
+        "lag": Reward(lag, -1.0),
         "follow turn": Reward(follow_turn, 1.0),
-        "trot": Reward(trot, 0.7),
-        "clearance": Reward(clearance, 0.4),
+        "trot": Reward(trot, 0.5),
+        "clearance": Reward(clearance, 0.5),
         "heave": Reward(heave, -1.0),
         "sway": Reward(sway, -0.05),
         "tilt": Reward(tilt, -0.5),
         "height": Reward(height, -20.0),
-        "posture": Reward(posture, -0.1),
+        "posture": Reward(posture, -0.05),
         "haste": Reward(haste, -0.02),
         "effort": Reward(effort, -1e-4),
         "bumps": Reward(bumps, -0.3),
