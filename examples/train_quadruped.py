@@ -2,8 +2,8 @@
 
     python examples/train_quadruped.py --out quadruped-output
 
-Needs `pip install 'carom[train]'`. Run again with the same folder, it continues where it was; PPO itself is in
-`train_ppo.py`.
+Needs `pip install 'carom[train]'`. Run again with the same folder, it continues where it was. PPO itself is
+in `train_ppo.py`.
 """
 
 import argparse
@@ -225,7 +225,9 @@ def main(arguments=None):
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
     parser.add_argument("--draw", action="store_true", help="only draw the curve of the folder")
-    parser.add_argument("--out", type=Path, default=Path("quadruped-output"), help="folder of what is written")
+    parser.add_argument(
+        "--out", type=Path, default=Path("quadruped-output"), help="folder of what is written"
+    )
     asked = vars(parser.parse_args(arguments))
     folder, only_draw = asked.pop("out"), asked.pop("draw")
     rows = read_rows(folder / "learning-curve.csv") if only_draw else train(folder, **asked)

@@ -97,7 +97,7 @@ def test_parameters_that_were_changed_afterwards_are_those_of_the_checkpoint(tmp
     env.worlds.gravity = (0.0, 0.0, -1.0)
     env.ball.change_dynamics(-1, mass=9.0, lateral_friction=0.1)
     env.restore(tmp_path / "here.npz")
-    assert env.worlds.gravity[:, 2].tolist() == [-9.81, -3.0, -9.81, -9.81, -9.81, -9.81]
+    assert np.asarray(env.worlds.gravity)[:, 2].tolist() == [-9.81, -3.0, -9.81, -9.81, -9.81, -9.81]
     assert (env.ball.dynamics(-1)["mass"] == masses).all()
     assert (env.ball.dynamics(-1)["lateral_friction"] == 0.5).all()
 

@@ -1,7 +1,7 @@
 """Checkpoints of environments: what changes in them, in a file.
 
-A checkpoint is a file of NumPy (`.npz`) with the arrays and, as JSON, everything else. Reading it runs no code
-from it.
+A checkpoint is a file of NumPy (`.npz`) with the arrays and, as JSON, everything else. Reading it runs no
+code from it.
 """
 
 from __future__ import annotations

@@ -35,9 +35,10 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
     A subclass defines how an episode begins (`begin`), what an action does (`act`), the observation
     (`observe`), the reward (`reward`) and when an episode is over (`terminated`, `truncated`), each for all
     environments at once: the first axis of arrays is the environment. A step calls the last five in this
-    order, with the worlds stepped between `act` and `observe`. If a reward needs data from before the step, `act` has to keep
-    them; `observe` may be called several times for a state, and must not change it. It may draw noise from
-    `random`: if it is called for environments that begin, the others keep their observations and draw none.
+    order, with the worlds stepped between `act` and `observe`. If a reward needs data from before the step,
+    `act` has to keep them; `observe` may be called several times for a state, and must not change it. It may
+    draw noise from `random`: if it is called for environments that begin, the others keep their observations
+    and draw none.
 
     Environment k depends only on its own actions and its own seed: `reset(seed=s)` gives it `s + k`.
 

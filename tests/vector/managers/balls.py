@@ -9,7 +9,16 @@ import gymnasium
 import numpy as np
 from tests.physics.contact_scenes import add_ball, earth
 
-from carom.vector.managers import Command, Curriculum, Event, ManagerEnv, Observation, Reward, Task, Termination
+from carom.vector.managers import (
+    Command,
+    Curriculum,
+    Event,
+    ManagerEnv,
+    Observation,
+    Reward,
+    Task,
+    Termination,
+)
 
 COUNT = 4
 STEP = 2.0 / 240.0

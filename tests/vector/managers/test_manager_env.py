@@ -73,7 +73,7 @@ def test_a_history_begins_with_the_first_value_and_looking_twice_changes_nothing
 def test_rewards_are_sums_of_weighted_terms_and_the_infos_have_each():
     env = Balls()
     env.reset(seed=0)
-    total = {"height": 0.0, "effort": 0.0}
+    total = {"height": np.zeros(COUNT), "effort": np.zeros(COUNT)}
     for step in range(3):
         chosen = actions(COUNT, step)
         _, reward, _, _, infos = env.step(chosen)
@@ -152,7 +152,10 @@ def test_intervals_and_commands_come_within_their_times():
     # Two seconds: kicks 0.05 to 0.1 s apart, commands 0.1 to 0.2 s.
     assert env.kicks.min() >= 19
     assert env.kicks.max() <= 41
-    for times, least, most in ((np.diff(seen, axis=0) != 0, 0.05, 0.1), (np.diff(commands, axis=0) != 0, 0.1, 0.2)):
+    for times, least, most in (
+        (np.diff(seen, axis=0) != 0, 0.05, 0.1),
+        (np.diff(commands, axis=0) != 0, 0.1, 0.2),
+    ):
         gaps = np.concatenate([np.diff(np.flatnonzero(column)) for column in times.T]) * STEP
         assert gaps.min() >= least - STEP
         assert gaps.max() <= most + STEP
@@ -164,7 +167,7 @@ def test_the_curriculum_sees_the_worlds_as_the_episode_left_them():
     env = Balls(task=changed(terminations=falls, events={"lift": Event(lambda env, worlds: None)}))
     env.reset(seed=0)
     told = played(env, 60)
-    ended = sum(step[2].astype(int) for step in told)
+    ended = np.sum([step[2] for step in told], axis=0)
     assert ended.min() >= 1
     assert (env.levels == ended).all()
     assert told[-1][4]["curriculum"]["level"][0] == ended.sum()

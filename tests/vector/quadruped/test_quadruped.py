@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import gymnasium
 import numpy as np
 import pytest
@@ -25,12 +27,14 @@ def env() -> Quadruped:
 
 def test_gymnasium_knows_it():
     check_env(gymnasium.make("carom/QuadrupedWalk-v0").unwrapped, skip_render_check=True)
-    assert gymnasium.make_vec("carom/QuadrupedWalk-v0", num_envs=2).unwrapped.max_episode_steps == 500
+    many: Any = gymnasium.make_vec("carom/QuadrupedWalk-v0", num_envs=2).unwrapped
+    assert many.max_episode_steps == 500
 
 
-def test_without_actions_it_stands(env: Quadruped):
+def test_without_a_command_it_stands(env: Quadruped):
     env.levels[:] = 0
     env.reset()
+    env.commands["velocity"][:] = 0.0
     for _ in range(100):
         _, _, terminations, _, _ = env.step(STILL)
         assert not terminations.any()
@@ -39,6 +43,22 @@ def test_without_actions_it_stands(env: Quadruped):
     assert (np.abs(env.trunks[:, 2] - env.ground.mean(axis=1) - 0.27) < 0.03).all()
     assert (np.abs(env.foot_heights) < 0.01).all()
     assert (env.gravity[:, 2] < -0.98).all()
+
+
+def test_without_actions_it_treads_on_the_spot(env: Quadruped):
+    env.levels[:] = 0
+    env.reset()
+    env.commands["velocity"][:] = 0.5, 0.0, 0.0
+    start = env.trunks[:, :2].copy()
+    heights, matches = [], []
+    for _ in range(100):
+        _, _, terminations, _, _ = env.step(STILL)
+        assert not terminations.any()
+        heights.append(env.foot_heights)
+        matches.append(terms.trot(env))
+    assert (np.max(heights, axis=0) > 0.015).all()
+    assert np.mean(matches) > 0.6
+    assert (np.abs(env.trunks[:, :2] - start) < 0.5).all()
 
 
 def test_velocities_are_those_in_the_axes_of_the_trunk(env: Quadruped):

@@ -41,13 +41,13 @@ class Quadruped(ManagerEnv):
     """An A1 that follows commands of velocity on random terrain.
 
     All worlds share one height field of tiles: kinds of terrain (rough, slopes, stairs, blocks) beside each
-    other, and levels of difficulty one behind the other. Each world has its kind, and its level rises when its
+    other, and levels of difficulty one behind the other. Each world has its kind; its level rises when its
     robot walks as far as commanded, and falls when it does not.
 
     Action: deviations of the targets of the twelve joints from a gait, in units of 0.35 rad, at most 2. The
     gait is to tread on the spot, diagonal pairs of legs in turn, or to stand if that is the command. The
-    targets are followed by springs with dampers. Observations, rewards, terminations, events, commands and curriculum
-    are in `carom.vector.quadruped.terms.TASK`. A step lasts 1/50 s.
+    targets are followed by springs with dampers. Observations, rewards, terminations, events, commands and
+    curriculum are in `carom.vector.quadruped.terms.TASK`. A step lasts 1/50 s.
 
     Attributes:
         terrain: The ground.
@@ -148,7 +148,7 @@ class Quadruped(ManagerEnv):
         found = self.worlds.links_in_contact(self._robot_body, self._ground_body)
         self.touching: Mask = found[:, 1 + self._foot_rows]
         """Which feet touch the ground, (num_envs, 4)."""
-        self.bumping: Mask = found[:, self._leg_rows].any(axis=2)
+        self.bumping: Mask = np.logical_or.reduce(found[:, self._leg_rows], axis=2)
         """Which legs touch it with the hip or the thigh, (num_envs, 4)."""
         self.trunk_touching: Mask = found[:, 0].copy()
         """Whether the trunk touches it, (num_envs,)."""
@@ -184,12 +184,13 @@ class Quadruped(ManagerEnv):
 
     def wanted_touching(self) -> Mask:
         """Which feet should be on the ground, (num_envs, 4): diagonal pairs in turn; all when standing."""
-        standing = ~self.commands["velocity"].any(axis=1)
-        return (self._phases() < 0.5) | standing[:, None]
+        standing = np.logical_not(np.any(self.commands["velocity"], axis=1))
+        return np.logical_or(self._phases() < 0.5, standing.reshape(-1, 1))
 
     def _phases(self) -> Array:
-        """Phases of the legs in the stride, from 0 to 1, (num_envs, 4); from 0.5 on the foot is in the air."""
-        return (_GAIT * self.duration * self.episode_steps[:, None] + _PHASES) % 1.0
+        """Phases of the legs in the stride, from 0 to 1, (num_envs, 4); from 0.5 on a foot is in the air."""
+        times = self.duration * self.episode_steps.astype(np.float64)
+        return np.mod(_GAIT * times[:, None] + _PHASES, 1.0)
 
     def torques(self) -> Array:
         """Torques of the springs at the end of the step [N m], (num_envs, 12)."""

@@ -37,6 +37,7 @@ def scan(env: Quadruped) -> Array:
 
 
 def follow_velocity(env: Quadruped) -> Array:
+    """How near the horizontal velocity is to the command, 1 for equal."""
     error = np.square(env.velocities[:, :2] - env.commands["velocity"][:, :2]).sum(axis=1)
     return np.exp(-error / _SIGMA)
 
@@ -48,6 +49,7 @@ def lag(env: Quadruped) -> Array:
 
 
 def follow_turn(env: Quadruped) -> Array:
+    """How near the turning is to the command, 1 for equal."""
     return np.exp(-np.square(env.rates[:, 2] - env.commands["velocity"][:, 2]) / _SIGMA)
 
 
@@ -64,30 +66,37 @@ def clearance(env: Quadruped) -> Array:
 
 
 def heave(env: Quadruped) -> Array:
+    """Square of the vertical velocity [m²/s²]."""
     return np.square(env.velocities[:, 2])
 
 
 def sway(env: Quadruped) -> Array:
+    """Square of the rates of roll and pitch [rad²/s²]."""
     return np.square(env.rates[:, :2]).sum(axis=1)
 
 
 def tilt(env: Quadruped) -> Array:
+    """Square of the sine of the angle by which the trunk is tilted."""
     return np.square(env.gravity[:, :2]).sum(axis=1)
 
 
 def height(env: Quadruped) -> Array:
+    """Square of the error of the height of the trunk above the ground [m²]."""
     return np.square(env.trunks[:, 2] - env.ground.mean(axis=1) - _HEIGHT)
 
 
 def posture(env: Quadruped) -> Array:
+    """Sum of squares of what the joints are away from the stance [rad²]."""
     return np.square(env.robot.joint_positions - env.home).sum(axis=1)
 
 
 def haste(env: Quadruped) -> Array:
+    """Sum of squares of the changes of actions."""
     return np.square(env.actions - env.last_actions).sum(axis=1)
 
 
 def effort(env: Quadruped) -> Array:
+    """Sum of squares of the torques [N² m²]."""
     return np.square(env.torques()).sum(axis=1)
 
 
@@ -105,11 +114,13 @@ def fall(env: Quadruped) -> Array:
 
 
 def fallen(env: Quadruped) -> np.ndarray:
-    return env.trunk_touching | (env.gravity[:, 2] > -0.5)
+    """Which trunks touch the ground or are tilted by more than 60°."""
+    return env.trunk_touching | np.asarray(env.gravity[:, 2] > -0.5)
 
 
 def outside(env: Quadruped) -> np.ndarray:
-    return (np.abs(env.trunks[:, :2]) > env.terrain.half - 1.0).any(axis=1)
+    """Which robots are at the edge of the ground."""
+    return np.any(np.abs(env.trunks[:, :2]) > env.terrain.half - 1.0, axis=1)
 
 
 # Events, commands, curriculum
@@ -148,6 +159,7 @@ def push(env: Quadruped, worlds: np.ndarray) -> None:
 
 
 def choose_velocity(env: Quadruped, worlds: np.ndarray) -> Array:
+    """Velocities forwards and to the left [m/s], and of turning [rad/s]."""
     drawn = env.random.uniform(worlds, 0.0, 1.0, 4)
     chosen = _SLOWEST + (_FASTEST - _SLOWEST) * drawn[:, :3]
     return chosen * (drawn[:, 3:] >= _STANDING)

@@ -63,7 +63,8 @@ class Terrain:
 
     def centres(self, levels: np.ndarray, kinds: np.ndarray) -> Array:
         """Middles of tiles [m], (n, 2)."""
-        return BORDER - self.half + TILE * (np.stack([levels, kinds], axis=-1) + 0.5)
+        places = np.stack([levels, kinds], axis=-1)
+        return np.asarray(BORDER - self.half + TILE * (places + 0.5), dtype=np.float64)
 
 
 def random_terrain(seed: int) -> Terrain:
