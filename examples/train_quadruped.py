@@ -15,21 +15,31 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from train_ppo import Agent, Rewards, Scale, advantages, collect, improve, show
+from train_ppo import Agent, Rewards, advantages, collect, improve, show
 
 from carom.vector.quadruped.quadruped import Quadruped
 
 EPISODE = 500
-EPOCHS, BATCH, WIDTH, ENTROPY = 5, 2048, 128, 0.002
+GAMMA, EPOCHS, BATCH, WIDTH, ENTROPY = 0.97, 5, 1536, 128, 0.002
 RATE, LEAST_RATE, MOST_RATE = 5e-4, 1e-5, 1e-3
 WANTED_MOVE = 0.01
 """KL divergence of an improvement, to which the learning rate is adapted."""
-EVERY = 10
+EVERY = 20
 """Rounds between two checkpoints."""
 COLUMNS = (
     "steps", "wall_seconds", "cpu_seconds", "return", "episode_seconds", "falls_per_minute",
     "velocity_error", "turn_error", "level", "move", "rate", "spread",
 )  # fmt: skip
+
+
+class Unscaled:
+    """Observations as they are: the task scales them, and noise on what never changes stays small."""
+
+    def learn(self, values):
+        pass
+
+    def __call__(self, values):
+        return torch.as_tensor(values, dtype=torch.float32)
 
 
 class Watched:
@@ -69,7 +79,7 @@ class Learner:
         spaces = self.env.single_observation_space, self.env.single_action_space
         self.agent = Agent(*spaces, width=WIDTH)
         self.optimiser = torch.optim.Adam(self.agent.parameters(), lr=RATE, eps=1e-5)
-        self.scale, self.rewards = Scale(spaces[0].shape), Rewards(envs)
+        self.scale, self.rewards = Unscaled(), Rewards(envs, GAMMA)
         self.finished = deque(maxlen=400)
         self.steps, self.wall, self.cpu = 0, 0.0, 0.0
         self.observations, _ = self.env.reset(seed=seed)
@@ -83,7 +93,6 @@ class Learner:
         """Write the state of the worlds, then that of the learner, which names it."""
         name = f"worlds-{self.steps}.npz"
         self.env.save(self.folder / name)
-        scales = (self.scale, self.rewards.scale)
         content = {
             "worlds": name,
             "steps": self.steps,
@@ -92,7 +101,7 @@ class Learner:
             "agent": self.agent.state_dict(),
             "optimiser": self.optimiser.state_dict(),
             "random": torch.get_rng_state(),
-            "scales": [[torch.as_tensor(part) for part in (s.mean, s.variance, s.count)] for s in scales],
+            "scale": tensors(self.rewards.scale),
             "true": torch.as_tensor(self.rewards.true),
             "discounted": torch.as_tensor(self.rewards.discounted),
             "finished": [float(value) for value in self.finished],
@@ -112,9 +121,9 @@ class Learner:
         self.agent.load_state_dict(content["agent"])
         self.optimiser.load_state_dict(content["optimiser"])
         torch.set_rng_state(content["random"])
-        for scale, parts in zip((self.scale, self.rewards.scale), content["scales"], strict=True):
-            scale.mean, scale.variance = parts[0].numpy(), parts[1].numpy()
-            scale.count = float(parts[2])
+        mean, variance, count = content["scale"]
+        scale = self.rewards.scale
+        scale.mean, scale.variance, scale.count = mean.numpy(), variance.numpy(), float(count)
         self.rewards.true[:], self.rewards.discounted[:] = content["true"], content["discounted"]
         self.finished.extend(content["finished"])
         self.observations = content["observations"].numpy()
@@ -124,12 +133,13 @@ class Learner:
         """Play, improve, and note a row of the curve."""
         wall, cpu = time.perf_counter(), time.process_time()
         self.watched.forget()
+        learned = self.agent, self.scale
         self.observations, played = collect(
-            self.watched, self.agent, self.scale, self.observations, length, self.finished, self.rewards
+            self.watched, *learned, self.observations, length, self.finished, self.rewards, GAMMA
         )
         with torch.no_grad():
             last_value = self.agent.worth(self.scale(self.observations))
-        found = advantages(played, last_value)
+        found = advantages(played, last_value, GAMMA)
         move = improve(self.agent, self.optimiser, played, found, ENTROPY, EPOCHS, BATCH)
         self.adapt_rate(move)
         self.steps += self.watched.steps
@@ -153,6 +163,11 @@ class Learner:
         elif move < 0.5 * WANTED_MOVE:
             rate *= 1.2
         self.optimiser.param_groups[0]["lr"] = min(max(rate, LEAST_RATE), MOST_RATE)
+
+
+def tensors(scale):
+    """What a scale has learned, with all its digits."""
+    return [torch.as_tensor(part, dtype=torch.float64) for part in (scale.mean, scale.variance, scale.count)]
 
 
 def write_rows(path, rows):
@@ -192,7 +207,8 @@ def draw(rows, path):
         (axes[2], "level", "level of the terrain"),
     ):
         part.plot(millions, smoothed(columns[name]))
-        part.set(xlabel="million steps", ylabel=label, ylim=(min(0.0, np.nanmin(columns[name])), None))
+        lowest = min(0.0, np.nan_to_num(columns[name]).min())
+        part.set(xlabel="million steps", ylabel=label, ylim=(lowest, None))
         part.grid(alpha=0.3)
     minutes = columns["cpu_seconds"][-1] / 60.0
     figure.suptitle(f"A1 follows velocities on random terrain: {minutes:.0f} minutes of processor time")
@@ -201,7 +217,7 @@ def draw(rows, path):
     pyplot.close(figure)
 
 
-def train(folder, *, envs=256, steps=16_000_000, length=48, seed=0, quiet=False):
+def train(folder, *, envs=256, steps=16_000_000, length=24, seed=0, quiet=False):
     """Train, or continue; returns the rows of the curve."""
     folder.mkdir(parents=True, exist_ok=True)
     learner = Learner(folder, envs, seed)
@@ -221,7 +237,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--envs", type=int, default=256, help="how many at once")
     parser.add_argument("--steps", type=int, default=16_000_000, help="steps of all environments together")
-    parser.add_argument("--length", type=int, default=48, help="steps between improvements")
+    parser.add_argument("--length", type=int, default=24, help="steps between improvements")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
     parser.add_argument("--draw", action="store_true", help="only draw the curve of the folder")

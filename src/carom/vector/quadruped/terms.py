@@ -181,7 +181,7 @@ def climb(env: Quadruped, worlds: np.ndarray) -> float:
 TASK = Task(
     observations={
         "velocity": Observation(lambda env: env.velocities, scale=2.0, noise=0.1),
-        "rates": Observation(lambda env: env.rates, scale=0.25, noise=0.2),
+        "rates": Observation(lambda env: env.rates, scale=0.5, noise=0.2),
         "gravity": Observation(lambda env: env.gravity, noise=0.05),
         "command": Observation(lambda env: env.commands["velocity"], scale=(2.0, 2.0, 1.0)),
         "positions": Observation(lambda env: env.robot.joint_positions - env.home, noise=0.01),

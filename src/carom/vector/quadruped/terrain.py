@@ -81,13 +81,13 @@ def random_terrain(seed: int) -> Terrain:
 
 def _rings() -> Array:
     """Distance of the points of a tile from its middle, as rings of squares [m]."""
-    along = CELL * (np.arange(_CELLS) - 0.5 * _CELLS)
-    return np.maximum(np.abs(along)[:, None], np.abs(along)[None, :])
+    away = np.abs(CELL * (np.arange(_CELLS) - 0.5 * _CELLS))
+    return np.maximum(away[:, None], away[None, :])
 
 
 def _rough(random: np.random.Generator, difficulty: float) -> Array:
     coarse = random.uniform(-1.0, 1.0, (_CELLS // 2, _CELLS // 2))
-    return difficulty * _ROUGHNESS * np.kron(coarse, np.ones((2, 2)))
+    return difficulty * _ROUGHNESS * coarse.repeat(2, axis=0).repeat(2, axis=1)
 
 
 def _slope(random: np.random.Generator, difficulty: float) -> Array:
@@ -106,7 +106,7 @@ def _blocks(random: np.random.Generator, difficulty: float) -> Array:
     blocks = random.uniform(0.0, 1.0, (_CELLS // edge, _CELLS // edge)) * (
         random.uniform(size=(_CELLS // edge, _CELLS // edge)) < 0.4
     )
-    heights = difficulty * _BLOCK * np.kron(blocks, np.ones((edge, edge)))
+    heights = difficulty * _BLOCK * blocks.repeat(edge, axis=0).repeat(edge, axis=1)
     return np.where(_rings() < _PLATFORM, 0.0, heights)
 
 
