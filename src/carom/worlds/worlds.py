@@ -245,10 +245,11 @@ class Worlds(Closed):
         """States and parameters of all worlds, for `resume`, also in another process.
 
         Returns:
-            Arrays and numbers, in dictionaries.
+            Arrays, numbers and texts, in dictionaries and lists.
         """
         saved = self.save()
         return {
+            "bodies": [batch.name for batch in self],
             "state": saved.state,
             "contacts": saved.contacts,
             "times": saved.times,
@@ -271,6 +272,8 @@ class Worlds(Closed):
         times = np.asarray(saved["times"])
         if len(times) != self.count:
             raise ValueError(f"this is a checkpoint of {len(times)} worlds; there are {self.count}")
+        if saved["bodies"] != [batch.name for batch in self]:
+            raise ValueError(f"this is a checkpoint of worlds with other bodies: {saved['bodies']}")
         set_parameters(self._engine, saved["parameters"])
         state, contacts = dict(saved["state"]), dict(saved["contacts"])
         self.restore(SavedWorlds(np.arange(self.count), times, saved["unspent_times"], state, contacts))
