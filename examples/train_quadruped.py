@@ -26,6 +26,8 @@ WANTED_MOVE = 0.01
 """KL divergence of an improvement, to which the learning rate is adapted."""
 EVERY = 20
 """Rounds between two checkpoints."""
+POINTS = 400
+"""Most points of a drawn line."""
 COLUMNS = (
     "steps", "wall_seconds", "cpu_seconds", "return", "episode_seconds", "falls_per_minute",
     "velocity_error", "turn_error", "level", "move", "rate", "spread",
@@ -200,13 +202,14 @@ def draw(rows, path):
 
     columns = dict(zip(COLUMNS, np.array(rows).T, strict=True))
     millions = columns["steps"] / 1e6
+    shown = np.unique(np.linspace(0, len(rows) - 1, POINTS).astype(int))
     figure, axes = pyplot.subplots(1, 3, figsize=(10, 3.2))
     for part, name, label in (
         (axes[0], "return", "return of an episode"),
         (axes[1], "velocity_error", "error of velocity [m/s]"),
         (axes[2], "level", "level of the terrain"),
     ):
-        part.plot(millions, smoothed(columns[name]))
+        part.plot(millions[shown], smoothed(columns[name])[shown])
         lowest = min(0.0, np.nan_to_num(columns[name]).min())
         part.set(xlabel="million steps", ylabel=label, ylim=(lowest, None))
         part.grid(alpha=0.3)
