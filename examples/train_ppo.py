@@ -76,7 +76,7 @@ class Agent(nn.Module):
         return self.value(observations).squeeze(-1)
 
 
-def collect(env, agent, scale, observations, length, finished, rewards_scale):
+def collect(env, agent, scale, observations, length, finished, rewards_scale, gamma=GAMMA):
     """Play `length` steps; episodes that end give their returns to `finished`."""
     played = {name: [] for name in ("observation", "action", "log", "value", "reward", "over")}
     for _ in range(length):
@@ -94,7 +94,7 @@ def collect(env, agent, scale, observations, length, finished, rewards_scale):
         if len(cut):
             last = np.stack([infos["final_obs"][k] for k in cut])
             with torch.no_grad():
-                worth[cut] += GAMMA * agent.worth(scale(last)).numpy()
+                worth[cut] += gamma * agent.worth(scale(last)).numpy()
         for name, values in (
             ("observation", seen),
             ("action", action),
@@ -110,35 +110,37 @@ def collect(env, agent, scale, observations, length, finished, rewards_scale):
 class Rewards:
     """Rewards scaled by the spread of discounted returns; keeps the true returns of episodes."""
 
-    def __init__(self, count):
+    def __init__(self, count, gamma=GAMMA):
+        self.gamma = gamma
         self.true, self.discounted, self.scale = np.zeros(count), np.zeros(count), Scale(())
 
     def __call__(self, rewards, over, finished):
         self.true += rewards
-        self.discounted = GAMMA * self.discounted + rewards
+        self.discounted = self.gamma * self.discounted + rewards
         self.scale.learn(self.discounted)
         finished.extend(self.true[over])
         self.true[over] = self.discounted[over] = 0.0
         return np.clip(rewards / np.sqrt(self.scale.variance + 1e-8), -10.0, 10.0)
 
 
-def advantages(played, last_value):
+def advantages(played, last_value, gamma=GAMMA):
     """Generalised advantage estimates."""
     found, next_value, running = torch.zeros_like(played["reward"]), last_value, 0.0
     for step in reversed(range(len(found))):
         goes_on = 1.0 - played["over"][step]
-        surprise = played["reward"][step] + GAMMA * goes_on * next_value - played["value"][step]
-        running = surprise + GAMMA * LAMBDA * goes_on * running
+        surprise = played["reward"][step] + gamma * goes_on * next_value - played["value"][step]
+        running = surprise + gamma * LAMBDA * goes_on * running
         found[step], next_value = running, played["value"][step]
     return found
 
 
-def improve(agent, optimiser, played, found, entropy_share):
-    """Some epochs of gradient steps on what was played."""
+def improve(agent, optimiser, played, found, entropy_share, epochs=EPOCHS, batch=BATCH):
+    """Some epochs of gradient steps on what was played; returns how far the policy moved (KL divergence)."""
     flat = {name: values.flatten(0, 1) for name, values in played.items()}
     gains, targets = found.flatten(), (found + played["value"]).flatten()
-    for _ in range(EPOCHS):
-        for rows in torch.randperm(len(gains)).split(BATCH):
+    moved = []
+    for _ in range(epochs):
+        for rows in torch.randperm(len(gains)).split(batch):
             distribution = agent.distribution(flat["observation"][rows])
             ratio = (distribution.log_prob(flat["action"][rows]) - flat["log"][rows]).exp()
             gain = gains[rows]
@@ -150,6 +152,8 @@ def improve(agent, optimiser, played, found, entropy_share):
             loss.backward()
             nn.utils.clip_grad_norm_(agent.parameters(), LARGEST_GRADIENT)
             optimiser.step()
+            moved.append((ratio - 1.0 - ratio.log()).mean().item())
+    return float(np.mean(moved))
 
 
 def show(done, total, finished, started):

@@ -85,3 +85,24 @@ def test_stable_baselines_needs_episodes_that_begin_in_the_same_step():
 
     with pytest.raises(ValueError, match="SameStep"):
         StableBaselinesEnv(gymnasium.make_vec("CartPoleBulletEnv-v1", num_envs=2))
+
+
+@pytest.fixture
+def train_quadruped(train_ppo):
+    yield __import__("train_quadruped")
+    sys.modules.pop("train_quadruped", None)
+
+
+def test_the_quadruped_continues_bit_for_bit_where_its_training_was(train_quadruped, tmp_path):
+    size = {"envs": 8, "length": 8, "quiet": True}
+    straight = train_quadruped.train(tmp_path / "straight", steps=256, **size)
+    train_quadruped.train(tmp_path / "broken", steps=128, **size)
+    broken = train_quadruped.train(tmp_path / "broken", steps=256, **size)
+    without_times = [0, *range(4, len(train_quadruped.COLUMNS))]
+    assert len(straight) == len(broken) == 4
+    # The first two rows have been in a file, with six digits.
+    found, expected = (np.array(rows)[:, without_times] for rows in (broken, straight))
+    np.testing.assert_allclose(found[:2], expected[:2], rtol=1e-5)
+    np.testing.assert_array_equal(found[2:], expected[2:])
+    train_quadruped.main(["--draw", "--out", str(tmp_path / "broken")])
+    assert (tmp_path / "broken" / "learning-curve.svg").stat().st_size > 1000

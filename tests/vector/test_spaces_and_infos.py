@@ -164,3 +164,18 @@ def test_choices_that_are_none_are_refused(actions: list[list[float]], says: str
 def test_the_pace_of_videos_is_known() -> None:
     assert Falling().metadata["render_fps"] == 120
     assert SingleEnv(Falling).metadata["render_fps"] == 120
+
+
+class CutOff(Falling):
+    """The first environment is cut off in each step that it takes."""
+
+    def truncated(self) -> np.ndarray:
+        return np.arange(self.num_envs) == 0
+
+
+def test_what_is_cut_off_is_truncated_but_not_in_the_step_in_which_it_begins():
+    env = CutOff()
+    env.reset(seed=0)
+    actions = env.action_space.sample()
+    cut = [env.step(actions)[3].tolist() for _ in range(3)]
+    assert cut == [[True, False, False], [False, False, False], [True, False, False]]

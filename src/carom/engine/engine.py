@@ -393,7 +393,7 @@ class Engine:
             table: "model", "shapes" or "users".
             field: The field in it.
         """
-        if self._parameters(table).spread(field, self.arrays.world_count):
+        if self.table_of(table).spread(field, self.arrays.world_count):
             self.changed()
 
     def parameter(self, table: str, field: str, rows: int | slice) -> np.ndarray:
@@ -404,7 +404,7 @@ class Engine:
             field: The field in it.
             rows: The rows to read.
         """
-        values = self._parameters(table).numpy[field][:, rows]
+        values = self.table_of(table).numpy[field][:, rows]
         return np.broadcast_to(values, (self.arrays.world_count, *values.shape[1:])).copy()
 
     def set_parameter(
@@ -425,11 +425,12 @@ class Engine:
             worlds: Index of the worlds; all by default.
         """
         self.spread(table, field)
-        parameters = self._parameters(table)
+        parameters = self.table_of(table)
         parameters.numpy[field][worlds, rows] = values
         parameters.written(field)
 
-    def _parameters(self, table: str) -> ArrayTable:
+    def table_of(self, table: str) -> ArrayTable:
+        """The table with parameters that can differ between worlds: "model", "shapes" or "users"."""
         return {
             "model": self.arrays.model,
             "shapes": self.contact_arrays.shapes.table,

@@ -17,18 +17,19 @@ from carom.vector.worlds_env import WorldsEnv
 
 __all__ = ["SingleEnv", "WorldsEnv"]
 
-# Name, class in carom.vector.panda, steps of an episode.
+# Name, module in carom.vector, class in it, steps of an episode.
 _TASKS = (
-    ("carom/PandaReach-v0", "PandaReach", 100),
-    ("carom/PandaPush-v0", "PandaPush", 150),
-    ("carom/PandaPick-v0", "PandaPick", 150),
+    ("carom/PandaReach-v0", "panda", "PandaReach", 100),
+    ("carom/PandaPush-v0", "panda", "PandaPush", 150),
+    ("carom/PandaPick-v0", "panda", "PandaPick", 150),
+    ("carom/QuadrupedWalk-v0", "quadruped.quadruped", "Quadruped", 500),
 )
 
-for _name, _task, _steps in _TASKS:
+for _name, _module, _task, _steps in _TASKS:
     if _name not in gymnasium.registry:
         gymnasium.register(
             _name,
-            entry_point=f"carom.vector.panda:single_{_task}",
-            vector_entry_point=f"carom.vector.panda:{_task}",
+            entry_point=f"carom.vector.{_module}:single_{_task}",
+            vector_entry_point=f"carom.vector.{_module}:{_task}",
             max_episode_steps=_steps,
         )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
 from gymnasium.utils import seeding
@@ -67,6 +68,19 @@ class RandomSources:
             for world in worlds.tolist():
                 kept[world] = self.generators[world]
             self.generators = kept
+
+    def checkpoint(self) -> dict[str, Any]:
+        """The states of the generators and their seeds, for `resume`."""
+        states = [generator.bit_generator.state for generator in self.generators]
+        return {"seeds": list(self.seeds), "states": states}
+
+    def resume(self, saved: Mapping[str, Any]) -> None:
+        """Continue the generators of `checkpoint`."""
+        for world, state in enumerate(saved["states"]):
+            kind = getattr(np.random, state["bit_generator"])()
+            kind.state = state
+            self.generators[world] = np.random.Generator(kind)
+        self.seeds[:] = saved["seeds"]
 
     def draw(self, worlds: np.ndarray, sample: Callable[[np.random.Generator], ArrayLike]) -> Array:
         """The results of `sample` for the generators of some environments, (n, ...)."""

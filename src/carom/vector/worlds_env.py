@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 from carom.camera import Camera
 from carom.checks import Array
 from carom.vector.actions import ActionChecker
+from carom.vector.checkpoints import attributes_of, read_checkpoint, set_attributes, write_checkpoint
 from carom.vector.infos import batched_infos
 from carom.vector.observations import own_observation, replace_observations
 from carom.vector.random import RandomSources
@@ -31,11 +33,12 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
     """A vector environment: environments of the same kind, one for each of many worlds.
 
     A subclass defines how an episode begins (`begin`), what an action does (`act`), the observation
-    (`observe`), the reward (`reward`) and when an episode is over (`terminated`), each for all environments
-    at once: the first axis of arrays is the environment. A step calls the last four in this order, with the
-    worlds stepped between `act` and `observe`. If a reward needs data from before the step, `act` has to keep
-    them; `observe` may be called several times for a state, and must not change it. It may draw noise from
-    `random`: if it is called for environments that begin, the others keep their observations and draw none.
+    (`observe`), the reward (`reward`) and when an episode is over (`terminated`, `truncated`), each for all
+    environments at once: the first axis of arrays is the environment. A step calls the last five in this
+    order, with the worlds stepped between `act` and `observe`. If a reward needs data from before the step,
+    `act` has to keep them; `observe` may be called several times for a state, and must not change it. It may
+    draw noise from `random`: if it is called for environments that begin, the others keep their observations
+    and draw none.
 
     Environment k depends only on its own actions and its own seed: `reset(seed=s)` gives it `s + k`.
 
@@ -124,6 +127,15 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
 
     # To be defined by subclasses
 
+    def end(self, worlds: np.ndarray) -> None:
+        """Take note of episodes whose worlds are about to be restored, for example for a curriculum.
+
+        The worlds are as the episodes have left them; with `NEXT_STEP` they have taken one more step.
+
+        Args:
+            worlds: Indices of the environments whose episodes have had at least one step, (n,).
+        """
+
     def begin(self, worlds: np.ndarray) -> None:
         """Set the initial state of episodes, for example at random; the worlds have just been restored.
 
@@ -160,6 +172,10 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         """Which episodes are over, except by their length: a new array (num_envs,)."""
         return np.zeros(self.num_envs, dtype=bool)
 
+    def truncated(self) -> Mask:
+        """Which episodes are cut off, besides those of maximum length: a new array (num_envs,)."""
+        return np.zeros(self.num_envs, dtype=bool)
+
     def infos(self) -> dict[str, Any]:
         """Further information on a step.
 
@@ -168,6 +184,48 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
             all.
         """
         return {}
+
+    # Checkpoints
+
+    def save(self, path: str | Path) -> None:
+        """Write a checkpoint to a file.
+
+        It contains the states of all worlds, all parameters that can differ between worlds, the random number
+        generators, and attributes of this object that are numbers or arrays, also in dictionaries, lists and
+        tuples, or that are `carom.vector.checkpoints.Resumable`. Other attributes that change during episodes
+        have to be among what a subclass adds to `checkpoint` and takes back in `resume`.
+
+        Raises:
+            OSError: The file cannot be written; an existing file is unchanged.
+        """
+        write_checkpoint(path, self.checkpoint())
+
+    def restore(self, path: str | Path) -> None:
+        """Continue from a file of `save`, bit for bit, also in another process.
+
+        Raises:
+            OSError: The file cannot be read.
+            ValueError: It is not a checkpoint, or one of other environments or of another number of them.
+        """
+        self.resume(read_checkpoint(path))
+
+    def checkpoint(self) -> dict[str, Any]:
+        """What `save` writes: numbers, texts and arrays, in dictionaries, lists and tuples."""
+        return {"environment": type(self).__name__, "attributes": attributes_of(self)}
+
+    def resume(self, saved: Mapping[str, Any]) -> None:
+        """Continue from what `checkpoint` returned.
+
+        Raises:
+            ValueError: It is of other environments, or of another number of them.
+        """
+        kind, attributes = saved["environment"], saved["attributes"]
+        if kind != type(self).__name__ or attributes["num_envs"] != self.num_envs:
+            raise ValueError(
+                f"this is a checkpoint of {attributes['num_envs']} {kind}; "
+                f"these are {self.num_envs} {type(self).__name__}"
+            )
+        set_attributes(self, attributes)
 
     # Gymnasium's interface
 
@@ -216,9 +274,11 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         if len(beginning):
             self._begin(beginning)
         self._observations = self.observe()
-        rewards, terminations = self.reward(values), self.terminated()
+        rewards, terminations, truncations = self.reward(values), self.terminated(), self.truncated()
         told = self.infos()
-        truncations = self._truncations(told)
+        if len(beginning):
+            truncations[beginning] = False
+        truncations |= self._truncations(told)
         stepped = np.ones(self.num_envs, dtype=bool)
         if len(beginning):
             rewards[beginning] = 0.0
@@ -276,6 +336,9 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
     def _begin(self, worlds: np.ndarray) -> None:
         if not len(worlds):
             return
+        played = worlds[self.episode_steps[worlds] > 0]
+        if len(played):
+            self.end(played)
         self.worlds.restore(self._saved_start, worlds)
         self.episode_steps[worlds] = 0
         self._over[worlds] = False

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,6 +20,7 @@ from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
+from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.checks import Mask
 from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
@@ -239,6 +240,45 @@ class Worlds(Closed):
         start.put_back(self._engine, worlds, rows)
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False
+
+    def checkpoint(self) -> dict[str, Any]:
+        """States and parameters of all worlds, for `resume`, also in another process.
+
+        Returns:
+            Arrays, numbers and texts, in dictionaries and lists.
+        """
+        saved = self.save()
+        return {
+            "bodies": [batch.name for batch in self],
+            "state": saved.state,
+            "contacts": saved.contacts,
+            "times": saved.times,
+            "unspent_times": saved.unspent_times,
+            "halted": self.halted.copy(),
+            "sensor_seeds": self.sensor_seeds.copy(),
+            "time_step": self.time_step,
+            "parameters": parameters_of(self._engine),
+        }
+
+    def resume(self, saved: Mapping[str, Any]) -> None:
+        """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
+
+        Args:
+            saved: What `checkpoint` of as many copies of the same scene returned.
+
+        Raises:
+            ValueError: They are of other bodies, or of another number of worlds.
+        """
+        times = np.asarray(saved["times"])
+        if len(times) != self.count:
+            raise ValueError(f"this is a checkpoint of {len(times)} worlds; there are {self.count}")
+        if saved["bodies"] != [batch.name for batch in self]:
+            raise ValueError(f"this is a checkpoint of worlds with other bodies: {saved['bodies']}")
+        set_parameters(self._engine, saved["parameters"])
+        state, contacts = dict(saved["state"]), dict(saved["contacts"])
+        self.restore(SavedWorlds(np.arange(self.count), times, saved["unspent_times"], state, contacts))
+        self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
+        self.time_step = saved["time_step"]
 
     def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
         """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
