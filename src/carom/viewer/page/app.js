@@ -14,6 +14,7 @@ import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
+import { Past } from "./time/past.js";
 import { Player } from "./time/player.js";
 import { Plots } from "./panel/plots.js";
 import { Pointer } from "./view/pointer.js";
@@ -47,6 +48,7 @@ export class App {
     this.memory = new Memory();
     this.readings = new Readings();
     this.history = new History();
+    this.past = new Past(this.history, send);
     this.player = new Player(this.history, (header, payload) => this.show(header, payload));
     this.drawings = new Drawings(this.renderer.gl, labels);
     this.labels = new Labels(labels);
@@ -63,6 +65,10 @@ export class App {
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
+    this.past.changed = () => {
+      this.timeline.show();
+      this.changed();
+    };
     this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);
     this.bindMouse();
     this.bodies.selectionChanged = (body, link) => this.select(body, link);
@@ -106,6 +112,7 @@ export class App {
     return {
       title: (header) => {
         panel.showTitle(header);
+        if (header.history) this.history.budget = header.history;
         if (this.memory.begin(header.title)) this.recall();
       },
       mesh: (header, payload) => scene.addMesh(header, payload),
@@ -156,7 +163,7 @@ export class App {
   /** Clears the page at the start of a connection: the simulation sends the whole scene again. */
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
-    for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player]) part.clear();
+    for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player, this.past]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.begin();
@@ -168,7 +175,9 @@ export class App {
 
   /** Adds a message to the history and, unless a past moment is shown, shows it. */
   receive(header, payload) {
+    if (header.type === "past") return this.past.take(header, payload);
     this.history.take(header, payload);
+    if (header.type === "frame") this.past.meet(header);
     if (header.type === "frame") this.plotFrame(header, payload);
     const name = nameOf(header);
     const fleeting = header.type === "frame" || (name !== null && !name.startsWith("slider"));
