@@ -97,7 +97,7 @@ class PageServer:
             has changed. Slow pages skip frames.
         receive: Called with the number of a page and a message that it sends.
         gone: Called with the number of a page that has been closed.
-        unwatched: Called 30 times a second while no pages are open.
+        unwatched: As `frame`, called 30 times a second while no pages are open.
 
     Raises:
         OSError: The server cannot listen on the address.
@@ -111,7 +111,7 @@ class PageServer:
         frame: Callable[[], bytes | None],
         receive: Callable[[int, dict[str, Any]], None],
         gone: Callable[[int], None],
-        unwatched: Callable[[], None] | None = None,
+        unwatched: Callable[[], bytes | None] | None = None,
     ) -> None:
         self.access = access
         self.port = 0
@@ -241,7 +241,7 @@ class PageServer:
             await self._pages.somebody.wait()
         while not len(self._pages):
             try:
-                self._unwatched()
+                self._frame = self._unwatched() or self._frame
             except Exception:
                 _log.exception("The viewer could not read the world.")
             self._board.forget_removals(None)

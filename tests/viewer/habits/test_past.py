@@ -33,6 +33,7 @@ def ball(viewer: Viewer) -> int:
     """A ball that has fallen for a second, before any page is open; a text was there in the first half."""
     p.setGravity(0, 0, -10)
     number = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), basePosition=[0, 0, 8])
+    p.changeDynamics(number, -1, linearDamping=0)
     text = p.addUserDebugText("first half", [0, 0, 1])
     until(lambda: viewer._past.next_number > 0)
     fall(120)
@@ -55,8 +56,8 @@ def test_a_page_that_comes_late_sees_what_was_before_it(late: Page):
     heights = late.page.evaluate(HEIGHTS)
     assert len(heights) > 20
     for at, height in heights.items():
-        # Bullet's semi-implicit steps.
-        assert height == pytest.approx(8 - 5 * float(at) * (float(at) + 1 / 240), abs=1e-3)
+        # A frame may have the time of the next step.
+        assert height == pytest.approx(8 - 5 * float(at) * (float(at) + 1 / 240), abs=0.06)
     start = late.page.evaluate("app.history.start")
     late.page.locator("#scrub").fill(str(start + 0.25))
     assert late.page.locator(LABELS).all_text_contents() == ["first half"]

@@ -25,6 +25,7 @@ import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
 import { Shots } from "./time/shots.js";
 import { Timeline } from "./time/timeline.js";
+import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
@@ -56,8 +57,15 @@ export class App {
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
     this.panel = new Panel(send, this.options, notices);
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
-    this.timeline = new Timeline(this.player, send);
-    this.plots = new Plots(this.scene, this.history, this.player, this.memory, () => this.tellWants());
+    this.part = new TimeWindow(this.history);
+    this.player.part = this.part;
+    this.timeline = new Timeline(this.player, this.part, send);
+    this.plots = new Plots(this.scene, this.history, this.player, this.part, this.memory, () => this.tellWants(), () => this.changed());
+    this.part.changed = () => {
+      this.timeline.show();
+      this.changed();
+    };
+    this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.legend = new Legend();
@@ -163,7 +171,7 @@ export class App {
   /** Clears the page at the start of a connection: the simulation sends the whole scene again. */
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
-    for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player, this.past]) part.clear();
+    for (const part of [this.overlays, this.handles, this.timeline, this.player, this.past, this.part, this.plots]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.begin();
@@ -193,10 +201,10 @@ export class App {
   }
 
   plotFrame(header, payload) {
-    if (this.plots.plotted.size === 0 && !header.values) return;
-    const readings = new Readings();
-    readings.take(header, payload);
-    this.plots.take(header, payload, readings);
+    this.plots.takeNames(header);
+    const newest = this.history.frames.at(-1);
+    // The history leaves out frames that are as the last one.
+    if (newest.payload === payload) this.plots.take(newest);
   }
 
   showFrame(header, payload) {
@@ -242,6 +250,7 @@ export class App {
       if (element) element.open = open;
     }
     this.recallSwitches();
+    this.plots.dock.recall();
     this.optionsChanged();
   }
 
