@@ -63,14 +63,18 @@ class SceneFeed:
         self._shapes_sent = 0.0
         self._shapes: dict[int, bytes] = {}
 
+    def follow(self) -> None:
+        """Puts what has changed on the board. What is read after it belongs to the next frame."""
+        self._follow_bodies()
+        self._follow_nodes()
+
     def frame(self, extras: dict[str, Any], blocks: Blocks = (), number: int | None = None) -> bytes | None:
         """The present poses, and arrays by name, as a message with extras; None if nothing has changed.
 
         A number is told with the frame; a frame that is as the last one has the number before it.
         """
         self.moved = False
-        self._follow_bodies()
-        self._follow_nodes()
+        self.follow()
         poses = self._world.link_pose
         if self._rows.size and self._rows[-1] >= len(poses):
             return None

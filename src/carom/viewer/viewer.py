@@ -413,11 +413,14 @@ class Viewer:
     def _record(self) -> bytes | None:
         """Makes a frame of the present state, and keeps it."""
         self.drawings.expire()
+        # This may take long.
+        self._feed.follow()
+        blocks = self._details.blocks()
         extras: dict[str, Any] = {"picture": self._pictures.asked}
         if self._values:
             extras["values"] = self._values.copy()
         number = self._past.next_number if self._past.is_on else None
-        frame = self._feed.frame(extras, self._details.blocks(), number)
+        frame = self._feed.frame(extras, blocks, number)
         self._past.take(frame if self._feed.moved else None)
         return frame
 

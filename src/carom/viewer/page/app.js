@@ -200,6 +200,17 @@ export class App {
     this.changed();
   }
 
+  /** Makes everything on the GPU anew, in a graphics context that was lost and has come back. */
+  refillGraphics() {
+    this.renderer = new Renderer(this.canvas);
+    this.scene.forgetGraphics();
+    this.drawings.forgetGraphics();
+    for (const [name, { header, payload }] of this.player.staged) {
+      if (/^(mesh|texture|item) /.test(name)) this.show(header, payload);
+    }
+    this.changed();
+  }
+
   plotFrame(header, payload) {
     this.plots.takeNames(header);
     const newest = this.history.frames.at(-1);

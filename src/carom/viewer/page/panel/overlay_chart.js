@@ -70,11 +70,14 @@ export class OverlayChart {
 
   times(context, x, height, ink, grid, timeAt) {
     const [from, to] = this.range;
+    // Round times, which are not round on the history's clock.
+    const ahead = timeAt(to) - to;
     context.textAlign = "center";
-    for (const clock of ticks(from, to, 8)) {
+    for (const time of ticks(from + ahead, to + ahead, 8)) {
+      const clock = time - ahead;
       stroke(context, grid, [[x(clock), TOP], [x(clock), height - BOTTOM]]);
       context.fillStyle = ink;
-      context.fillText(`${short(timeAt(clock))} s`, x(clock), height - 6);
+      context.fillText(`${Number(timeAt(clock).toFixed(4))} s`, x(clock), height - 6);
     }
   }
 
@@ -145,5 +148,5 @@ function ticks(from, to, most) {
 }
 
 function short(value) {
-  return String(Number(value.toPrecision(4)));
+  return String(Number(value.toFixed(6)) && Number(value.toPrecision(4)));
 }

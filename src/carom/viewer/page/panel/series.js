@@ -14,13 +14,14 @@ export class Series {
    */
   constructor(source, history, changed) {
     Object.assign(this, { source, history, changed });
-    this.starts = new Map();
     this.clear();
     this.fill();
   }
 
-  /** Forgets all samples; `end` is the number of the next frame. */
+  /** Forgets all samples; those of the frames to come are taken, and those of the others filled. */
   clear() {
+    /** Where the poses of each body are, by layout. */
+    this.starts = new Map();
     this.samples = [];
     /** Number of the first frame that has been read. */
     this.from = this.history.first + this.history.count;
@@ -57,8 +58,8 @@ export class Series {
     const sample = this.read(frame, readings);
     if (sample !== null) samples.push(sample);
     // A tenth is dropped at once.
-    const kept = samples.length > 100 ? samples[samples.length / 10 | 0].clock : Infinity;
-    if (kept < history.start) samples.splice(0, samples.length / 10 | 0);
+    const kept = samples.length > 100 ? samples[Math.floor(samples.length / 10)].clock : Infinity;
+    if (kept < history.start) samples.splice(0, Math.floor(samples.length / 10));
   }
 
   /** Numbers in a frame, null if it has none. */
