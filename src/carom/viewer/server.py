@@ -239,6 +239,7 @@ class PageServer:
     async def _wait_for_pages(self) -> None:
         if self._unwatched is None:
             await self._pages.somebody.wait()
+            return
         while not len(self._pages):
             try:
                 self._frame = self._unwatched() or self._frame
