@@ -151,7 +151,7 @@ class Details:
             blocks.append(("joints", self._joints.rows(joints)))
         if links:
             blocks.append(("links", readings.links(world, sorted(links))))
-        return blocks
+        return [(name, rows) for name, rows in blocks if len(rows)]
 
     def _find_readings(self) -> None:
         """Finds the links whose readings are always recorded: bases that move, and joints with sensors."""
