@@ -171,3 +171,21 @@ def test_zoom_in_time_limits_the_time_bar_and_what_is_saved(run: Page, tmp_path:
     run.page.locator("#dock-all").click()
     assert run.page.evaluate("app.part.zoomed") is None
     assert float(scrub.get_attribute("min")) == pytest.approx(start)
+
+
+def test_values_of_the_script_are_plotted_in_a_saved_page_as_well(
+    run: Page, viewer: Viewer, browser, tmp_path: Path
+):
+    viewer.plot("error", 0.25)
+    p.stepSimulation()
+    run.until("app.plots.plotted.get('value error')?.samples.length > 0")
+    with run.page.expect_download() as download:
+        run.page.get_by_role("button", name="Save", exact=True).click()
+    download.value.save_as(tmp_path / "run.html")
+    replay = Page(browser, (tmp_path / "run.html").as_uri(), 1100, 760)
+    replay.until("window.app?.plots.plotted.get('value error')?.samples.at(-1)?.values[0][0] === 0.25")
+    # What was before the page was opened is in the file.
+    assert replay.page.evaluate("app.history.frames[0].header.time") < 0.2
+    docked(replay)
+    assert "error" in replay.page.locator("#dock-legend").inner_text()
+    assert replay.complaints == []
