@@ -259,11 +259,12 @@ def test_a_page_whose_graphics_were_taken_away_shows_it_all_again(page: Page):
     page.page.evaluate("graphics.loseContext()")
     page.page.wait_for_selector("#notice:not([hidden])")
     assert "graphics" in page.page.inner_text("#notice")
-    # Playwright may wait for ever for a page that was asked something while it was loaded again.
-    with page.page.expect_navigation():
-        page.page.evaluate("void setTimeout(() => graphics.restoreContext(), 100)")
-    page.until("window.app")
+    page.page.evaluate("window.before = app.history.frames[0]")
+    page.page.evaluate("void setTimeout(() => graphics.restoreContext(), 100)")
+    page.page.wait_for_selector("#notice", state="hidden")
     page.wait_for_picture(red_at((0, 0, 0.5)))
+    # The page has not been loaded again: a run that has ended could not be.
+    assert page.page.evaluate("app.history.frames[0] === window.before")
     # The browser may say that it has done so.
     page.complaints[:] = [each for each in page.complaints if "CONTEXT_LOST_WEBGL" not in each]
 

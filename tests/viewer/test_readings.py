@@ -15,6 +15,7 @@ from carom.errors import DescriptionError
 from carom.formats.search import AssetSearch
 from carom.viewer.viewer import Viewer
 from carom.world.world import World
+from pybullet._clients.clients import clients
 
 DATA = Path(pybullet_data.getDataPath())
 
@@ -41,11 +42,31 @@ def test_plotted_joints_are_sampled(viewer: Viewer):
         page.wait_for(lambda: page.frame["time"] == pytest.approx(21 / 240))
         free = page.blocks["joints"][3]
         assert (free[4], free[7]) == (1.5, 1.5)
+        # The past of joints can be plotted later, but what scripts apply is read only while it is wanted.
         page.tell("want", joints=[])
-        page.wait_for(lambda: "blocks" not in page.frame)
+        world = clients[0].world
+        assert until(lambda: not world.observers)
+        p.setJointMotorControl2(arm, 3, p.TORQUE_CONTROL, force=1.5)
         p.stepSimulation()
-        page.wait_for(lambda: page.frame["time"] > 21.5 / 240)
-        assert "blocks" not in page.frame
+        page.wait_for(lambda: page.frame["time"] == pytest.approx(22 / 240))
+        assert len(page.blocks["joints"]) == 9
+        assert np.isnan(page.blocks["joints"][3][7])
+
+
+def test_readings_of_many_bodies_are_not_recorded_unless_they_are_wanted(viewer: Viewer):
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    for n in range(65):
+        p.createMultiBody(1, shape, basePosition=[n, 0, 1])
+    with Watcher(viewer.address) as page:
+        page.wait_for(lambda: page.frame.get("poses") == 65)
+        assert until(lambda: not viewer._details._links)
+        page.take_what_came()
+        p.stepSimulation()
+        page.wait_for(lambda: page.frame["time"] > 0)
+        assert "links" not in page.blocks
+        p.removeBody(0)
+        p.stepSimulation()
+        page.wait_for(lambda: len(page.blocks.get("links", ())) == 64)
 
 
 def test_contacts_are_told_as_scripts_are_told_of_them(viewer: Viewer):

@@ -10,7 +10,7 @@ from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from threading import Lock
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakSet
 
 from carom.viewer.messages import encoded
 
@@ -31,6 +31,7 @@ class Board:
         self._entries: dict[Hashable, _Entry] = {}
         self._removals: set[Hashable] = set()
         self._revision = 0
+        self._readers: WeakSet[Reader] = WeakSet()
 
     @property
     def revision(self) -> int:
@@ -61,23 +62,37 @@ class Board:
 
     def since(self, revision: int) -> tuple[list[bytes], int]:
         """The messages newer than a revision, 0 for all, the oldest first; and the revision to ask next."""
+        newest, present = self.changes(revision)
+        # A new page has nothing to remove.
+        return [message for _, message, gone in newest if revision or not gone], present
+
+    def reader(self) -> Reader:
+        """Somebody who is told of all changes from now on, and of what is there."""
+        reader = Reader(self)
+        self._readers.add(reader)
+        return reader
+
+    def changes(self, revision: int) -> tuple[list[tuple[Hashable, bytes, bool]], int]:
+        """As `since`, with the key of each message, and whether it tells that another one is gone."""
         with self._lock:
             if revision == self._revision:
                 return [], revision
-            newest: list[bytes] = []
-            for entry in reversed(self._entries.values()):
+            newest: list[tuple[Hashable, bytes, bool]] = []
+            for key, entry in reversed(self._entries.items()):
                 if entry.revision <= revision:
                     break
-                # A new page has nothing to remove.
-                if revision or not entry.gone:
-                    newest.append(entry.message)
+                newest.append((key, entry.message, entry.gone))
             newest.reverse()
             return newest, self._revision
 
-    def forget_removals(self, revision: int) -> None:
-        """Drops removals that all pages have: those up to a revision."""
+    def forget_removals(self, revision: int | None) -> None:
+        """Drops removals that all readers have, and the pages: they have a revision, None without pages."""
         if not self._removals:
             return
+        known = [reader.revision for reader in self._readers]
+        if revision is not None:
+            known.append(revision)
+        revision = min(known, default=self._revision)
         with self._lock:
             for key in [key for key in self._removals if self._entries[key].revision <= revision]:
                 self._removals.remove(key)
@@ -89,6 +104,28 @@ class Board:
             self._entries.pop(key, None)
             self._entries[key] = _Entry(self._revision, message, gone)
             (self._removals.add if gone else self._removals.discard)(key)
+
+
+class Reader:
+    """Takes the changes of a board one after the other.
+
+    Attributes:
+        revision: The revision up to which it has them.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self.revision: int = 0
+
+    def changes(self) -> list[tuple[Hashable, bytes | None]]:
+        """What has changed since the last call: messages by key, None where one is gone."""
+        changes, self.revision = self._board.changes(self.revision)
+        return [(key, None if gone else message) for key, message, gone in changes]
+
+    def messages(self) -> list[bytes]:
+        """What pages would be told of what has changed since the last call."""
+        messages, self.revision = self._board.since(self.revision)
+        return messages
 
 
 boards: WeakKeyDictionary[Any, Board] = WeakKeyDictionary()

@@ -21,6 +21,8 @@ _PATIENCE = 0.005
 # Interval at which masses and constraints are read [s].
 _PERIOD = 0.25
 _MOST_LINKS = 64
+# Readings are always recorded, so that their past can be plotted, unless there are more of them than this.
+_ALWAYS_JOINTS, _ALWAYS_LINKS, _ALWAYS_CONTACTS = 128, 64, 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +72,17 @@ NOTHING = Wish()
 class Details:
     """Reads the data that all pages together need; the lock is that of steps. For use by one thread.
 
+    With `always`, the readings that pages may plot later are read as well, if there are not too many.
+
     Attributes:
         wish: The present wish of all pages together.
         rays: The rays that scripts cast.
     """
 
-    def __init__(self, world: World, lock: Any, board: Board) -> None:
+    def __init__(self, world: World, lock: Any, board: Board, *, always: bool = False) -> None:
+        self._always = always
+        self._links: list[tuple[int, int]] = []
+        self._joint_total = 0
         self._world = world
         self._world_lock = lock
         self._board = board
@@ -100,7 +107,7 @@ class Details:
         if wanted.joints != self.wish.joints:
             # The world must not be stepped while its observers change.
             with self._world_lock:
-                self._joints.watch(wanted.joints)
+                self._joints.watch(on=bool(wanted.joints))
         self.wish = wanted
         self.rays.wanted = wanted.rays
         self._due = 0.0
@@ -110,29 +117,55 @@ class Details:
         wish = self.wish
         if wish.rays:
             self.rays.show()
-        if not (wish.contacts or wish.joints or wish.links or wish.dynamics or wish.constraints):
+        wanted = wish.contacts or wish.joints or wish.links or wish.dynamics or wish.constraints
+        if not (self._always or wanted):
             return []
         if not self._world_lock.acquire(timeout=_PATIENCE):
             return self._last
         try:
-            self._last = self._read(wish)
             if monotonic() >= self._due:
                 self._due = monotonic() + _PERIOD
                 self._show_dynamics(wish.dynamics)
                 self._show_constraints(wish.constraints)
+                if self._always:
+                    self._find_readings()
+            self._last = self._read(wish)
         finally:
             self._world_lock.release()
         return self._last
 
     def _read(self, wish: Wish) -> list[tuple[str, readings.Columns]]:
         blocks = []
-        if wish.contacts:
-            blocks.append(("contacts", readings.contacts(self._world)))
-        if wish.joints:
-            blocks.append(("joints", self._joints.rows()))
-        if wish.links:
-            blocks.append(("links", readings.links(self._world, sorted(wish.links))))
-        return blocks
+        world = self._world
+        contacts = wish.contacts
+        joints = wish.joints
+        links = wish.links
+        if self._always:
+            contacts |= 0 < world.contact_arrays.contact_count <= _ALWAYS_CONTACTS
+            links = links.union(self._links)
+            if 0 < self._joint_total <= _ALWAYS_JOINTS:
+                joints = "all"
+        if contacts:
+            blocks.append(("contacts", readings.contacts(world)))
+        if joints:
+            blocks.append(("joints", self._joints.rows(joints)))
+        if links:
+            blocks.append(("links", readings.links(world, sorted(links))))
+        return [(name, rows) for name, rows in blocks if len(rows)]
+
+    def _find_readings(self) -> None:
+        """Finds the links whose readings are always recorded: bases that move, and joints with sensors."""
+        self._links = []
+        self._joint_total = 0
+        for number, body in self._world.bodies.items():
+            self._joint_total += body.velocity_count.count(1)
+            if len(self._links) <= _ALWAYS_LINKS:
+                self._links += [] if body.fixed_base else [(number, BASE)]
+                self._links += [
+                    (number, joint) for joint in range(body.joint_count) if body.has_sensor(joint)
+                ]
+        if len(self._links) > _ALWAYS_LINKS:
+            self._links = []
 
     def _show_dynamics(self, wanted: bool) -> None:
         facts = {number: _dynamics(body) for number, body in self._world.bodies.items()} if wanted else {}

@@ -19,6 +19,12 @@ class Page:
         self.revision = 0
         self.news = asyncio.Event()
         self._frame: bytes | None = None
+        self._letters: list[bytes] = []
+
+    def tell(self, message: bytes) -> None:
+        """Has a message sent to this page alone."""
+        self._letters.append(message)
+        self.news.set()
 
     def take_news(self, board: Board, frame: bytes | None) -> list[bytes]:
         """The messages that are new to the page; they then count as sent."""
@@ -26,6 +32,8 @@ class Page:
         if frame is not None and frame is not self._frame:
             messages.append(frame)
             self._frame = frame
+        messages += self._letters
+        self._letters = []
         return messages
 
 
@@ -50,9 +58,9 @@ class Pages:
         return len(self._open)
 
     @property
-    def oldest_revision(self) -> int:
-        """The oldest revision of the open pages; 0 without pages."""
-        return min((page.revision for page in self), default=0)
+    def oldest_revision(self) -> int | None:
+        """The oldest revision of the open pages; None without pages."""
+        return min((page.revision for page in self), default=None)
 
     def join(self) -> Page:
         """Adds a page that was opened."""

@@ -34,10 +34,12 @@ def contacts(world: World) -> Columns:
     """
     table = world.contact_arrays.contacts.numpy
     count = min(world.contact_arrays.contact_count, _MOST_CONTACTS)
+    if count == 0:
+        return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     links = table["contact_shapes"][0, :count, 2:4].copy()
     places = np.array(world.link_places, dtype=np.float32).reshape(-1, 2)
     places[:, 1] += 1.0
-    if count == 0 or links.max(initial=-1) >= len(places) or links.min(initial=0) < 0:
+    if links.max() >= len(places) or links.min() < 0:
         return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     forces = table["contact_impulse"][0, :count] / world.parameters.substep_time
     lateral = world.contact_arrays.shapes.table.numpy["link_lateral_friction"][0]
@@ -80,22 +82,24 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
 
 
 class JointReadings:
-    """States and targets of joints; one of `World.observers` while any are needed."""
+    """States and targets of joints; one of `World.observers` while torques of scripts are watched."""
 
     def __init__(self, world: World) -> None:
         self._world = world
-        self._wanted: frozenset[int] | Literal["all"] = frozenset()
-        # Torques that scripts have applied for the last step, which has cleared them.
+        # Torques that scripts have applied for the last step, which has cleared them; none if not watched.
         self._applied = np.zeros(0)
 
-    def watch(self, bodies: frozenset[int] | Literal["all"]) -> None:
-        """Reads the joints of these bodies from now on. The world must not be stepped meanwhile."""
+    def watch(self, *, on: bool) -> None:
+        """Reads the torques that scripts apply, or no longer. The world must not be stepped meanwhile.
+
+        Steps take longer while it does.
+        """
         observers = self._world.observers
-        if bodies and self not in observers:
+        if on and self not in observers:
             observers.append(self)
-        elif not bodies and self in observers:
+        elif not on and self in observers:
             observers.remove(self)
-        self._wanted = bodies
+            self._applied = np.zeros(0)
 
     def before_step(self) -> None:
         """Keeps the torques that scripts have applied for the step."""
@@ -104,17 +108,16 @@ class JointReadings:
     def after_step(self) -> None:
         """Does nothing: joints are read when a frame is made."""
 
-    def rows(self) -> Columns:
-        """Present states of the joints that have one dof.
+    def rows(self, wanted: frozenset[int] | Literal["all"]) -> Columns:
+        """Present states of the joints of some bodies that have one dof.
 
         Returns:
-            (joints, 8): body, joint, position [rad or m], velocity, torque or force of the motor and the
-            script together, and the targets of position, velocity and torque; NaN without a target.
+            (joints, 8): body, joint, position [rad or m], velocity, torque or force of the motor and, while
+            these are watched, the script together, and the targets of position, velocity and torque; NaN
+            without a target.
         """
         world = self._world
-        bodies = [
-            body for number, body in world.bodies.items() if self._wanted == "all" or number in self._wanted
-        ]
+        bodies = [body for number, body in world.bodies.items() if wanted == "all" or number in wanted]
         places = [
             (body.id, joint, body.position_index[joint], body.velocity_index[joint])
             for body in bodies

@@ -39,10 +39,12 @@ class SceneFeed:
 
     Attributes:
         collisions: Whether to describe collision shapes as well.
+        moved: Whether the last frame has another time, or other numbers, than the one before it.
     """
 
     def __init__(self, world: World, lock: Any, board: Board) -> None:
         self.collisions = False
+        self.moved: bool = False
         self._world = world
         self._lock = lock
         self._board = board
@@ -55,14 +57,24 @@ class SceneFeed:
         self._rows: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
         self._layout = 0
         self._last = b""
+        self._numbers = b""
+        self._time = 0.0
         self._clock: list[tuple[float, float]] = []
         self._shapes_sent = 0.0
         self._shapes: dict[int, bytes] = {}
 
-    def frame(self, extras: dict[str, Any], blocks: Blocks = ()) -> bytes | None:
-        """The present poses, and arrays by name, as a message with extras; None if nothing has changed."""
+    def follow(self) -> None:
+        """Puts what has changed on the board. What is read after it belongs to the next frame."""
         self._follow_bodies()
         self._follow_nodes()
+
+    def frame(self, extras: dict[str, Any], blocks: Blocks = (), number: int | None = None) -> bytes | None:
+        """The present poses, and arrays by name, as a message with extras; None if nothing has changed.
+
+        A number is told with the frame; a frame that is as the last one has the number before it.
+        """
+        self.moved = False
+        self.follow()
         poses = self._world.link_pose
         if self._rows.size and self._rows[-1] >= len(poses):
             return None
@@ -79,6 +91,10 @@ class SceneFeed:
         if blocks:
             header["blocks"] = [[name, len(columns)] for name, columns in blocks]
             payload += b"".join(columns.astype("<f4").tobytes() for _, columns in blocks)
+        self.moved = time != self._time or payload != self._numbers
+        self._time, self._numbers = time, payload
+        if number is not None:
+            header["number"] = number if self.moved else number - 1
         message = encoded(header, payload)
         if message == self._last:
             return None

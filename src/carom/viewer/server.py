@@ -41,6 +41,7 @@ logging.getLogger("asyncio").addFilter(lambda record: record.threadName != _THRE
 
 PREFERRED_PORT = 8400
 _FRAMES_PER_SECOND = 60
+_FRAMES_PER_SECOND_UNWATCHED = 30
 _KINDS = {
     ".html": "text/html; charset=utf-8",
     ".css": "text/css; charset=utf-8",
@@ -96,6 +97,7 @@ class PageServer:
             has changed. Slow pages skip frames.
         receive: Called with the number of a page and a message that it sends.
         gone: Called with the number of a page that has been closed.
+        unwatched: As `frame`, called 30 times a second while no pages are open.
 
     Raises:
         OSError: The server cannot listen on the address.
@@ -109,6 +111,7 @@ class PageServer:
         frame: Callable[[], bytes | None],
         receive: Callable[[int, dict[str, Any]], None],
         gone: Callable[[int], None],
+        unwatched: Callable[[], bytes | None] | None = None,
     ) -> None:
         self.access = access
         self.port = 0
@@ -117,6 +120,8 @@ class PageServer:
         self._make_frame = frame
         self._frame: bytes | None = None
         self._receive = receive
+        self._unwatched = unwatched
+        self._letters: set[asyncio.Task[None]] = set()
         self._pages = Pages(gone)
         self._strangers = Strangers()
         self._polling = Polling(self._pages, self._news, self._take)
@@ -145,7 +150,19 @@ class PageServer:
 
     def has_sent(self, revision: int) -> bool:
         """Whether all open pages have a revision of the board."""
-        return not len(self._pages) or self._pages.oldest_revision >= revision
+        oldest = self._pages.oldest_revision
+        return oldest is None or oldest >= revision
+
+    def send_later(self, number: int, write: Callable[[], bytes]) -> None:
+        """Sends a page a message that takes long to write, by a thread of its own.
+
+        It is called while a message of the page is received. Another one that is not written yet comes first.
+        """
+        page = next((page for page in self._pages if page.number == number), None)
+        if page is not None:
+            letter = asyncio.get_running_loop().create_task(self._write(page, write))
+            self._letters.add(letter)
+            letter.add_done_callback(self._letters.discard)
 
     def stop(self) -> None:
         """Closes all sockets; pages then show that the simulation has ended."""
@@ -165,6 +182,10 @@ class PageServer:
         finally:
             self._loop = None
             self._started.set()
+
+    @staticmethod
+    async def _write(page: Page, write: Callable[[], bytes]) -> None:
+        page.tell(await asyncio.to_thread(write))
 
     async def _serve(self) -> None:
         self._stopping = asyncio.Event()
@@ -203,7 +224,7 @@ class PageServer:
         loop = asyncio.get_running_loop()
         due = loop.time()
         while True:
-            await self._pages.somebody.wait()
+            await self._wait_for_pages()
             self._polling.forget_silent()
             try:
                 self._frame = self._make_frame() or self._frame
@@ -214,6 +235,19 @@ class PageServer:
                 page.news.set()
             due = max(due + 1.0 / _FRAMES_PER_SECOND, loop.time())
             await asyncio.sleep(due - loop.time())
+
+    async def _wait_for_pages(self) -> None:
+        if self._unwatched is None:
+            await self._pages.somebody.wait()
+            return
+        while not len(self._pages):
+            try:
+                self._frame = self._unwatched() or self._frame
+            except Exception:
+                _log.exception("The viewer could not read the world.")
+            self._board.forget_removals(None)
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(self._pages.somebody.wait(), 1.0 / _FRAMES_PER_SECOND_UNWATCHED)
 
     async def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")

@@ -17,6 +17,8 @@ from carom.viewer.camera import SharedCamera
 from carom.viewer.details import NOTHING, Details, Wish
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
+from carom.viewer.history.history import DEFAULT_BYTES
+from carom.viewer.history.recorder import HistoryRecorder, told
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import MODES, JointHands
 from carom.viewer.input.handles import Handles
@@ -66,6 +68,8 @@ class Viewer:
         height: Height of the image in pixels, until a page reports its size.
         token: The token that pages need; random by default.
         names: Host names used by proxies.
+        history: Memory for the past that pages can go back to [bytes], those that join later included. Beyond
+            it the oldest frames are dropped. With 0 each page only has what it was sent itself.
 
     Raises:
         OSError: The server cannot listen on the address.
@@ -99,6 +103,7 @@ class Viewer:
         height: int = 768,
         token: str | None = None,
         names: Iterable[str] = (),
+        history: int = DEFAULT_BYTES,
     ) -> None:
         self.is_open: bool = True
         self.held: bool = True
@@ -106,7 +111,9 @@ class Viewer:
         self.on_pause: Callable[[bool], None] = lambda paused: None
         self.on_profile: Callable[[bool], None] = lambda running: None
         self._board = Board()
-        self._board.put("title", {"type": "title", "title": title, "run": fresh_token()})
+        self._board.put(
+            "title", {"type": "title", "title": title, "run": fresh_token(), "history": max(history, 0)}
+        )
         self.controls: Controls = Controls(self._board)
         self.drawings: Drawings = Drawings(self._board)
         self._handles = Handles(self._board)
@@ -123,9 +130,10 @@ class Viewer:
         self._leaving = Leaving(self._close_by_user)
         self._last_words = LastWords(self._board, lambda: self._server)
         self._feed = SceneFeed(world, self.lock, self._board)
+        self._past = HistoryRecorder(self._board, max(history, 0))
         self.previews: Previews = Previews(self._board)
         self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
-        self._details = Details(world, self.lock, self._board)
+        self._details = Details(world, self.lock, self._board, always=self._past.is_on)
         self._sleeping = Sleeping(world)
         self._values: dict[str, float] = {}
         self.pause(False)
@@ -139,6 +147,7 @@ class Viewer:
             "size": self._take_size,
             "visible": lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
+            "past": self._tell_past,
             "want": lambda page, told: self._want(page, Wish.told(told)),
             "drive": self._take_drive,
             "give back": self._give_back,
@@ -173,7 +182,8 @@ class Viewer:
         def receive(page: int, told: dict[str, Any]) -> None:
             self._answers[told["type"]](page, told)
 
-        self._server = PageServer(access, port, self._board, self._frame, receive, self._page_gone)
+        unwatched = self._record if self._past.is_on else None
+        self._server = PageServer(access, port, self._board, self._frame, receive, self._page_gone, unwatched)
 
     @property
     def address(self) -> str:
@@ -394,15 +404,29 @@ class Viewer:
         self._server.stop()
 
     def _frame(self) -> bytes | None:
-        self.drawings.expire()
         self._picking.apply()
         self._chores.do()
         if not self.held and not self._moments.start_is_known:
             self._update_hold()
+        return self._record()
+
+    def _record(self) -> bytes | None:
+        """Makes a frame of the present state, and keeps it."""
+        self.drawings.expire()
+        # This may take long.
+        self._feed.follow()
+        blocks = self._details.blocks()
         extras: dict[str, Any] = {"picture": self._pictures.asked}
         if self._values:
             extras["values"] = self._values.copy()
-        return self._feed.frame(extras, self._details.blocks())
+        number = self._past.next_number if self._past.is_on else None
+        frame = self._feed.frame(extras, blocks, number)
+        self._past.take(frame if self._feed.moved else None)
+        return frame
+
+    def _tell_past(self, page: int, request: dict[str, Any]) -> None:
+        excerpt = self._past.before(int(request["before"]), known=bool(request["known"]))
+        self._server.send_later(page, partial(told, excerpt))
 
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)

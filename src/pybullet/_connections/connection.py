@@ -102,7 +102,8 @@ def connect(method: int, *arguments: int | str, **keywords: int | str) -> int:
         options: Options separated by spaces; unknown ones are ignored. For a window: `--width=1024
             --height=768`, the size of its image until a page is open; `--mp4=run.mp4 --mp4fps=60` for a
             video; `--background_color_red=0.5`, and `_green` and `_blue`; `--host=127.0.0.1` and
-            `--port=8400`, the address of the page. For servers: `--tcp=6667` and `--udp=1234`, additional
+            `--port=8400`, the address of the page; `--history=128`, the memory in MB for the past that pages
+            can go back to, 0 for none. For servers: `--tcp=6667` and `--udp=1234`, additional
             ports to listen at; `--bind=127.0.0.1`, the address of these ports. For servers and for `TCP` and
             `UDP`: `--key-file=FILE`, a file with the secret key that both sides need; without it the key is
             the environment variable `CAROM_SERVER_KEY`. Processes of one user on one machine need no key.

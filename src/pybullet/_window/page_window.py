@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
 # Integer options, and their minimum.
-_COUNTS = {"width": 1, "height": 1, "port": 0}
+_COUNTS = {"width": 1, "height": 1, "port": 0, "history": 0}
+_MEGABYTE = 2**20
 _PAUSED = (
     "The simulation is paused in the window. Continue it there (button or key i); Ctrl-C ends the script."
 )
@@ -205,6 +206,8 @@ def open_window(client: Client, options: str) -> PageWindow:
         if name not in _COUNTS or (value.isdecimal() and int(value) >= _COUNTS[name]):
             values[name] = value
     arguments: dict[str, Any] = {name: int(values[name]) for name in _COUNTS if name in values}
+    if "history" in arguments:
+        arguments["history"] *= _MEGABYTE
     arguments |= {name: values[name] for name in ("host", "token") if values.get(name)}
     if "names" in values:
         arguments["names"] = values["names"].split(",")

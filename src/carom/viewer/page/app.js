@@ -14,6 +14,7 @@ import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
 import { Panel } from "./panel/panel.js";
+import { Past } from "./time/past.js";
 import { Player } from "./time/player.js";
 import { Plots } from "./panel/plots.js";
 import { Pointer } from "./view/pointer.js";
@@ -24,6 +25,7 @@ import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
 import { Shots } from "./time/shots.js";
 import { Timeline } from "./time/timeline.js";
+import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
@@ -47,6 +49,7 @@ export class App {
     this.memory = new Memory();
     this.readings = new Readings();
     this.history = new History();
+    this.past = new Past(this.history, send);
     this.player = new Player(this.history, (header, payload) => this.show(header, payload));
     this.drawings = new Drawings(this.renderer.gl, labels);
     this.labels = new Labels(labels);
@@ -54,8 +57,15 @@ export class App {
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
     this.panel = new Panel(send, this.options, notices);
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
-    this.timeline = new Timeline(this.player, send);
-    this.plots = new Plots(this.scene, this.history, this.player, this.memory, () => this.tellWants());
+    this.part = new TimeWindow(this.history);
+    this.player.part = this.part;
+    this.timeline = new Timeline(this.player, this.part, send);
+    this.plots = new Plots(this.scene, this.history, this.player, this.part, this.memory, () => this.tellWants(), () => this.changed());
+    this.part.changed = () => {
+      this.timeline.show();
+      this.changed();
+    };
+    this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.legend = new Legend();
@@ -63,6 +73,10 @@ export class App {
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
+    this.past.changed = () => {
+      this.timeline.show();
+      this.changed();
+    };
     this.overlays.trail = () => trailOf(this.history, this.player.index, this.scene, this.overlays.selection);
     this.bindMouse();
     this.bodies.selectionChanged = (body, link) => this.select(body, link);
@@ -106,6 +120,7 @@ export class App {
     return {
       title: (header) => {
         panel.showTitle(header);
+        if (header.history) this.history.budget = header.history;
         if (this.memory.begin(header.title)) this.recall();
       },
       mesh: (header, payload) => scene.addMesh(header, payload),
@@ -156,7 +171,7 @@ export class App {
   /** Clears the page at the start of a connection: the simulation sends the whole scene again. */
   begin() {
     for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
-    for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player]) part.clear();
+    for (const part of [this.overlays, this.handles, this.timeline, this.player, this.past, this.part, this.plots]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.begin();
@@ -168,7 +183,9 @@ export class App {
 
   /** Adds a message to the history and, unless a past moment is shown, shows it. */
   receive(header, payload) {
+    if (header.type === "past") return this.past.take(header, payload);
     this.history.take(header, payload);
+    if (header.type === "frame") this.past.meet(header);
     if (header.type === "frame") this.plotFrame(header, payload);
     const name = nameOf(header);
     const fleeting = header.type === "frame" || (name !== null && !name.startsWith("slider"));
@@ -183,11 +200,22 @@ export class App {
     this.changed();
   }
 
+  /** Makes everything on the GPU anew, in a graphics context that was lost and has come back. */
+  refillGraphics() {
+    this.renderer = new Renderer(this.canvas);
+    this.scene.forgetGraphics();
+    this.drawings.forgetGraphics();
+    for (const [name, { header, payload }] of this.player.staged) {
+      if (/^(mesh|texture|item) /.test(name)) this.show(header, payload);
+    }
+    this.changed();
+  }
+
   plotFrame(header, payload) {
-    if (this.plots.plotted.size === 0 && !header.values) return;
-    const readings = new Readings();
-    readings.take(header, payload);
-    this.plots.take(header, payload, readings);
+    this.plots.takeNames(header);
+    const newest = this.history.frames.at(-1);
+    // The history leaves out frames that are as the last one.
+    if (newest.payload === payload) this.plots.take(newest);
   }
 
   showFrame(header, payload) {
@@ -233,6 +261,7 @@ export class App {
       if (element) element.open = open;
     }
     this.recallSwitches();
+    this.plots.dock.recall();
     this.optionsChanged();
   }
 

@@ -10,8 +10,8 @@ const notices = new Notices();
 const say = (text, lasts = false) => notices.say(text, lasts);
 
 /**
- * Reloads the page after a lost WebGL context, because the restored context is empty. Browsers drop the
- * context when the machine sleeps, the driver is restarted, or a notebook has many views.
+ * Fills the WebGL context again after it was lost: a restored one is empty. Browsers drop the context when the
+ * machine sleeps, the driver is restarted, or a notebook has many views.
  */
 function surviveLostGraphics() {
   const canvas = document.getElementById("view");
@@ -19,7 +19,10 @@ function surviveLostGraphics() {
     event.preventDefault();
     say("The browser has lost the graphics context. Waiting for it to be restored…", true);
   });
-  canvas.addEventListener("webglcontextrestored", () => location.reload());
+  canvas.addEventListener("webglcontextrestored", () => {
+    window.app.refillGraphics();
+    say(null);
+  });
 }
 
 function watch() {

@@ -22,4 +22,5 @@ export async function playRecording(text, app) {
   }
   app.player.seek(app.history.start);
   app.plots.offer();
+  for (const { header } of app.history.frames) app.plots.takeNames(header);
 }

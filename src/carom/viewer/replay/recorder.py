@@ -7,7 +7,7 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 from carom.checks import positive
-from carom.viewer.board import Board, boards
+from carom.viewer.board import Board, Reader, boards
 from carom.viewer.details import Details, Wish
 from carom.viewer.messages import decoded
 from carom.viewer.notebook import replay_frame
@@ -59,8 +59,9 @@ class ReplayRecorder:
         self._title = self._path.stem if title is None else title
         self._interval = 1.0 / float(positive(fps, "fps"))
         self._board = Board()
-        # Last recorded revisions: of this recorder's board, and of the viewer's, which has scripts' drawings.
-        self._told = [0, 0]
+        self._bodies = self._board.reader()
+        # The board of the viewer has the drawings of scripts.
+        self._scripts: Reader | None = None
         lock = RLock()
         self._feed = SceneFeed(world, lock, self._board)
         self._details = Details(world, lock, self._board)
@@ -117,10 +118,11 @@ class ReplayRecorder:
         """Takes a frame now."""
         blocks = self._details.blocks()
         frame = self._feed.frame({}, blocks)
-        self._take_from(0, self._board, _OF_BODIES)
-        viewer_board = boards.get(self._world)
-        if viewer_board is not None:
-            self._take_from(1, viewer_board, _OF_SCRIPTS)
+        self._take_from(self._bodies, _OF_BODIES)
+        if self._scripts is None and self._world in boards:
+            self._scripts = boards[self._world].reader()
+        if self._scripts is not None:
+            self._take_from(self._scripts, _OF_SCRIPTS)
         if frame is not None:
             self._recording.add(*decoded(frame))
 
@@ -136,6 +138,7 @@ class ReplayRecorder:
         self._details.want(_PAGE, Wish())
         if self._recording.frame_count == 0 or self._last != float(self._world.time):
             self.shoot()
+        self._scripts = None
         write_text(self._path, self._page())
 
     @property
@@ -150,9 +153,8 @@ class ReplayRecorder:
     def _page(self) -> str:
         return replay_of(self._recording.packed(title=self._title, **self._facts))
 
-    def _take_from(self, number: int, board: Board, kept: frozenset[str]) -> None:
-        messages, self._told[number] = board.since(self._told[number])
-        for message in messages:
+    def _take_from(self, reader: Reader, kept: frozenset[str]) -> None:
+        for message in reader.messages():
             header, payload = decoded(message)
             kind = header["type"]
             if kind.removeprefix("no ") in kept:

@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 
 FORMAT = 1
 _UINT = np.dtype("<u4")
+# What of the header of a frame is not shared by a run of frames.
+_OWN = frozenset({"time", "rate", "picture", "number"})
 
 
 class Recording:
@@ -42,7 +44,7 @@ class Recording:
             self._records.append({"message": header, "bytes": len(payload)})
             self._parts.append(payload)
             return
-        shared = {name: value for name, value in header.items() if name not in ("time", "rate", "picture")}
+        shared = {name: value for name, value in header.items() if name not in _OWN}
         if self._run and (shared != self._shared or len(payload) != len(self._run[0])):
             self._end_run()
         self._shared = shared
@@ -50,12 +52,12 @@ class Recording:
         self._times.append(header["time"])
         self.frame_count += 1
 
-    def packed(self, **facts: Any) -> bytes:
-        """The packed recording, with further data: `title`, `camera`, `options`."""
+    def packed(self, *, level: int = 9, **facts: Any) -> bytes:
+        """The packed recording, with further data: `title`, `camera`, `options`; `level` is that of zlib."""
         self._end_run()
         index = json.dumps({"format": FORMAT, **facts, "records": self._records}, separators=(",", ":"))
         text = index.encode()
-        return compress(b"".join((struct.pack("<I", len(text)), text, *self._parts)), 9)
+        return compress(b"".join((struct.pack("<I", len(text)), text, *self._parts)), level)
 
     def _end_run(self) -> None:
         if not self._run:

@@ -1,5 +1,7 @@
 // A chart of several values over time, which can be zoomed.
 
+import { between, sampleAt } from "./series.js";
+
 const COLOURS = ["#1f6fb2", "#c2452d", "#3a8f4d", "#7a4fb0", "#a07a10", "#287f86"];
 const TARGET = "#e08a1e";
 const INK = "#5b6b7a";
@@ -17,11 +19,21 @@ export class Chart {
     this.name = name;
     this.traces = traces;
     this.span = SECONDS;
-    /** The latest time that is shown [s]; null for the time of the newest sample. */
+    /** The latest moment that is shown [s]; null for that of the newest sample. */
     this.end = null;
     this.canvas = Object.assign(document.createElement("canvas"), { title: name });
     this.canvas.addEventListener("wheel", (event) => this.zoom(event), { passive: false });
-    this.canvas.addEventListener("pointermove", (event) => event.buttons && this.pan(event.movementX));
+    /** Where the mouse is [pixels]; null if it is elsewhere. */
+    this.hovered = null;
+    this.canvas.addEventListener("pointermove", (event) => {
+      this.hovered = event.offsetX;
+      if (event.buttons) this.pan(event.movementX);
+      else this.changed();
+    });
+    this.canvas.addEventListener("pointerleave", () => {
+      this.hovered = null;
+      this.changed();
+    });
     this.canvas.addEventListener("dblclick", () => this.zoomOut());
     this.latest = 0;
     this.drawnFor = "";
@@ -52,9 +64,9 @@ export class Chart {
   }
 
   /**
-   * @param {{time: number, values: (number|null)[][]}[]} samples in the order of time
+   * @param {{clock: number, values: (number|null)[][]}[]} samples in order; see `series.js`
    * @param {number} number index of this chart's values in a sample
-   * @param {?number} cursor a time to mark by a vertical line [s]
+   * @param {?number} cursor a moment to mark by a vertical line, unless the mouse is at another [s]
    */
   draw(samples, number, cursor) {
     const { canvas } = this;
@@ -69,15 +81,15 @@ export class Chart {
     context.fillStyle = INK;
     context.fillText(this.name, 4, 11);
     if (samples.length === 0) return;
-    this.latest = samples.at(-1).time;
+    this.latest = samples.at(-1).clock;
     const end = this.end ?? this.latest;
-    const [from, to] = [firstAfter(samples, end - this.span * 1.02), firstAfter(samples, end + this.span * 0.02)];
-    const shown = samples.slice(from, to).map(({ time, values }) => ({ time, values: values[number] }));
+    const shown = between(samples, end - this.span, end).map(({ clock, values }) => ({ clock, values: values[number] }));
     if (shown.length === 0) return;
+    if (this.hovered !== null) cursor = end - this.span * (1 - this.hovered / width);
     const scale = this.scale(shown, end, width, height);
     this.traces.forEach(({ target }, index) => this.trace(context, shown, index, target, scale));
     if (cursor !== null) this.line(context, scale.x(cursor), height);
-    const at = cursor === null ? shown.at(-1) : (shown.findLast(({ time }) => time <= cursor + 1e-9) ?? shown[0]);
+    const at = cursor === null ? shown.at(-1) : (sampleAt(shown, cursor) ?? shown[0]);
     this.read(context, at.values, width);
   }
 
@@ -93,7 +105,7 @@ export class Chart {
     const margin = Math.max((high - low) * 0.1, 1e-3);
     [low, high] = [low - margin, high + margin];
     return {
-      x: (time) => width - 4 - ((end - time) / this.span) * (width - 8),
+      x: (clock) => width - 4 - ((end - clock) / this.span) * (width - 8),
       y: (value) => height - 4 - ((value - low) / (high - low)) * (height - 20),
     };
   }
@@ -104,11 +116,11 @@ export class Chart {
     context.setLineDash(target ? [4, 3] : []);
     context.beginPath();
     let drawing = false;
-    for (const { time, values } of shown) {
+    for (const { clock, values } of shown) {
       const value = values[index];
       if (value === null || !Number.isFinite(value)) drawing = false;
       else {
-        context[drawing ? "lineTo" : "moveTo"](x(time), y(value));
+        context[drawing ? "lineTo" : "moveTo"](x(clock), y(value));
         drawing = true;
       }
     }
@@ -139,15 +151,4 @@ export class Chart {
       right -= 8;
     }
   }
-}
-
-/** Index of the first sample after a time. */
-function firstAfter(samples, time) {
-  let [low, high] = [0, samples.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (samples[middle].time > time) high = middle;
-    else low = middle + 1;
-  }
-  return low;
 }

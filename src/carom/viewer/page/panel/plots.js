@@ -2,20 +2,24 @@
 
 import { Chart } from "./chart.js";
 import { download } from "../time/download.js";
-import { sourcesOf } from "./sources.js";
-import { POSE_FLOATS } from "../view/scene.js";
+import { Dock } from "./dock.js";
+import { headerOf } from "./table.js";
 import { Readings } from "../view/readings.js";
-
-/** Maximum number of samples of a plot; beyond it the oldest tenth is dropped. */
-const MOST_SAMPLES = 20000;
+import { Series } from "./series.js";
+import { sourcesOf } from "./sources.js";
 
 export class Plots {
-  /** @param {() => void} wantsChanged called when the plots need other data from the simulation */
-  constructor(scene, history, player, memory, wantsChanged) {
-    Object.assign(this, { scene, history, player, memory, wantsChanged });
+  /**
+   * @param {TimeWindow} part the part of the history that the chart below the view shows
+   * @param {() => void} wantsChanged called when the plots need other data from the simulation
+   * @param {() => void} changed called when the page has to be drawn again
+   */
+  constructor(scene, history, player, part, memory, wantsChanged, changed) {
+    Object.assign(this, { scene, history, player, memory, wantsChanged, changed });
     this.select = document.getElementById("joint");
     this.root = document.getElementById("charts");
     this.plotted = new Map();
+    this.dock = new Dock(this.plotted, player, part, memory, changed);
     this.sources = new Map();
     this.valueNames = new Set();
     this.known = "";
@@ -32,7 +36,9 @@ export class Plots {
     const known = JSON.stringify(Object.values(groups).map((group) => group.map(({ key, title }) => [key, title])));
     if (known === this.known) return;
     this.known = known;
-    this.sources = new Map(Object.values(groups).flatMap((group) => group.map((source) => [source.key, source])));
+    const present = Object.values(groups).flatMap((group) => group.map((source) => [source.key, source]));
+    // Of bodies that were not there at a past moment, the plots stay.
+    this.sources = new Map(this.player.live ? present : [...this.sources, ...present]);
     const options = Object.entries(groups).filter(([, group]) => group.length > 0).map(([title, group]) => {
       const element = Object.assign(document.createElement("optgroup"), { label: title });
       element.append(...group.slice(0, 500).map(({ key, title }) => new Option(title, key)));
@@ -86,20 +92,12 @@ export class Plots {
       root.append(chart.canvas);
     }
     this.root.append(root);
-    const plot = { source, root, charts, samples: [] };
+    const series = new Series(source, this.history, () => this.changed());
+    const plot = { source, root, charts, series, get samples() { return series.samples; } };
     this.plotted.set(source.key, plot);
-    this.refill(plot);
-    this.wantsChanged();
-  }
-
-  /** Fills a new plot with samples of the history. */
-  refill(plot) {
-    const readings = new Readings();
-    for (const { header, payload } of this.history.frames.slice(-MOST_SAMPLES)) {
-      readings.take(header, payload);
-      this.sample(plot, header, payload, readings);
-    }
+    tellNewest(plot);
     this.draw();
+    this.wantsChanged();
   }
 
   remove(key) {
@@ -109,14 +107,30 @@ export class Plots {
   }
 
   clear() {
-    for (const plot of this.plotted.values()) plot.samples.length = 0;
+    for (const { series } of this.plotted.values()) series.clear();
     this.valueNames.clear();
   }
 
-  /** Adds a sample of a frame to each plot. */
-  take(header, payload, readings) {
-    for (const name of Object.keys(header.values ?? {})) this.takeName(name);
-    for (const plot of this.plotted.values()) this.sample(plot, header, payload, readings);
+  /** Adds a sample of the newest frame to each plot. */
+  take(frame) {
+    if (this.plotted.size === 0) return;
+    const readings = new Readings();
+    readings.take(frame.header, frame.payload);
+    for (const plot of this.plotted.values()) {
+      plot.series.take(frame, readings);
+      tellNewest(plot);
+    }
+  }
+
+  /** Earlier frames have come: reads the plotted quantities there, and what values the script has plotted. */
+  takeEarlier(frames) {
+    for (const { header } of frames) this.takeNames(header);
+    for (const { series } of this.plotted.values()) series.fillSoon();
+  }
+
+  /** Adds plots for values that a script has begun to plot. */
+  takeNames({ values }) {
+    for (const name of Object.keys(values ?? {})) this.takeName(name);
   }
 
   /** Adds a plot for a value that a script has begun to plot. */
@@ -127,32 +141,13 @@ export class Plots {
     this.add(this.sources.get(`value ${name}`));
   }
 
-  sample({ source, root, charts, samples }, header, payload, readings) {
-    const values = source.read({ readings, pose: this.poseIn(header, payload) });
-    if (!values) return;
-    const { time } = header;
-    if (samples.length && time < samples.at(-1).time) samples.length = 0;
-    if (samples.length && time === samples.at(-1).time) return;
-    samples.push({ time, values });
-    if (samples.length > MOST_SAMPLES) samples.splice(0, MOST_SAMPLES / 10);
-    charts.forEach(({ name }, index) => (root.dataset[name.replace(/\W.*/, "")] = values[index][0]));
-  }
-
-  poseIn({ layout }, payload) {
-    return (body, link) => {
-      const at = layout === this.scene.layout.layout ? this.scene.poseAt(body, link) : -1;
-      if (at < 0 || 4 * (at + POSE_FLOATS) > payload.byteLength) return null;
-      const [x, y, z, ...orientation] = new Float32Array(payload, 4 * at, POSE_FLOATS);
-      return { position: [x, y, z], orientation };
-    };
-  }
-
   draw() {
     const { player, history } = this;
-    const cursor = player.live || history.count === 0 ? null : history.frames[player.index].header.time;
+    const cursor = player.live || history.count === 0 ? null : history.frames[player.index].clock;
     for (const { charts, samples } of this.plotted.values()) {
       charts.forEach((chart, index) => chart.draw(samples, index, cursor));
     }
+    this.dock.draw();
   }
 
   /** Saves a plot as a CSV table: a column for the time and one for each line. */
@@ -160,7 +155,12 @@ export class Plots {
     const { source, samples } = this.plotted.get(key);
     const columns = source.charts.flatMap(({ name, traces }) => traces.map((trace) => `${name} ${trace.name}`.trim()));
     const lines = samples.map(({ time, values }) => [time, ...values.flat()].map((value) => value ?? "").join(","));
-    const quoted = ["time [s]", ...columns].map((name) => `"${name}"`).join(",");
-    download(new Blob([`${[quoted, ...lines].join("\n")}\n`], { type: "text/csv" }), `${source.title}.csv`);
+    download(new Blob([`${[headerOf(["time [s]", ...columns]), ...lines].join("\n")}\n`], { type: "text/csv" }), `${source.title}.csv`);
   }
+}
+
+/** Leaves the newest numbers of a plot in the page, for who reads it by programs. */
+function tellNewest({ source, root, samples }) {
+  const newest = samples.at(-1);
+  if (newest) source.charts.forEach(({ name }, index) => (root.dataset[name.replace(/\W.*/, "")] = newest.values[index][0]));
 }

@@ -3,6 +3,8 @@
 import { composed } from "../view/maths.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
+const AT_REST = { velocity: [0, 0, 0], rate: [0, 0, 0] };
+const UNKNOWN = { velocity: [null, null, null], rate: [null, null, null] };
 const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
 
 /** All quantities that can be plotted now: groups of sources by title. */
@@ -31,7 +33,8 @@ function jointSource({ body, name }, joint, link) {
       [row.torque, known(row.applied)],
     ];
   };
-  const charts = ["position", "velocity", "torque"].map((quantity) => ({ name: quantity, traces: [{ name: "" }, { name: "target", target: true }] }));
+  const units = link.kind === "prismatic" ? ["m", "m/s", "N"] : ["rad", "rad/s", "N·m"];
+  const charts = ["position", "velocity", "torque"].map((quantity, i) => ({ name: quantity, unit: units[i], traces: [{ name: "" }, { name: "target", target: true }] }));
   return { key: `${body},${joint}`, title: `${name} · ${link.joint}`, charts, read, wants: { joints: [body] } };
 }
 
@@ -40,8 +43,8 @@ function bodySource(scene, { body, name, links }) {
     const where = pose(body, 0);
     if (!where) return null;
     const { position } = composed(where, links[0]);
-    const motion = readings.links.get(`${body},-1`);
-    return [position, motion?.velocity ?? [null, null, null], motion?.rate ?? [null, null, null]];
+    const motion = readings.links.get(`${body},-1`) ?? (links[0].moves ? UNKNOWN : AT_REST);
+    return [position, motion.velocity, motion.rate];
   };
   const charts = ["position [m]", "velocity [m/s]", "turning [rad/s]"].map((quantity) => ({ name: quantity, traces: XYZ }));
   return { key: `body ${body}`, title: `${name} (body ${body})`, charts, read, wants: { links: [[body, -1]] } };

@@ -1,6 +1,6 @@
 // The last frames of a simulation, and the other messages shown with them.
 
-import { Ledger } from "./ledger.js";
+import { Ledger, sameBytes } from "./ledger.js";
 
 /** Maximum memory for frames and other messages [bytes]. */
 export const BUDGET_BYTES = 128 * 2 ** 20;
@@ -17,13 +17,18 @@ const NUMBERED = { body: "body", mesh: "mesh", texture: "texture", slider: "slid
 export class History {
   constructor(budget = BUDGET_BYTES) {
     this.budget = budget;
+    /** Called with the frames that have been put before the others. */
+    this.prepended = () => {};
     this.clear();
   }
 
   clear() {
     this.ledger = new Ledger();
     this.frames = [];
-    /** Number of the first frame that is kept: the number of dropped frames. */
+    /**
+     * Number of the first frame that is kept, counted from the first frame that has arrived: it grows as frames are
+     * dropped, and is below 0 when earlier ones have been put before them.
+     */
     this.first = 0;
     this.bytes = 0;
     this.version = (this.version ?? 0) + 1;
@@ -33,7 +38,12 @@ export class History {
     return this.frames.length;
   }
 
-  /** Clock of the first and of the last kept frame: time since the first frame that was ever kept [s]. */
+  /** Whether there is memory for more frames. */
+  get hasRoom() {
+    return this.bytes + this.ledger.bytes < this.budget;
+  }
+
+  /** Clock of the first and of the last kept frame: time since the first frame that has arrived [s]. */
   get start() {
     return this.frames[0]?.clock ?? 0;
   }
@@ -60,6 +70,27 @@ export class History {
     this.frames.push({ header, payload, clock });
     this.bytes += payload.byteLength + FRAME_BYTES;
     if (this.frames.length % TIDY_EVERY === 0) this.tidy();
+  }
+
+  /**
+   * Puts earlier frames before those that are kept.
+   *
+   * @param {{header: object, payload: ArrayBuffer}[]} frames in order
+   * @param {{name: string, from: number, to: number, message: object}[]} versions the messages shown with them, in
+   *   order; the frames are counted as in `first`, and `to` is Infinity for what is still shown
+   */
+  prepend(frames, versions) {
+    let next = this.frames[0];
+    const earlier = frames.slice();
+    for (let i = earlier.length - 1; i >= 0; i--) {
+      const passed = next.header.time - earlier[i].header.time;
+      earlier[i] = next = { ...earlier[i], clock: next.clock - (passed > 0 ? passed : LEAST_INTERVAL) };
+      this.bytes += next.payload.byteLength + FRAME_BYTES;
+    }
+    this.frames = earlier.concat(this.frames);
+    this.first -= earlier.length;
+    this.ledger.prepend(versions);
+    this.prepended(earlier);
   }
 
   /** Drops the oldest frames until the budget is met. */
@@ -104,10 +135,4 @@ export function nameOf(header) {
 export function removalOf(name) {
   const [kind, number] = name.split(" ");
   return number === undefined ? { type: `no ${kind}` } : { type: `no ${kind}`, [kind]: Number(number) };
-}
-
-function sameBytes(a, b) {
-  if (a.byteLength !== b.byteLength) return false;
-  const [x, y] = [new Uint32Array(a), new Uint32Array(b)];
-  return x.every((value, i) => value === y[i]);
 }

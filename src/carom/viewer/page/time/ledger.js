@@ -29,6 +29,28 @@ export class Ledger {
     if (last.from === moment) this.bytes -= sizeOf(list.pop().message);
   }
 
+  /** Adds earlier versions: of each name in order, none of them later than those that are there. */
+  prepend(versions) {
+    const lists = new Map();
+    for (const { name, ...version } of versions) {
+      if (!lists.has(name)) lists.set(name, []);
+      lists.get(name).push(version);
+    }
+    for (const [name, earlier] of lists) {
+      const list = this.versions.get(name) ?? [];
+      const [last, next] = [earlier.at(-1), list[0]];
+      if (next && last.to > next.from) {
+        // What was there when the page joined is the same, or it has taken the place of the last one.
+        if (sameMessage(last.message, next.message)) {
+          next.from = last.from;
+          earlier.pop();
+        } else last.to = next.from;
+      } else if (!next && last.to > 0) last.to = 0;
+      for (const { message } of earlier) this.bytes += sizeOf(message);
+      this.versions.set(name, [...earlier, ...list]);
+    }
+  }
+
   /** The present message of a name; null if it has been removed. */
   newest(name) {
     const last = this.versions.get(name)?.at(-1);
@@ -52,6 +74,20 @@ export class Ledger {
       if (!list.length) this.versions.delete(name);
     }
   }
+}
+
+function sameMessage(a, b) {
+  return JSON.stringify(a.header) === JSON.stringify(b.header) && sameBytes(a.payload, b.payload);
+}
+
+/** Whether two payloads have the same bytes. */
+export function sameBytes(a, b) {
+  if (a.byteLength !== b.byteLength) return false;
+  const words = a.byteLength >> 2;
+  const [x, y] = [new Uint32Array(a, 0, words), new Uint32Array(b, 0, words)];
+  if (!x.every((value, i) => value === y[i])) return false;
+  const [rest, other] = [new Uint8Array(a, 4 * words), new Uint8Array(b, 4 * words)];
+  return rest.every((value, i) => value === other[i]);
 }
 
 function sizeOf({ payload }) {

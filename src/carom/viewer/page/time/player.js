@@ -11,6 +11,8 @@ export class Player {
    */
   constructor(history, show) {
     this.history = history;
+    /** The part of the history that is played. */
+    this.part = { range: [0, 0] };
     this.show = show;
     /** Whether the newest moment is shown, and new messages as they arrive. */
     this.live = true;
@@ -57,7 +59,8 @@ export class Player {
   /** Plays from the shown moment on; from the beginning if the shown moment is the last one. */
   play() {
     if (this.history.count === 0) return;
-    const from = this.live || this.clock >= this.history.end ? this.history.start : this.clock;
+    const [start, end] = this.part.range;
+    const from = this.live || this.clock >= end || this.clock < start ? start : this.clock;
     this.running = true;
     this.seek(from);
   }
@@ -81,7 +84,7 @@ export class Player {
   /** Advances the playback by a time [s]; returns whether another moment is shown. */
   tick(seconds) {
     if (this.live || !this.running) return false;
-    const { start, end } = this.history;
+    const [start, end] = this.part.range;
     let clock = this.clock + seconds * this.speed;
     if (clock > end) {
       if (!this.looping) this.running = false;

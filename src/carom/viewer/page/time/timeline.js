@@ -8,10 +8,12 @@ const NEAR = 8;
 export class Timeline {
   /**
    * @param {Player} player
+   * @param {TimeWindow} part the part of the history that the bar spans
    * @param {(message: object) => void} send sends a message to the simulation; does nothing in a replay
    */
-  constructor(player, send) {
+  constructor(player, part, send) {
     this.player = player;
+    this.part = part;
     this.send = send;
     this.root = document.getElementById("timeline");
     this.scrubber = document.getElementById("scrub");
@@ -80,7 +82,8 @@ export class Timeline {
     const { history } = player;
     const clock = player.live ? history.end : player.clock;
     if (history.count === 0) return;
-    [this.scrubber.min, this.scrubber.max] = [history.start, Math.max(history.end, history.start + 1e-3)];
+    const [start, end] = this.part.range;
+    [this.scrubber.min, this.scrubber.max] = [start, Math.max(end, start + 1e-3)];
     this.scrubber.value = clock;
     const { time } = history.frames[Math.max(player.index, 0)].header;
     this.label.textContent = player.live ? `${fixed(time, 2)} s` : `${fixed(time, 3)} s, ${fixed(clock - history.end, 2)}`;
@@ -89,11 +92,11 @@ export class Timeline {
     press(this.live, player.live);
     press(this.loop, player.looping);
     this.root.classList.toggle("past", !player.live);
-    const span = Math.max(history.end - history.start, 1e-6);
+    const span = Math.max(end - start, 1e-6);
     for (const { clock: at, button } of this.marks.values()) {
-      button.hidden = at < history.start;
+      button.hidden = at < start || at > end + 1e-6;
       // The thumb of a slider does not reach the ends of its track.
-      button.style.left = `calc(${NEAR}px + ${(at - history.start) / span} * (100% - ${2 * NEAR}px))`;
+      button.style.left = `calc(${NEAR}px + ${(at - start) / span} * (100% - ${2 * NEAR}px))`;
     }
   }
 }

@@ -31,6 +31,13 @@ export class Drawings {
     this.list();
   }
 
+  /** Forgets all items, whose parts on the GPU are lost. */
+  forgetGraphics() {
+    for (const { label } of this.items.values()) label?.remove();
+    this.items.clear();
+    this.list();
+  }
+
   remove({ item }) {
     const known = this.items.get(item);
     if (!known) return;

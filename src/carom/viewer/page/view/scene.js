@@ -41,6 +41,14 @@ export class Scene {
     this.startsOf = this.layout;
   }
 
+  /** Forgets what was on the GPU, which has lost it. */
+  forgetGraphics() {
+    this.meshes = new Map();
+    this.textures = new Map();
+    this.groups = [];
+    this.stale = true;
+  }
+
   addMesh(header, payload) {
     this.meshes.set(header.mesh, new Mesh(this.gl, header, payload));
     this.stale = true;
