@@ -24,7 +24,7 @@ from carom.worlds.checks import Mask
 from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
 from carom.worlds.devices import CPU, make_engine
-from carom.worlds.images import Images, take_images
+from carom.worlds.images import Images, ImageTaker
 from carom.worlds.keyframes import reset_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
@@ -76,6 +76,7 @@ class Worlds(Closed):
         if threads is not None and threads < 1:
             raise ValueError(f"threads must be at least 1, not {threads}")
         self.count: int = count
+        self._thread_count = threads
         self._scene = world.copy()
         self._scene.prepare()
         self._engine = make_engine(self._scene, count, device, threads)
@@ -455,12 +456,14 @@ class Worlds(Closed):
         return RayCaster(self._engine, self._scene.link_places)
 
     def images(self, camera: Camera, where: ArrayLike | None = None) -> Images:
-        """Camera images of each world.
+        """Camera images of each world, drawn on all threads; those of soft bodies one after the other.
 
         Args:
             camera: A `Camera`, mounted on a link of the original world or fixed in the world.
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
-        return take_images(
-            self._scene, self._engine, camera, world_numbers(self._engine.take(where), self.count)
-        )
+        return self._take_images(camera, world_numbers(self._engine.take(where), self.count))
+
+    @cached_property
+    def _take_images(self) -> ImageTaker:
+        return ImageTaker(self._scene, self._engine, self._thread_count)
