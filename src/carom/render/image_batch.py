@@ -12,7 +12,7 @@ from carom.engine.program import Program
 from carom.engine.threads import Threads
 from carom.layouts.images import Picture
 from carom.layouts.status import STEPS_DONE
-from carom.native.kernels import whole_image_kernel
+from carom.native.kernels import shadow_map_kernel, whole_image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product
 from carom.native.tables import put_array, put_zeros
@@ -50,7 +50,10 @@ class _Thread:
 
     def light_view(self, width: int, height: int) -> ViewBuffers:
         if self._light is None or self._light[0] != (width, height):
-            self._light = (width, height), ViewBuffers(self._scene, width, height)
+            light = ViewBuffers(self._scene, width, height)
+            # A shadow map is ready before the camera's facets are found.
+            light.share_facets(self.view)
+            self._light = (width, height), light
         return self._light[1]
 
 
@@ -100,10 +103,13 @@ class ImageBatch:
         counter = np.zeros(1, dtype=np.int32)
         links = len(self._scene.link_rows)
         interpreters: list[Interpreter] = []
-        for views_of in self._look(world_to_clip, link_to_world, cameras)[:count]:
-            launch = Launch(whole_image_kernel, 1, [self._scene.struct, *views_of, picture, links, 0])
+        scene = self._scene.struct
+        for view, lamp in self._look(world_to_clip, link_to_world, cameras)[:count]:
+            launches = [Launch(whole_image_kernel, 1, [scene, view, lamp, picture, links, 0])]
+            if light.shadow:
+                launches.insert(0, Launch(shadow_map_kernel, 1, [scene, lamp, links, 0]))
             interpreter = Interpreter(status, worlds, nothing_due, counter)
-            interpreter.load(Program([], [launch], [], [], []))
+            interpreter.load(Program([], launches, [], [], []))
             interpreter.ask(chunk=1)
             interpreters.append(interpreter)
         if interpreters:

@@ -12,9 +12,6 @@ from carom.render.lights import Light
 from carom.render.projection import Matrix, look_along, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
 
-MAP_PIXELS = 2
-"""Pixels of the shadow map of parallel light along the longer side of the image, for each of its pixels."""
-
 LEAST_MAP_SIDE = 128
 GREATEST_MAP_SIDE = 1024
 """Limits of the width and height of the shadow map of parallel light [pixels]."""
@@ -54,8 +51,8 @@ def shadow_cameras(
     """The cameras at a light, for images of this size and projection (4, 4).
 
     For a lamp at a finite distance they have the size and the projection of the image, as in PyBullet. For
-    parallel light their views cover all shapes that may cast a shadow, and the maps have twice the side of
-    the image.
+    parallel light their views cover all shapes that may cast a shadow, and the maps are squares with the
+    longer side of the image.
 
     Args:
         light: The light.
@@ -74,7 +71,7 @@ def shadow_cameras(
         stacks = (np.repeat(matrix[None], count, axis=0) for matrix in (clip, projection))
         return ShadowCameras(*stacks, width, height, np.full(count, _LAMP_BIAS))
     centres, radii = _casters(scene, link_to_world)
-    side = min(max(MAP_PIXELS * max(width, height), LEAST_MAP_SIDE), GREATEST_MAP_SIDE)
+    side = min(max(width, height, LEAST_MAP_SIDE), GREATEST_MAP_SIDE)
     views = np.repeat(look_along(np.zeros(3), -direction)[None], count, axis=0)
     eyes = centres + 2.0 * radii[:, None] * direction
     views[:, :3, 3] = product(-views[:, :3, :3], eyes[:, :, None])[:, :, 0]

@@ -20,6 +20,17 @@ from carom.render.shadows import ShadowCameras
 BANDS_PER_WORKER = 4
 """Bands of image rows for each thread: several, because some bands take longer than others."""
 
+_FACET_FIELDS = (
+    "vertex_pixel",
+    "facet_first",
+    "facet_second",
+    "facet_third",
+    "facet_depth",
+    "facet_box",
+    "facet_triangle",
+    "chunk_facet_count",
+)
+
 
 class ViewBuffers:
     """Buffers of one view of a scene at one image size.
@@ -80,6 +91,11 @@ class ViewBuffers:
         """Have the same cameras and poses as other buffers of the same size, for launches that follow."""
         self._facing = put_array(self.struct, "facing", other._facing)
         self._link_to_pixel = put_array(self.struct, "link_to_pixel", other._link_to_pixel)
+
+    def share_facets(self, other: ViewBuffers) -> None:
+        """Have the same memory for facets as other buffers of the same scene, for launches that follow."""
+        for name in _FACET_FIELDS:
+            put_array(self.struct, name, other.struct.__dict__["memory"][name])
 
 
 def write_lighting(rows: np.ndarray, light: Light, *, projected: bool = False) -> None:

@@ -103,15 +103,16 @@ def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_
 
 
 @func
-def project_chunk(scene: Scene, view: View, chunk: Int32, first_link: Int32):
-    """Write the facets of a chunk, from the index of its first triangle on.
+def first_facet_of(scene: Scene, chunk: Int32) -> Int32:
+    """Where the facets of a chunk begin, if those of all chunks are kept: at the index of its first triangle."""
+    return scene.part_first_triangle[scene.chunk_first_part[chunk]]
 
-    The matrices of the links begin at `first_link`.
-    """
-    first_part = scene.chunk_first_part[chunk]
-    first_facet = scene.part_first_triangle[first_part]
+
+@func
+def project_chunk(scene: Scene, view: View, chunk: Int32, first_link: Int32, first_facet: Int32):
+    """Write the facets of a chunk, from `first_facet` on; the matrices of the links begin at `first_link`."""
     facet = Int32(first_facet)
-    for part in range(first_part, scene.chunk_first_part[chunk + 1]):
+    for part in range(scene.chunk_first_part[chunk], scene.chunk_first_part[chunk + 1]):
         matrix = view.link_to_pixel[first_link + scene.part_link[part]]
         if scene.part_rgba[part][3] == 0.0 or is_out_of_sight(scene, view, part, matrix):
             continue
@@ -214,9 +215,8 @@ def clear_rows(view: View, first_row: Int32, end_row: Int32):
 
 
 @func
-def fill_chunk(scene: Scene, view: View, chunk: Int32, first_row: Int32, end_row: Int32):
-    """Write the facets of a chunk to the pixels in a range of rows."""
-    first_facet = scene.part_first_triangle[scene.chunk_first_part[chunk]]
+def fill_facets(view: View, chunk: Int32, first_facet: Int32, first_row: Int32, end_row: Int32):
+    """Write the facets of a chunk, which begin at `first_facet`, to the pixels in a range of rows."""
     for facet in range(first_facet, first_facet + view.chunk_facet_count[chunk]):
         fill_facet(view, facet, first_row, end_row)
 
@@ -226,16 +226,18 @@ def fill_rows(scene: Scene, view: View, first_row: Int32, end_row: Int32):
     """Find the nearest facet of every pixel in a range of rows; the last one of equally near facets."""
     clear_rows(view, first_row, end_row)
     for chunk in range(view.chunk_facet_count.shape[0]):
-        fill_chunk(scene, view, chunk, first_row, end_row)
+        fill_facets(view, chunk, first_facet_of(scene, chunk), first_row, end_row)
 
 
 @func
-def fill_view(scene: Scene, view: View, first_link: Int32):
-    """Find the nearest facet of every pixel, as `project_chunk` and `fill_rows` do.
+def fill_view(scene: Scene, view: View, first_link: Int32, kept: Int32):
+    """Find the nearest facet of every pixel; the facets are kept for shading if `kept` is 1.
 
-    A chunk is filled while its facets are in the processor's caches.
+    A chunk is filled while its facets are in the processor's caches. Without shading all chunks have the same
+    place for them.
     """
     clear_rows(view, 0, view.height)
     for chunk in range(view.chunk_facet_count.shape[0]):
-        project_chunk(scene, view, chunk, first_link)
-        fill_chunk(scene, view, chunk, 0, view.height)
+        first_facet = kept * first_facet_of(scene, chunk)
+        project_chunk(scene, view, chunk, first_link, first_facet)
+        fill_facets(view, chunk, first_facet, 0, view.height)
