@@ -39,6 +39,7 @@ from carom.world.loading import DescriptionLoading
 from carom.world.pickling import Picklable
 from carom.world.poses import Derived, PoseUpdates
 from carom.world.recordable import Recordable
+from carom.world.shape_adding import ShapeAdding
 from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
@@ -46,7 +47,9 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
-class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable, StateViews, Closed):
+class World(
+    DescriptionLoading, ShapeAdding, SoftLoading, PoseUpdates, Recordable, Picklable, StateViews, Closed
+):
     """Bodies that move under gravity, motors and limits.
 
     The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
