@@ -40,6 +40,12 @@ class Camera:
     A point (x, y, z) of the camera's frame is projected to column fx x / z + cx and row fy y / z + cy;
     (0, 0) is the centre of the top left pixel.
 
+    Attributes:
+        width: Number of columns.
+        height: Number of rows.
+        light: The light of its images.
+        link: Link it is mounted on; None for a camera fixed in the world.
+
     Args:
         width: Number of columns.
         height: Number of rows.
@@ -76,8 +82,8 @@ class Camera:
     ) -> None:
         if width < 1 or height < 1:
             raise ValueError(f"an image of {width} x {height} pixels cannot be taken")
-        self.width = width
-        self.height = height
+        self.width: int = width
+        self.height: int = height
         positive(fx, "fx")
         positive(fx if fy is None else fy, "fy")
         self._intrinsics = vector(
@@ -94,8 +100,8 @@ class Camera:
         positive(far - near, "far - near")
         self._near = near
         self._far = far
-        self.light = light
-        self.link = link
+        self.light: Light = light
+        self.link: Link | None = link
         self._local = IDENTITY
         self.place(position, orientation)
 
