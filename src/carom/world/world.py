@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.checks import vector
+from carom.checks import Array, vector
 from carom.closed import Closed
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
@@ -319,7 +319,7 @@ class World(
     # Parameters
 
     @property
-    def gravity(self) -> np.ndarray:
+    def gravity(self) -> Array:
         """Gravity in world axes [m/s²], shape (3,)."""
         return np.array(self.parameters.gravity)
 

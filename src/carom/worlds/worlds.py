@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NoReturn
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, positive
 from carom.closed import Closed
@@ -291,7 +291,7 @@ class Worlds(Closed):
     # Parameters
 
     @property
-    def sensor_seeds(self) -> np.ndarray:
+    def sensor_seeds(self) -> NDArray[np.int64]:
         """Seed of the noise of sensors in each world, a view (count,).
 
         At first `World.parameters.sensor_seed` and the numbers after it: a lone world with the seed of one of
