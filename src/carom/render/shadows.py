@@ -68,8 +68,8 @@ def shadow_cameras(
         eye = light.distance * direction
         # A lamp may be so far away that the place in front of it has the same numbers.
         clip = product(projection, look_along(eye, -direction))
-        stacks = (np.repeat(matrix[None], count, axis=0) for matrix in (clip, projection))
-        return ShadowCameras(*stacks, width, height, np.full(count, _LAMP_BIAS))
+        clips, projections = (np.repeat(matrix[None], count, axis=0) for matrix in (clip, projection))
+        return ShadowCameras(clips, projections, width, height, np.full(count, _LAMP_BIAS))
     centres, radii = _casters(scene, link_to_world)
     side = min(max(width, height, LEAST_MAP_SIDE), GREATEST_MAP_SIDE)
     views = np.repeat(look_along(np.zeros(3), -direction)[None], count, axis=0)
