@@ -68,7 +68,7 @@ SHAPES: dict[str, tuple[Add, float, tuple[float, float, float]]] = {
             0.1, 0.4, (0.0, 0.0, 0.2), (0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)), mass=mass
         ),
         0.1,
-        # Of the tube and the ball of which it consists, in proportion to their volumes 0.004 π and 0.004 π / 3.
+        # Of the tube and the ball of which it consists, whose volumes are 0.004 π and 0.004 π / 3.
         (
             (0.004 * (0.0025 + 0.04 / 3.0) + 0.004 / 3.0 * (0.004 + 0.04 + 0.015)) / (0.004 + 0.004 / 3.0),
             (0.004 * (0.0025 + 0.04 / 3.0) + 0.004 / 3.0 * (0.004 + 0.04 + 0.015)) / (0.004 + 0.004 / 3.0),

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description.pose import IDENTITY, Pose, Quaternion, Vector3
+from carom.algorithms.nodes import joint_motion, vector_of
+from carom.description.pose import IDENTITY, Pose, Quaternion
 from carom.description.transform import compose, inverse
-from carom.layouts.codes import BASE_POSITIONS, JointCode
+from carom.layouts.codes import BASE_POSITIONS
 from carom.model.body_spec import BASE
-from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -75,43 +75,11 @@ def _pose(body: Body, link: int, numbers: list[float], found: dict[int, Pose]) -
     pose = found[link]
     for each in reversed(path):
         row = body.first_link + 1 + each
-        joint = Pose(_vector(model["link_pivot_in_parent"][row]), _turn(model["link_joint_rotation"][row]))
-        offset = Pose(_vector(model["link_com_from_pivot"][row]))
-        motion = _motion(body, each, numbers)
+        joint = Pose(vector_of(model["link_pivot_in_parent"][row]), _turn(model["link_joint_rotation"][row]))
+        offset = Pose(vector_of(model["link_com_from_pivot"][row]))
+        motion = joint_motion(body, each, numbers)
         pose = found[each] = compose(compose(compose(pose, joint), motion), offset)
     return pose
-
-
-def _motion(body: Body, link: int, numbers: list[float]) -> Pose:
-    """The motion of a joint, in its frame with the axes of the link's inertial frame."""
-    first = sum(body.position_count[:link])
-    q = numbers[first : first + body.position_count[link]]
-    model, row = body.world.arrays.model.numpy, body.first_link + 1 + link
-    match body.joint_types[link]:
-        case JointCode.REVOLUTE:
-            return Pose(orientation=_rotation(_vector(model["link_unit_axis"][row]), q[0]))
-        case JointCode.PRISMATIC:
-            x, y, z = _vector(model["link_axis"][row])
-            return Pose((x * q[0], y * q[0], z * q[0]))
-        case JointCode.SPHERICAL:
-            x, y, z, w = q
-            return Pose(orientation=(x, y, z, w))
-        case JointCode.PLANAR:
-            a = _vector(model["link_planar_axis1"][row])
-            b = _vector(model["link_planar_axis2"][row])
-            x, y, z = (a[k] * q[1] + b[k] * q[2] for k in range(3))
-            return Pose((x, y, z), _rotation(_vector(model["link_unit_axis"][row]), q[0]))
-    return IDENTITY
-
-
-def _rotation(axis: Vector3, angle: float) -> Quaternion:
-    s = sin(0.5 * angle)
-    return axis[0] * s, axis[1] * s, axis[2] * s, cos(0.5 * angle)
-
-
-def _vector(row: np.ndarray) -> Vector3:
-    x, y, z = row.tolist()
-    return x, y, z
 
 
 def _turn(row: np.ndarray) -> Quaternion:
