@@ -19,8 +19,8 @@ _NO_STATE = "getLinkState failed."
 _NEGATIVE_BODY = "getLinkState failed; invalid bodyUniqueId"
 
 
-# The state of a link that does not exist is None. The types leave that out: otherwise all who pass a link that
-# exists would have to check for it.
+# The state of a link that does not exist is None. The types leave that out: otherwise all who pass a link
+# that exists would have to check for it.
 @overload
 def getLinkState(
     bodyUniqueId: int,
