@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,8 +11,10 @@ from hypothesis import strategies as st
 from tests.thorough.profiles import cases
 
 from carom import Camera, World
+from carom.camera import DAYLIGHT
 from carom.description import Box, JointType, Plane, Pose, Sphere, Visual
 from carom.model.body_spec import BodySpec, LinkSpec
+from carom.render.lights import Light
 from carom.scene.body import Body
 
 
@@ -120,13 +124,59 @@ def test_masks_by_handle_id_and_name():
     assert image.mask("ball").any()
 
 
-def test_a_name_stands_for_all_bodies_that_have_it():
+def test_bodies_of_the_same_name_are_told_apart():
     world = World()
     for x in (-0.5, 0.5):
         body_of(world, Sphere(0.1), (x, 0.0, 0.0))
+    body_of(world, Sphere(0.1), (0.0, 0.0, 0.0), name="other")
     image = Camera(60, 40, fx=40.0).look_at((0.0, -2.0, 0.0), (0.0, 0.0, 0.0)).capture(world)
-    assert np.array_equal(image.mask("thing"), image.mask(0) | image.mask(1))
-    assert image.names() == {"thing/base": image.mask("thing").sum()}
+    assert image.names() == {
+        "thing#0/base": image.mask(0).sum(),
+        "thing#1/base": image.mask(1).sum(),
+        "other/base": image.mask("other").sum(),
+    }
+    assert min(image.names().values()) > 0
+    assert np.array_equal(image.mask("thing#1", "base"), image.body_ids == 1)
+    with pytest.raises(KeyError, match=r"several bodies are called 'thing': thing#0, thing#1"):
+        image.mask("thing")
+
+
+def test_a_field_of_view_comes_with_a_light():
+    world = World()
+    body_of(world, Sphere(0.5))
+    dark, bright = (
+        Camera.with_field_of_view(9, 9, 60.0, light=Light(ambient=ambient, diffuse=0.0, specular=0.0))
+        .look_at((0.0, -2.0, 0.0), (0.0, 0.0, 0.0))
+        .capture(world)
+        .colour[4, 4]
+        for ambient in (0.0, 1.0)
+    )
+    assert dark.tolist() == [0, 0, 0]
+    assert bright.tolist() == [255, 255, 255]
+
+
+@pytest.mark.parametrize("size", [(20, 20), (84, 84), (320, 240)])
+def test_parallel_light_casts_the_same_shadow_in_images_of_any_size(size):
+    world = World()
+    body_of(world, Plane())
+    body_of(world, Box((0.5, 0.5, 0.5)), (0.0, 0.0, 1.0))
+    view = {"eye": (0.5, 0.0, 5.0), "target": (0.5, 0.0, 0.0)}
+    plain, shadowed = (
+        Camera.with_field_of_view(
+            *size, 60.0, light=replace(DAYLIGHT, direction=(-1.0, 0.0, 1.0), shadow=shadow)
+        )
+        .look_at(**view)
+        .capture(world)
+        for shadow in (False, True)
+    )
+    floor = plain.body_ids == 0
+    dark = floor & (shadowed.colour < plain.colour).any(axis=2)
+    points = plain.point_cloud().points.reshape(-1, 3)[dark[plain.body_ids >= 0]]
+    pixel = 2.0 * 5.0 * np.tan(np.radians(30.0)) / size[1]
+    # The shadow reaches from 0 to 2 m along x; seen from above, the box hides it up to 0.5 m.
+    assert points[:, 0].max() == pytest.approx(2.0, abs=0.02 + 1.5 * pixel)
+    assert np.abs(points[:, 1]).max() == pytest.approx(0.5, abs=0.02 + 1.5 * pixel)
+    assert np.sum(dark) * pixel**2 == pytest.approx(1.5, abs=0.02 + 2.0 * pixel)
 
 
 @pytest.mark.parametrize("arguments", [("nobody",), (7,), ("arm", "nose"), ("arm", 4), ("arm", -2)])

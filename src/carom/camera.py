@@ -1,16 +1,16 @@
-"""Cameras: colour, depth in metres, labels and point clouds of a world."""
+"""Cameras with intrinsics, on links or in the world."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from html import escape
-from io import BytesIO
 from math import inf, radians
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from carom.camera_image import CameraImage, PointCloud
 from carom.checks import Array, positive, vector
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, quaternion_from_matrix
@@ -19,16 +19,13 @@ from carom.native.trigonometry import tan
 from carom.render.lights import Light
 from carom.render.projection import look_at, pinhole_projection, poses_to_matrices
 from carom.render.renderer import renderer_of
-from carom.render.scene import LINK_SHIFT
 from carom.scene.link import LinkPose
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
     from carom.scene.link import Link
     from carom.world.world import World
 
-NOTHING = -1
-"""Body id of background pixels."""
+__all__ = ["DAYLIGHT", "Camera", "CameraImage", "PointCloud"]
 
 DAYLIGHT = Light(ambient=0.5, diffuse=0.5, distance=inf, shadow=True, shade=0.4)
 """Default light of a camera: parallel, with shadows."""
@@ -37,148 +34,17 @@ DAYLIGHT = Light(ambient=0.5, diffuse=0.5, distance=inf, shadow=True, shade=0.4)
 _EYE_FROM_CAMERA = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
-class PointCloud(NamedTuple):
-    """Points of the surfaces in view.
-
-    Attributes:
-        points: (n, 3) positions [m].
-        colours: (n, 3) uint8 red, green and blue.
-        bodies: (n,) ids of the bodies that the points lie on.
-    """
-
-    points: NDArray[np.float64]
-    colours: NDArray[np.uint8]
-    bodies: NDArray[np.int32]
-
-
-class CameraImage:
-    """The image of a camera at one time. Row 0 is the top; no other image shares its arrays.
-
-    Attributes:
-        colour: (height, width, 3) uint8 red, green and blue; white for the background.
-        depth: (height, width) float32 distance along the optical axis [m]; infinite for the background.
-        body_ids: (height, width) int32 ids of bodies; -1 for the background.
-        link_indices: (height, width) int32 links of those bodies; -1 is the base, and the background.
-        camera_pose: World pose of the camera at that time.
-    """
-
-    def __init__(
-        self,
-        colour: NDArray[np.uint8],
-        depth: NDArray[np.float32],
-        label: NDArray[np.int32],
-        camera_pose: LinkPose,
-        intrinsics: Array,
-        bodies: dict[int, Body],
-    ) -> None:
-        self.colour = colour
-        self.depth = depth
-        nothing = label == NOTHING
-        self.body_ids: np.ndarray = np.where(nothing, NOTHING, label & ((1 << LINK_SHIFT) - 1)).astype(
-            np.int32
-        )
-        self.link_indices: np.ndarray = np.where(nothing, 0, label >> LINK_SHIFT).astype(np.int32) - 1
-        self.camera_pose = camera_pose
-        self._intrinsics = intrinsics
-        # Bodies may be removed after the image is taken; their names are kept.
-        self._names = {
-            body.id: (body.name, [link.name for link in (body.spec.base, *body.spec.links)])
-            for body in bodies.values()
-        }
-
-    def __repr__(self) -> str:
-        height, width = self.depth.shape
-        seen = np.count_nonzero(np.unique(self.body_ids) != NOTHING)
-        return f"<CameraImage {width} x {height}, {seen} bodies in view>"
-
-    def _repr_png_(self) -> bytes:
-        """The colours as a PNG file, for notebooks."""
-        from PIL import Image
-
-        file = BytesIO()
-        Image.fromarray(self.colour).save(file, "png")
-        return file.getvalue()
-
-    def mask(self, body: Body | int | str, link: Link | int | str | None = None) -> NDArray[np.bool_]:
-        """The pixels in which a body, or one link of it, is visible.
-
-        Args:
-            body: Handle, id or name; a name stands for all bodies of that name.
-            link: Handle, index (-1 is the base) or name; None for the whole body.
-
-        Returns:
-            (height, width) booleans, true where the body or link is visible.
-
-        Raises:
-            KeyError: No such body or link existed when the image was taken.
-        """
-        found = np.zeros(self.body_ids.shape, dtype=bool)
-        for identifier in self._matching(body):
-            seen = self.body_ids == identifier
-            if link is not None:
-                seen &= self.link_indices == self._link_index(identifier, link)
-            found |= seen
-        return found
-
-    def names(self) -> dict[str, int]:
-        """Number of pixels of each visible link, by its name as `body/link`."""
-        labels, counts = np.unique(
-            np.stack([self.body_ids, self.link_indices], axis=-1).reshape(-1, 2), axis=0, return_counts=True
-        )
-        result: dict[str, int] = {}
-        for (identifier, link), count in zip(labels.tolist(), counts.tolist(), strict=True):
-            if identifier != NOTHING:
-                body, links = self._names[identifier]
-                name = f"{body}/{links[link + 1]}"
-                result[name] = result.get(name, 0) + count
-        return result
-
-    def point_cloud(self, *, frame: Literal["world", "camera"] = "world") -> PointCloud:
-        """The points of all pixels except the background, row by row.
-
-        Args:
-            frame: Axes of the points: those of the world, or of the camera (x to the right, y down,
-                z forwards).
-        """
-        if frame not in ("world", "camera"):
-            raise ValueError(f"frame must be 'world' or 'camera', not {frame!r}")
-        rows, columns = np.nonzero(self.body_ids != NOTHING)
-        fx, fy, cx, cy = self._intrinsics
-        z = self.depth[rows, columns].astype(np.float64)
-        points = np.stack([(columns - cx) / fx * z, (rows - cy) / fy * z, z], axis=1)
-        if frame == "world":
-            position, orientation = self.camera_pose
-            rotation = poses_to_matrices(np.concatenate([position, orientation])[None])[0, :3, :3]
-            points = product(points, rotation.T) + position
-        return PointCloud(points, self.colour[rows, columns], self.body_ids[rows, columns])
-
-    def _matching(self, body: Body | int | str) -> list[int]:
-        if isinstance(body, str):
-            found = [identifier for identifier, (name, _) in self._names.items() if name == body]
-        else:
-            identifier = int(body) if isinstance(body, (int, np.integer)) else body.id
-            found = [identifier] if identifier in self._names else []
-        if not found:
-            raise KeyError(f"there was no body {body!r} when the image was taken")
-        return found
-
-    def _link_index(self, identifier: int, link: Link | int | str) -> int:
-        body, links = self._names[identifier]
-        if isinstance(link, str):
-            if link not in links:
-                raise KeyError(f"body {body!r} has no link {link!r}")
-            return links.index(link) - 1
-        index = int(link) if isinstance(link, (int, np.integer)) else link.index
-        if not -1 <= index < len(links) - 1:
-            raise KeyError(f"body {body!r} has no link {index}")
-        return index
-
-
 class Camera:
     """A pinhole camera. It looks along z, its x axis points to the right of the image, its y axis down.
 
     A point (x, y, z) of the camera's frame is projected to column fx x / z + cx and row fy y / z + cy;
     (0, 0) is the centre of the top left pixel.
+
+    Attributes:
+        width: Number of columns.
+        height: Number of rows.
+        light: The light of its images.
+        link: Link it is mounted on; None for a camera fixed in the world.
 
     Args:
         width: Number of columns.
@@ -216,8 +82,8 @@ class Camera:
     ) -> None:
         if width < 1 or height < 1:
             raise ValueError(f"an image of {width} x {height} pixels cannot be taken")
-        self.width = width
-        self.height = height
+        self.width: int = width
+        self.height: int = height
         positive(fx, "fx")
         positive(fx if fy is None else fy, "fy")
         self._intrinsics = vector(
@@ -234,14 +100,21 @@ class Camera:
         positive(far - near, "far - near")
         self._near = near
         self._far = far
-        self.light = light
-        self.link = link
+        self.light: Light = light
+        self.link: Link | None = link
         self._local = IDENTITY
         self.place(position, orientation)
 
     @classmethod
     def with_field_of_view(
-        cls, width: int, height: int, degrees: float, *, near: float = 0.01, far: float = 100.0
+        cls,
+        width: int,
+        height: int,
+        degrees: float,
+        *,
+        near: float = 0.01,
+        far: float = 100.0,
+        light: Light = DAYLIGHT,
     ) -> Camera:
         """A camera with a given vertical field of view, at the origin of the world.
 
@@ -251,13 +124,16 @@ class Camera:
             degrees: Angle from the lower to the upper edge of the image.
             near: Near plane: nothing closer is visible [m].
             far: Far plane: nothing farther is visible [m].
+            light: The light of its images.
 
         Raises:
             ValueError: The angle is not between 0 and 180 degrees, or a number is out of range.
         """
         if not 0.0 < degrees < 180.0:
             raise ValueError(f"degrees must be between 0 and 180, not {degrees!r}")
-        return cls(width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far)
+        return cls(
+            width, height, fx=0.5 * height / tan(radians(0.5 * degrees)), near=near, far=far, light=light
+        )
 
     def __repr__(self) -> str:
         place = "in the world" if self.link is None else f"on {self.link!r}"
@@ -326,13 +202,26 @@ class Camera:
     @property
     def pose(self) -> LinkPose:
         """World pose of the camera now."""
+        return self.pose_on(None if self.link is None else self.link.pose)
+
+    def pose_on(self, frame: LinkPose | None) -> LinkPose:
+        """World pose of the camera, mounted on a link with this frame, or fixed in the world (None)."""
         pose = self._local
-        if self.link is not None:
-            position, orientation = self.link.pose
-            px, py, pz = position.tolist()
-            qx, qy, qz, qw = orientation.tolist()
+        if frame is not None:
+            px, py, pz = frame.position.tolist()
+            qx, qy, qz, qw = frame.orientation.tolist()
             pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), pose)
         return LinkPose(np.array(pose.position), np.array(pose.orientation))
+
+    def views(self, poses: Array) -> Array:
+        """(n, 4, 4) matrices from the world to eye coordinates as in OpenGL, for world poses (n, 7)."""
+        return product(_EYE_FROM_CAMERA, _inverses(poses_to_matrices(poses)))
+
+    @property
+    def projection(self) -> Array:
+        """(4, 4) matrix from eye to clip coordinates as in OpenGL."""
+        fx, fy, cx, cy = self._intrinsics.tolist()
+        return pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
 
     def capture(self, world: World | None = None) -> CameraImage:
         """Take an image.
@@ -351,10 +240,8 @@ class Camera:
         if world is None:
             raise ValueError("a camera that is not mounted needs to be told which world to look at")
         pose = self.pose
-        view = _EYE_FROM_CAMERA @ _inverse(poses_to_matrices(np.concatenate(pose)[None])[0])
-        fx, fy, cx, cy = self._intrinsics.tolist()
-        projection = pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
-        image = renderer_of(world).draw(world, view, projection, self.width, self.height, self.light)
+        view = self.views(np.concatenate(pose)[None])[0]
+        image = renderer_of(world).draw(world, view, self.projection, self.width, self.height, self.light)
         return CameraImage(
             np.ascontiguousarray(image.rgba[:, :, :3]),
             image.distance,
@@ -365,9 +252,11 @@ class Camera:
         )
 
 
-def _inverse(matrix: Array) -> Array:
-    """Inverse of a homogeneous transformation (rotation and translation), shape (4, 4)."""
-    inverse = np.eye(4)
-    inverse[:3, :3] = matrix[:3, :3].T
-    inverse[:3, 3:] = -product(matrix[:3, :3].T, matrix[:3, 3:])
-    return inverse
+def _inverses(matrices: Array) -> Array:
+    """Inverses of homogeneous transformations (rotation and translation), shape (n, 4, 4)."""
+    inverses = np.zeros_like(matrices)
+    turns = matrices[:, :3, :3].transpose(0, 2, 1)
+    inverses[:, :3, :3] = turns
+    inverses[:, :3, 3:] = -product(turns, matrices[:, :3, 3:])
+    inverses[:, 3, 3] = 1.0
+    return inverses

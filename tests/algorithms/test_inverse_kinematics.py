@@ -113,7 +113,7 @@ def test_an_orientation_is_reached_from_singular_poses_where_pybullet_is_stuck(p
             [target[1]],
             iterations=20,
             further=0,
-        )
+        ).positions
         if is_stuck(panda, target, pybullets):
             asked += 1
             distance, angle = panda.distances(target, panda.ask(way, target))
@@ -141,7 +141,7 @@ def test_more_steps_within_limits_come_nearer():
                 further=further,
                 rest=reach.home,
                 **limits,
-            )
+            ).positions
             for further in (300, 3000)
         )
         first, second = (np.square(reach.distances(target, found)).sum() for found in (few, many))
@@ -300,7 +300,10 @@ def test_any_kind_of_joint_can_reach(seed, fixed_base):
     target = place(moved)
     place(start)
     found = inverse_kinematics(body, [link], [target], iterations=200, threshold=1e-8)
-    assert_allclose(place(found), target, rtol=0, atol=1e-7)
+    assert_allclose(place(found.positions), target, rtol=0, atol=1e-7)
+    assert found.success
+    assert found.residual <= 1e-8
+    assert found.angle_residual == 0.0
 
 
 def test_spherical_joints_are_given_as_roll_pitch_and_yaw():
@@ -432,3 +435,19 @@ def test_a_solver_does_not_outlive_its_body():
     inverse_kinematics(body, [4], [target])
     world.remove(body.id)
     assert inverse_kinematics(other, [4], [target]) == before
+
+
+def test_residuals_say_how_far_the_links_are_from_their_targets():
+    world = World()
+    body = world.load_urdf("franka_panda/panda.urdf", fixed_base=True)
+    link = body.links["panda_hand"].index
+    turn = (1.0, 0.0, 0.0, 0.0)
+    for place, arrives in (((0.5, 0.1, 0.4), True), ((0.5, 0.1, 4.0), False)):
+        found = inverse_kinematics(body, [link], [place], [turn], iterations=300)
+        assert found.success == arrives
+        body.joints.reset(found.positions)
+        hand = body.links["panda_hand"]
+        assert found.residual == pytest.approx(np.linalg.norm(hand.pose.position - place), abs=1e-9)
+        cosine = abs(hand.inertial_pose.orientation @ turn)
+        assert found.angle_residual == pytest.approx(2.0 * np.arccos(min(cosine, 1.0)), abs=1e-6)
+        assert (found.residual < 1e-3) == arrives

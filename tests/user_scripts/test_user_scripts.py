@@ -13,6 +13,7 @@ from . import (
     modern_world,
     pick_and_place,
     quickstart,
+    shapes_and_kinematics,
     shapes_and_states,
 )
 
@@ -59,3 +60,10 @@ def test_modern_world(tmp_path: Path) -> None:
     swung, held = modern_world.main(tmp_path)
     assert abs(swung) <= 0.51
     assert held == pytest.approx(0.2, abs=0.01)
+
+
+def test_shapes_and_kinematics() -> None:
+    away, height, images = shapes_and_kinematics.main()
+    assert away < 1e-3
+    assert height == pytest.approx(0.1)
+    assert images == shapes_and_kinematics.COUNT

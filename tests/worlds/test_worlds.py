@@ -1,4 +1,4 @@
-"""What `Worlds` shows and takes: states, drives, forces, contacts, rays, images, faults."""
+"""What `Worlds` shows and takes: states, drives, forces, contacts, rays, faults."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.physics.contact_scenes import (
 from tests.worlds.same_bits import assert_same_bits
 
 import pybullet_data
-from carom import Body, Camera, World, Worlds
+from carom import Body, World, Worlds
 from carom.description import Pose
 from carom.errors import SimulationWarning
 from carom.layouts.codes import UserConstraintKind
@@ -234,34 +234,6 @@ def test_rays_see_each_world_as_it_is(balls: tuple[World, Body, Body]) -> None:
     moved = worlds.rays(own, own * [1.0, 1.0, -1.0])
     assert (moved.fractions[1:] != found.fractions[1:]).any()
     np.testing.assert_array_equal(moved.fractions[0], found.fractions[0])
-
-
-def test_images_show_each_world(balls: tuple[World, Body, Body]) -> None:
-    world, _, ball = balls
-    worlds = Worlds(world, COUNT)
-    worlds[ball].set_base_poses([[0, 0, 0.5], [0, 0.4, 0.5], [0, -0.4, 0.5]])
-    camera = Camera.with_field_of_view(32, 24, 60.0).look_at((2.0, 0.0, 0.6), (0.0, 0.0, 0.5))
-    images = worlds.images(camera)
-    assert images.colour.shape == (COUNT, 24, 32, 3)
-    for number in range(COUNT):
-        alone = camera.capture(worlds.extract(number))
-        np.testing.assert_array_equal(images.colour[number], alone.colour)
-        np.testing.assert_array_equal(images.depth[number], alone.depth)
-        np.testing.assert_array_equal(images.body_ids[number], alone.body_ids)
-    assert worlds.images(camera, where=[]).depth.shape == (0, 24, 32)
-
-
-def test_a_mounted_camera_goes_with_its_link(arm: tuple[World, Body]) -> None:
-    world, panda = arm
-    add_floor(world)
-    worlds = Worlds(world, 2)
-    worlds[panda].joint_positions[1, 5] = 0.5
-    camera = Camera.with_field_of_view(16, 16, 60.0).mount(panda.links["panda_hand"])
-    camera.look_at((0.2, 0.0, 0.1), (0.3, 0.0, 1.0))
-    images = worlds.images(camera)
-    assert camera.link is panda.links["panda_hand"]
-    assert (images.depth[0] != images.depth[1]).any()
-    np.testing.assert_array_equal(images.depth[0], camera.capture().depth)
 
 
 def test_a_world_that_is_not_finite_halts_alone_and_can_be_restored(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
+from carom.checks import Array
 from carom.description.transform import conjugate, rotate
 from carom.layouts.codes import BASE_POSITIONS
 
@@ -21,7 +22,7 @@ def inverse_dynamics(
     velocities: Sequence[float] | np.ndarray,
     accelerations: Sequence[float] | np.ndarray,
     base_orientation: Sequence[float] | None = None,
-) -> np.ndarray:
+) -> Array:
     """Generalized forces for given accelerations of a body, by the recursive Newton-Euler algorithm.
 
     Gravity and the armature of joints are included; damping, springs, friction and applied forces are not.

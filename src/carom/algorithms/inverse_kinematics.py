@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import inf
+from math import hypot, inf
 from struct import Struct
 from struct import error as StructError
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from carom.algorithms.chain import BodyChain
+from carom.algorithms.forward_kinematics import inertial_poses
+from carom.description.transform import compose, conjugate, inverse, multiplied
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE, Search
 from carom.layouts.codes import BASE_POSITIONS
 from carom.native.kernels import inverse_kinematics_kernel
 from carom.native.launch import Launch
 from carom.native.tables import NUMPY_REAL, ArrayTable, numbers_of
+from carom.native.trigonometry import atan2
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -32,6 +35,23 @@ _FIRST_OPTION = 3
 # Upper bound of iterations: more would not help, but take very long.
 _MOST_ITERATIONS = 100_000
 Numbers = Sequence[float] | np.ndarray
+
+
+class InverseKinematicsResult(NamedTuple):
+    """What inverse kinematics found.
+
+    Attributes:
+        positions: The best joint positions found, in order; a quaternion (x, y, z, w) for each spherical
+            joint.
+        residual: Largest distance that is left between a link and its target [m].
+        angle_residual: Largest angle that is left [rad]; 0 if no orientations were asked for.
+        success: Whether no residual is above the threshold.
+    """
+
+    positions: tuple[float, ...]
+    residual: float
+    angle_residual: float
+    success: bool
 
 
 def inverse_kinematics(
@@ -52,7 +72,7 @@ def inverse_kinematics(
     further: int | None = None,
     threshold: float = DEFAULT_THRESHOLD,
     patience: float = 0.0,
-) -> tuple[float, ...]:
+) -> InverseKinematicsResult:
     """Joint positions at which links reach target poses.
 
     The search starts at the current pose and uses PyBullet's damped least squares, with the same result if
@@ -83,12 +103,53 @@ def inverse_kinematics(
             this share of the first distance, or 2 cm; with 0 only if it reaches the target.
 
     Returns:
-        Joint positions in order, a quaternion for each spherical joint; the best found, if none is within
-        tolerance.
+        The joint positions, and what is left of the way to the targets.
 
     Raises:
         ValueError: A sequence has the wrong length.
     """
+    found = find_positions(
+        body,
+        links,
+        positions,
+        orientations,
+        lower=lower,
+        upper=upper,
+        ranges=ranges,
+        rest=rest,
+        damping=damping,
+        selective=selective,
+        start=start,
+        in_base_frame=in_base_frame,
+        iterations=iterations,
+        further=further,
+        threshold=threshold,
+        patience=patience,
+    )
+    distance, angle = _residuals(body, found, links, positions, orientations, in_base_frame=in_base_frame)
+    return InverseKinematicsResult(found, distance, angle, distance <= threshold and angle <= threshold)
+
+
+def find_positions(
+    body: Body,
+    links: Sequence[int],
+    positions: Sequence[Numbers],
+    orientations: Sequence[Numbers] | None = None,
+    *,
+    lower: Numbers | None = None,
+    upper: Numbers | None = None,
+    ranges: Numbers | None = None,
+    rest: Numbers | None = None,
+    damping: Numbers | None = None,
+    selective: bool = False,
+    start: Numbers | None = None,
+    in_base_frame: bool = False,
+    iterations: int = DEFAULT_ITERATIONS,
+    further: int | None = None,
+    threshold: float = DEFAULT_THRESHOLD,
+    patience: float = 0.0,
+) -> tuple[float, ...]:
+    """The joint positions of `inverse_kinematics`, with the same arguments, without residuals."""
     solver = _solver(body, tuple(links))
     try:
         solver.set_targets(positions, orientations)
@@ -105,6 +166,28 @@ def inverse_kinematics(
         solver.set_rest(ranges, rest)
     further = iterations if further is None else further
     return solver.solve((orientations is not None, step, bounded, iterations, further, threshold, patience))
+
+
+def _residuals(
+    body: Body,
+    found: tuple[float, ...],
+    links: Sequence[int],
+    positions: Sequence[Numbers],
+    orientations: Sequence[Numbers] | None,
+    *,
+    in_base_frame: bool,
+) -> tuple[float, float]:
+    """Largest distance [m] and angle [rad] between links and their targets."""
+    poses = inertial_poses(body, found, links, in_base_frame=in_base_frame)
+    distance = angle = 0.0
+    for link, pose, target in zip(links, poses, positions, strict=True):
+        place = compose(pose, inverse(body.link_inertial_frame(link))).position
+        distance = max(distance, hypot(*(float(a) - b for a, b in zip(target, place, strict=True))))
+    for pose, target in zip(poses, orientations or (), strict=orientations is not None):
+        x, y, z, w = (float(number) for number in target)
+        dx, dy, dz, dw = multiplied(conjugate(pose.orientation), (x, y, z, w))
+        angle = max(angle, 2.0 * atan2(hypot(dx, dy, dz), abs(dw)))
+    return distance, angle
 
 
 class _Solver:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
+from carom.checks import Array
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -18,7 +19,7 @@ def jacobian(
     link: int,
     local_position: Sequence[float] | np.ndarray,
     positions: Sequence[float] | np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[Array, Array]:
     """Linear and angular Jacobian of a point on a link.
 
     Args:

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
+from carom.checks import Array
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> np.ndarray:
+def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
     The armature of joints is part of it; what damping and springs add in a time step is not.

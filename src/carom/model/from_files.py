@@ -106,7 +106,9 @@ def compiled_mjcf_bodies(
     """
     from carom.formats.mjcf.compiled import compile_mjcf
 
-    model = compile_mjcf(path, hull=_hull, search=search, cursor=cursor, missing_meshes=missing_meshes)
+    model = compile_mjcf(
+        path, hull=hull_triangles, search=search, cursor=cursor, missing_meshes=missing_meshes
+    )
     loading = LoadFlags(flags | _ALWAYS_FOR_MJCF)
     if not flags & LoadFlags.ANY_SELF_COLLISION:
         loading |= LoadFlags.USE_SELF_COLLISION | LoadFlags.USE_SELF_COLLISION_INCLUDE_PARENT
@@ -121,7 +123,7 @@ def compiled_mjcf_bodies(
     return model, bodies
 
 
-def _hull(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def hull_triangles(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """The convex hull of points (n, 3): vertices (k, 3) and triangles (m, 3)."""
     hull = convex_hull(points)
     triangles = []

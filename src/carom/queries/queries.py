@@ -26,7 +26,7 @@ from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
 from carom.queries.quick_queries import tell_placement
-from carom.queries.ray_cast import Points, RayCast, RayHit
+from carom.queries.ray_cast import Points, RayCast, RayHit, RayTuple
 
 if TYPE_CHECKING:
     from carom.queries.soft_bodies import SoftQueries
@@ -130,7 +130,23 @@ class Queries:
             mask: Mask of the collision groups that are hit.
             hit_number: 0 for the first hit of each ray, 1 for the second, and so on.
             separation: After a hit, hits on the same link within this fraction of the ray are ignored.
+
+        Returns:
+            The result of each ray.
         """
+        hits = self.ray_tuples(starts, ends, mask=mask, hit_number=hit_number, separation=separation)
+        return tuple(map(RayHit._make, hits))
+
+    def cast_ray(
+        self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
+    ) -> RayHit:
+        """Cast one ray; the arguments are those of `cast_rays`."""
+        return RayHit(*self.ray_tuple(start, end, mask=mask, hit_number=hit_number, separation=separation))
+
+    def ray_tuples(
+        self, starts: Points, ends: Points, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
+    ) -> tuple[RayTuple, ...]:
+        """As `cast_rays`, with plain tuples."""
         self._prepare(IN_HIERARCHY)
         soft = self._soft
         if soft is None:
@@ -145,12 +161,12 @@ class Queries:
             for ray in range(len(starts))
         )
 
-    def cast_ray(
+    def ray_tuple(
         self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
-    ) -> RayHit:
-        """Cast one ray; the arguments are those of `cast_rays`."""
+    ) -> RayTuple:
+        """As `cast_ray`, with a plain tuple."""
         if self._soft is not None:
-            hits = self.cast_rays((start,), (end,), mask=mask, hit_number=hit_number, separation=separation)
+            hits = self.ray_tuples((start,), (end,), mask=mask, hit_number=hit_number, separation=separation)
             return hits[0]
         self._prepare(IN_HIERARCHY)
         return self._cast.one(start, end, mask, hit_number, separation)

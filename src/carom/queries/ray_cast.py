@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Sequence
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,10 +21,31 @@ Points = np.ndarray | Sequence[Sequence[float]]
 _TYPE_CODE = np.dtype(NUMPY_REAL).char
 _VECTOR = struct.Struct(f"3{_TYPE_CODE}")
 
+RayTuple = tuple[int, int, float, Vector3, Vector3]
+"""The numbers of a `RayHit`, in that order."""
 
-RayHit = tuple[int, int, float, Vector3, Vector3]
-"""Body and link (-1: the base) that a ray hits, fraction of the ray, position [m] and normal in world axes.
-Without a hit: -1, -1, 1.0 and zero vectors."""
+
+class RayHit(NamedTuple):
+    """The result of a ray.
+
+    Attributes:
+        body: Id of the body that it hits; -1 without a hit.
+        link: Index of the link, -1 for the base and without a hit.
+        fraction: Fraction along the ray: 0 at the start, 1 at the end and without a hit.
+        position: The point in world axes [m]; zeros without a hit.
+        normal: Unit normal of the surface there; zeros without a hit.
+    """
+
+    body: int
+    link: int
+    fraction: float
+    position: Vector3
+    normal: Vector3
+
+    @property
+    def success(self) -> bool:
+        """Whether the ray hits anything."""
+        return self.body >= 0
 
 
 class RayCast:
@@ -43,8 +65,8 @@ class RayCast:
 
     def __call__(
         self, starts: Points, ends: Points, mask: int, hit_number: int, separation: float
-    ) -> tuple[RayHit, ...]:
-        """Cast rays; the arguments are those of `Queries.cast_rays`."""
+    ) -> tuple[RayTuple, ...]:
+        """Cast rays; the arguments are those of `Queries.ray_tuples`."""
         count = len(starts)
         if count > self._cast.room:
             self._cast.reserve(count)
@@ -57,8 +79,8 @@ class RayCast:
         positions, normals = _VECTOR.iter_unpack(self._positions), _VECTOR.iter_unpack(self._normals)
         return tuple(zip(bodies, self._links, self._fractions, positions, normals, strict=False))
 
-    def one(self, start: Vector3, end: Vector3, mask: int, hit_number: int, separation: float) -> RayHit:
-        """Cast one ray; the other arguments are those of `Queries.cast_rays`."""
+    def one(self, start: Vector3, end: Vector3, mask: int, hit_number: int, separation: float) -> RayTuple:
+        """Cast one ray; the other arguments are those of `Queries.ray_tuples`."""
         _VECTOR.pack_into(self._starts, 0, *start)
         _VECTOR.pack_into(self._ends, 0, *end)
         self._cast(1, mask, hit_number, separation)

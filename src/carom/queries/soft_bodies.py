@@ -16,7 +16,7 @@ from carom.native.launch import KernelStructs, Launch
 from carom.native.products import dots, length
 from carom.native.tables import ArrayTable
 from carom.queries.contact_search import ContactColumns
-from carom.queries.ray_cast import Points, RayHit
+from carom.queries.ray_cast import Points, RayTuple
 from carom.queries.soft_pairs import touching_pairs
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # Point of the soft body [m], shape, gap beyond the margin [m], unit normal towards the soft body, force on it
 # [N].
 _Touch = tuple[np.ndarray, int, float, np.ndarray, np.ndarray]
-_NOTHING: RayHit = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+_NOTHING: RayTuple = (-1, -1, 1.0, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 _BASE = -1
 # The collision group of rays, for the masks of shapes.
 _RAY_GROUP = 1
@@ -73,7 +73,7 @@ class SoftQueries:
 
     # Rays
 
-    def cast(self, starts: Points, ends: Points, mask: int) -> list[list[RayHit]]:
+    def cast(self, starts: Points, ends: Points, mask: int) -> list[list[RayTuple]]:
         """All hits of each ray on faces of soft bodies, the nearest first; points are (n, 3), world axes [m].
 
         Cloth is hit from both sides, solids from outside only. As with shapes, a ray that starts inside a
@@ -81,7 +81,7 @@ class SoftQueries:
         """
         start = np.asarray(starts, dtype=np.float64).reshape(-1, 3)
         way = np.asarray(ends, dtype=np.float64).reshape(-1, 3) - start
-        hits: list[list[RayHit]] = [[] for _ in range(len(start))]
+        hits: list[list[RayTuple]] = [[] for _ in range(len(start))]
         for soft in self._soft.bodies:
             link = self._link_row(soft)
             if not (self._shapes["link_group"][link] & mask and self._shapes["link_mask"][link] & _RAY_GROUP):
@@ -237,7 +237,7 @@ def _shares(last: dict[str, np.ndarray], corners: np.ndarray, touch: int) -> np.
     return shares / shares.sum() if shares.sum() > 0.0 else weights
 
 
-def nth_hit(rigid: Sequence[RayHit], soft: Sequence[RayHit], number: int, separation: float) -> RayHit:
+def nth_hit(rigid: Sequence[RayTuple], soft: Sequence[RayTuple], number: int, separation: float) -> RayTuple:
     """The n-th hit of a ray, counted from 0.
 
     Args:

@@ -10,6 +10,8 @@ from functools import cache
 from carom.native.cpu import core_count
 from carom.native.uninterrupted import uninterrupted
 
+Task = Callable[[], None]
+
 MAX_WORKERS = 8
 """Most threads used: more threads do not speed up images of usual size."""
 
@@ -19,7 +21,7 @@ def worker_count() -> int:
     return min(core_count(), MAX_WORKERS)
 
 
-def run_all(tasks: Sequence[Callable[[], None]]) -> None:
+def run_all(tasks: Sequence[Task]) -> None:
     """Run all tasks in parallel, in any order, and return when the last one is done."""
     if len(tasks) == 1 or worker_count() == 1:
         for task in tasks:

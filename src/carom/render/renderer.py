@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.render.appearance import appearance_of
+from carom.render.image_batch import ImageBatch, RawImages
 from carom.render.image_target import ImageTarget, RawImage
 from carom.render.lights import Light
 from carom.render.projection import Matrix, is_singular, poses_to_matrices
@@ -31,6 +33,8 @@ class Renderer:
     def __init__(self) -> None:
         self._scene: SceneArrays | None = None
         self._targets: OrderedDict[tuple[int, int], ImageTarget] = OrderedDict()
+        # The last one, by its size and its number of threads.
+        self._batch: tuple[tuple[int, int, int], ImageBatch] | None = None
 
     def draw(
         self,
@@ -57,11 +61,7 @@ class Renderer:
         Raises:
             ValueError: The size is out of range, or a matrix is not finite.
         """
-        if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE and width * height <= MAX_PIXELS):
-            raise ValueError(
-                f"an image of {width} x {height} pixels cannot be drawn: sides go from 1 to {MAX_SIDE} and "
-                f"all pixels up to {MAX_PIXELS}"
-            )
+        _check_size(width, height)
         for matrix, name in ((view, "view"), (projection, "projection")):
             if not np.isfinite(matrix).all():
                 raise ValueError(f"the {name} matrix is not finite")
@@ -75,15 +75,54 @@ class Renderer:
             link_to_world = poses_to_matrices(world.link_pose[scene.link_rows])
         return target.draw(link_to_world, view, projection, light, projector)
 
+    def draw_worlds(
+        self,
+        world: World,
+        link_poses: NDArray[np.float64],
+        views: Matrix,
+        projection: Matrix,
+        width: int,
+        height: int,
+        light: Light,
+        threads: int,
+    ) -> RawImages:
+        """Draw images of many worlds with the bodies of this one, none of them soft.
+
+        Args:
+            world: The world.
+            link_poses: (n, links, 7) `World.link_pose` in each world.
+            views: (n, 4, 4) world to eye coordinates in each world.
+            projection: (4, 4) eye to clip coordinates.
+            width: Number of columns.
+            height: Number of rows.
+            light: The light.
+            threads: Number of threads.
+
+        Raises:
+            ValueError: The size is out of range.
+        """
+        _check_size(width, height)
+        scene = self._present_scene(world)
+        key = (width, height, threads)
+        if self._batch is None or self._batch[0] != key:
+            self._batch = key, ImageBatch(scene, width, height, threads)
+        poses = link_poses[:, scene.link_rows]
+        matrices = poses_to_matrices(poses.reshape(-1, 7)).reshape(*poses.shape[:2], 4, 4)
+        return self._batch[1].draw(matrices, views, projection, light)
+
     def _present_scene(self, world: World) -> SceneArrays:
         appearance = appearance_of(world)
         scene = self._scene
         if scene is None or not scene.shows(world, appearance):
             self._scene = scene = SceneArrays(world, appearance)
-            self._targets.clear()
+            self._forget_targets()
         elif scene.update_textures(appearance.textures):
-            self._targets.clear()
+            self._forget_targets()
         return scene
+
+    def _forget_targets(self) -> None:
+        self._targets.clear()
+        self._batch = None
 
     def _target(self, scene: SceneArrays, width: int, height: int) -> ImageTarget:
         size = (width, height)
@@ -105,3 +144,11 @@ def renderer_of(world: World) -> Renderer:
 
 
 _renderers: WeakKeyDictionary[World, Renderer] = WeakKeyDictionary()
+
+
+def _check_size(width: int, height: int) -> None:
+    if not (1 <= width <= MAX_SIDE and 1 <= height <= MAX_SIDE and width * height <= MAX_PIXELS):
+        raise ValueError(
+            f"an image of {width} x {height} pixels cannot be drawn: sides go from 1 to {MAX_SIDE} and "
+            f"all pixels up to {MAX_PIXELS}"
+        )

@@ -1,4 +1,4 @@
-"""The camera at the light, for shadow mapping."""
+"""Cameras at the light, for shadow mapping."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from math import isinf
 
 import numpy as np
 
-from carom.native.products import product
+from carom.native.products import dots, product
 from carom.record import record
 from carom.render.lights import Light
-from carom.render.projection import Matrix, look_along, look_at, parallel_projection, unit_vector
+from carom.render.projection import Matrix, look_along, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
 
-PARALLEL_MAP_SIDE = 1024
-"""Width and height of the shadow map of parallel light [pixels]."""
+LEAST_MAP_SIDE = 128
+GREATEST_MAP_SIDE = 1024
+"""Limits of the width and height of the shadow map of parallel light [pixels]."""
 
 LARGEST_CASTER = 50.0
 """Bounding radius above which a shape, such as a floor, casts no shadow in parallel light [m]."""
@@ -26,56 +27,72 @@ _PARALLEL_BIAS = 3.0
 
 
 @record(eq=False)
-class ShadowCamera:
-    """A camera at the light; its depth buffer is the shadow map.
+class ShadowCameras:
+    """A camera at the light in each of n worlds; its depth buffer is the shadow map.
 
     Attributes:
-        view: (4, 4) world to eye coordinates.
-        projection: (4, 4) eye to clip coordinates.
-        width: Columns of the shadow map.
-        height: Rows of the shadow map.
-        bias: Distance behind the nearest surface up to which another one is still lit [m].
+        world_to_clip: (n, 4, 4) world to clip coordinates.
+        projections: (n, 4, 4) eye to clip coordinates.
+        width: Columns of a shadow map.
+        height: Rows of a shadow map.
+        biases: (n,) distance behind the nearest surface up to which another one is still lit [m].
     """
 
-    view: Matrix
-    projection: Matrix
+    world_to_clip: Matrix
+    projections: Matrix
     width: int
     height: int
-    bias: float
+    biases: Matrix
 
 
-def shadow_camera(
+def shadow_cameras(
     light: Light, scene: SceneArrays, link_to_world: Matrix, projection: Matrix, width: int, height: int
-) -> ShadowCamera:
-    """The camera at a light, for an image of this size and projection (4, 4); links have poses (links, 4, 4).
+) -> ShadowCameras:
+    """The cameras at a light, for images of this size and projection (4, 4).
 
-    For a lamp at a finite distance it has the projection of the image, as in PyBullet. For parallel light its
-    view covers all shapes that may cast a shadow.
+    For a lamp at a finite distance they have the size and the projection of the image, as in PyBullet. For
+    parallel light their views cover all shapes that may cast a shadow, and the maps are squares with the
+    longer side of the image.
+
+    Args:
+        light: The light.
+        scene: What is visible.
+        link_to_world: (n, links, 4, 4) poses of the links in each world.
+        projection: Eye to clip coordinates of the image.
+        width: Columns of the image.
+        height: Rows of the image.
     """
     direction = unit_vector(np.array(light.direction))
+    count = len(link_to_world)
     if not isinf(light.distance):
         eye = light.distance * direction
         # A lamp may be so far away that the place in front of it has the same numbers.
-        view = look_along(eye, -direction)
-        return ShadowCamera(view, projection, width, height, _LAMP_BIAS)
-    centre, radius = _casters(scene, link_to_world)
-    return ShadowCamera(
-        look_at(centre + 2.0 * radius * direction, centre),
-        parallel_projection(radius, radius, 3.0 * radius),
-        PARALLEL_MAP_SIDE,
-        PARALLEL_MAP_SIDE,
-        _PARALLEL_BIAS * 2.0 * radius / PARALLEL_MAP_SIDE,
+        clip = product(projection, look_along(eye, -direction))
+        clips, projections = (np.repeat(matrix[None], count, axis=0) for matrix in (clip, projection))
+        return ShadowCameras(clips, projections, width, height, np.full(count, _LAMP_BIAS))
+    centres, radii = _casters(scene, link_to_world)
+    side = min(max(width, height, LEAST_MAP_SIDE), GREATEST_MAP_SIDE)
+    views = np.repeat(look_along(np.zeros(3), -direction)[None], count, axis=0)
+    eyes = centres + 2.0 * radii[:, None] * direction
+    views[:, :3, 3] = product(-views[:, :3, :3], eyes[:, :, None])[:, :, 0]
+    projections = np.zeros((count, 4, 4))
+    for projection, radius in zip(projections, radii.tolist(), strict=True):
+        projection[:] = parallel_projection(radius, radius, 3.0 * radius)
+    return ShadowCameras(
+        product(projections, views), projections, side, side, _PARALLEL_BIAS * 2.0 * radii / side
     )
 
 
-def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, float]:
-    """Centre and radius [m] of a bounding sphere of all shapes that may cast shadows."""
+def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]:
+    """Centres (n, 3) and radii (n,) [m] of bounding spheres of all shapes that may cast shadows."""
     casts = scene.part_radii < LARGEST_CASTER
     if not casts.any():
-        return np.zeros(3), 1.0
-    poses = link_to_world[scene.part_links[casts]]
-    centres = product(poses[:, :3, :3], scene.part_centres[casts][:, :, None])[:, :, 0] + poses[:, :3, 3]
-    radii = scene.part_radii[casts][:, None]
-    low, high = (centres - radii).min(axis=0), (centres + radii).max(axis=0)
+        return np.zeros((len(link_to_world), 3)), np.ones(len(link_to_world))
+    poses = link_to_world[:, scene.part_links[casts]]
+    centres = product(poses[..., :3, :3], scene.part_centres[casts][:, :, None])[..., 0] + poses[..., :3, 3]
+    radii = scene.part_radii[casts]
+    low = (centres - radii[:, None]).min(axis=1)
+    high = (centres + radii[:, None]).max(axis=1)
     middle = 0.5 * (low + high)
-    return middle, max(float((np.linalg.norm(centres - middle, axis=1) + radii[:, 0]).max()), 1e-3)
+    away = centres - middle[:, None]
+    return middle, np.maximum((np.sqrt(dots(away, away)) + radii).max(axis=1), 1e-3)

@@ -71,14 +71,16 @@ class Body:
         position_count: Number of position coordinates of each joint.
         velocity_count: Number of velocity coordinates of each joint.
         fixed_base: The base is fixed in the world.
-        derived: Data that algorithms cache until masses or inertias change, or the base is fixed or freed.
         first_link: Row of the base in the world's link arrays; joint j moves row first_link + 1 + j.
-        links_before: Number of links that the world had loaded before this body.
         first_position: Row of the first coordinate in `World.position`.
         first_velocity: Row of the first coordinate in `World.velocity`.
         position_index: Row of the first position of each joint, -1 for fixed joints.
         velocity_index: Row of the first velocity of each joint, -1 for fixed joints.
     """
+
+    # For the other packages of Carom:
+    # derived: Data that algorithms cache until masses or inertias change, or the base is fixed or freed.
+    # links_before: Number of links that the world had loaded before this body.
 
     def __init__(
         self, world: World, body_id: int, spec: BodySpec, rows: TreeRows, outline: Outline | None = None

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from carom.checks import finite
+from carom.checks import Array, finite
 from carom.description.transform import rotation_matrix
 from carom.model.soft_arrays import Anchor, SoftRows
 from carom.model.soft_spec import SoftSpec
@@ -52,7 +53,7 @@ class SoftBody(Body):
         return float(self.soft_spec.masses.sum())
 
     @property
-    def nodes(self) -> np.ndarray:
+    def nodes(self) -> Array:
         """Positions of the nodes in world axes [m], shape (n, 3), a view.
 
         Call `update` after writing to it.
@@ -60,22 +61,22 @@ class SoftBody(Body):
         return self.world.arrays.state.numpy["node_position"][0, self.rows_of_nodes]
 
     @property
-    def node_velocities(self) -> np.ndarray:
+    def node_velocities(self) -> Array:
         """Velocities of the nodes [m/s], shape (n, 3), a view; call `update` after writing to it."""
         return self.world.arrays.state.numpy["node_velocity"][0, self.rows_of_nodes]
 
     @property
-    def node_forces(self) -> np.ndarray:
+    def node_forces(self) -> Array:
         """Forces that act on the nodes in the next step and are cleared by it [N], shape (n, 3); a view."""
         return self.world.arrays.state.numpy["node_force"][0, self.rows_of_nodes]
 
     @property
-    def faces(self) -> np.ndarray:
+    def faces(self) -> NDArray[np.int32]:
         """Nodes of the triangles of the surface, shape (f, 3)."""
         return self.soft_spec.faces
 
     @property
-    def surface(self) -> tuple[np.ndarray, np.ndarray]:
+    def surface(self) -> tuple[Array, NDArray[np.int32]]:
         """Its visible mesh: (v, 3) vertices in world axes [m], a copy, and (t, 3) triangles."""
         skin = self.soft_spec.skin
         if skin is None:
@@ -83,7 +84,7 @@ class SoftBody(Body):
         return dots(skin.weights[:, None], np.swapaxes(self.nodes[skin.nodes], 1, 2)), skin.triangles
 
     @property
-    def tetrahedra(self) -> np.ndarray:
+    def tetrahedra(self) -> NDArray[np.int32]:
         """Nodes of the tetrahedra, shape (t, 4)."""
         return self.soft_spec.tetras
 
@@ -141,7 +142,7 @@ class SoftBody(Body):
             link, **{name: value for name, value in changes.items() if name not in _FIXED}
         )
 
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+    def bounds(self) -> tuple[Array, Array]:
         """Minimum and maximum corner of its bounding box in world axes, margin included [m]."""
         margin = self.soft_spec.margin
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin

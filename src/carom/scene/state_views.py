@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from carom.checks import Array
 from carom.native.tables import ArrayTable
 
 # Flat arrays of the state for users: attribute of `StateViews`, field of `State`.
@@ -27,16 +26,16 @@ class StateViews:
     They may be replaced when bodies are added or removed.
     """
 
-    position: np.ndarray
-    velocity: np.ndarray
-    motor: np.ndarray
-    pd: np.ndarray
-    joint_torque: np.ndarray
-    motor_impulse: np.ndarray
-    link_pose: np.ndarray
-    link_velocity: np.ndarray
-    link_force: np.ndarray
-    joint_reaction: np.ndarray
+    position: Array
+    velocity: Array
+    motor: Array
+    pd: Array
+    joint_torque: Array
+    motor_impulse: Array
+    link_pose: Array
+    link_velocity: Array
+    link_force: Array
+    joint_reaction: Array
     position_memory: memoryview[float]
     velocity_memory: memoryview[float]
     motor_memory: memoryview[float]

@@ -11,7 +11,7 @@ import numpy as np
 from carom.viewer.board import Board
 
 if TYPE_CHECKING:
-    from carom.queries.ray_cast import Points, RayHit
+    from carom.queries.ray_cast import Points, RayTuple
 
 _MOST_RAYS = 5000
 
@@ -28,7 +28,7 @@ class Rays:
         self.wanted: bool = False
         self._cast: deque[tuple[float, ...]] = deque(maxlen=_MOST_RAYS)
 
-    def tell(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
+    def tell(self, starts: Points, ends: Points, hits: Sequence[RayTuple]) -> None:
         """Records rays that a script has cast, from starts to ends in the world [m], and their hits."""
         for start, end, (_, _, fraction, _, normal) in zip(starts, ends, hits, strict=True):
             self._cast.append((*start, *end, *normal, fraction))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.checks import Array
 from carom.errors import StateError
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ class Log:
     def __len__(self) -> int:
         return self._count
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> Array:
         """The recorded rows of an array, the first step first; a copy.
 
         Raises:

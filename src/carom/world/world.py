@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.checks import vector
+from carom.checks import Array, vector
 from carom.closed import Closed
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
@@ -39,6 +39,7 @@ from carom.world.loading import DescriptionLoading
 from carom.world.pickling import Picklable
 from carom.world.poses import Derived, PoseUpdates
 from carom.world.recordable import Recordable
+from carom.world.shape_adding import ShapeAdding
 from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
@@ -46,27 +47,41 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
-class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable, StateViews, Closed):
+class World(
+    DescriptionLoading, ShapeAdding, SoftLoading, PoseUpdates, Recordable, Picklable, StateViews, Closed
+):
     """Bodies that move under gravity, motors and limits.
 
-    The arrays named in `docs/architecture.md` (`position`, `velocity`, `motor`...) are NumPy views
-    of the state; `position_memory` and so on are the same memory as flat `memoryview`s of doubles.
-    They may be replaced when bodies are added or removed.
+    The flat arrays of the state are NumPy views of what the engine works on; they may be replaced when bodies
+    are added or removed.
 
     Attributes:
         parameters: Parameters of the engine; call `apply_parameters` after a change.
         bodies: The bodies by their numbers, in the order they were added.
-        links_loaded: Number of links loaded since the world was empty, those of removed bodies included.
-        listing: The same in the order in which PyBullet counts them: the last one takes the place of one that
-            is removed.
         user_data: Texts attached to bodies.
-        undo: Repairs the world after a change that was interrupted.
-        quick: Addresses of its data for the fast paths in the native library.
         observers: Objects that are called at every step, such as logs.
+        position: Coordinates of all bodies: of each the position [m] and the quaternion (x, y, z, w) of its
+            base, then those of its joints [rad or m].
+        velocity: Velocities of all bodies: of each the angular [rad/s] and the linear [m/s] velocity of its
+            base in world axes, then those of its joints.
+        joint_torque: Torques [N m] or forces [N] of users on joints in the next step, as `velocity`.
+        motor_impulse: Impulses of motors in the last substep [N m s or N s], as `velocity`.
+        link_pose: (links, 7) world poses of the inertial frames, those of bases included.
+        link_velocity: (links, 6) angular [rad/s] and linear [m/s] velocities of links in world axes.
+        link_force: (links, 6) forces [N] and torques [N m] of users on links in the next step, world axes.
+        joint_reaction: (links, 6) reactions of joints whose sensors are enabled.
 
     Args:
         time_step: Duration of one step [s].
     """
+
+    # For the other packages of Carom:
+    # links_loaded: Number of links loaded since the world was empty, those of removed bodies included.
+    # listing: The bodies in the order in which PyBullet counts them: the last one takes the place of one that
+    #     is removed.
+    # undo: Repairs the world after a change that was interrupted.
+    # quick: Addresses of its data for the fast paths in the native library.
+    # `position_memory` and so on are the memory of the flat arrays as flat `memoryview`s of doubles.
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
@@ -304,7 +319,7 @@ class World(DescriptionLoading, SoftLoading, PoseUpdates, Recordable, Picklable,
     # Parameters
 
     @property
-    def gravity(self) -> np.ndarray:
+    def gravity(self) -> Array:
         """Gravity in world axes [m/s²], shape (3,)."""
         return np.array(self.parameters.gravity)
 

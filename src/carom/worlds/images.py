@@ -7,12 +7,24 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.engine.engine import Engine
+from carom.camera_image import bodies_and_links
+from carom.checks import Array
+from carom.description.pose import Pose
+from carom.description.transform import compose, inverse
+from carom.engine.engine import Engine, Task
+from carom.engine.threads import WORLDS_PER_THREAD
+from carom.native.cpu import core_count
+from carom.native.kernels import link_poses_kernel
+from carom.native.launch import KernelStructs, Launch
+from carom.render.image_batch import RawImages
+from carom.render.renderer import renderer_of
+from carom.scene.link import LinkPose
 from carom.world.world import World
 from carom.worlds.lone import copy_coordinates
 
 if TYPE_CHECKING:
     from carom.camera import Camera
+    from carom.scene.link import Link
 
 
 class Images(NamedTuple):
@@ -35,24 +47,86 @@ class Images(NamedTuple):
         return f"<Images of {count} worlds, {width} x {height}>"
 
 
-def take_images(scene: World, engine: Engine, camera: Camera, worlds: np.ndarray) -> Images:
-    """Images of some worlds: the coordinates of each are copied to a scene, which is drawn.
+class ImageTaker:
+    """Takes images of the worlds of an engine, as copies of a scene.
 
-    A camera that is mounted on a link of the original world follows that link in each world.
+    Args:
+        scene: The scene.
+        engine: The engine.
+        threads: Number of threads; None for the number of cores available.
     """
-    mounted = camera.link
-    if mounted is not None:
-        own = scene.bodies[mounted.body.id].links[mounted.index]
-        camera.mount(own)
-    try:
-        images = []
-        for world in worlds:
-            copy_coordinates(engine, int(world), scene)
-            images.append(camera.capture(scene))
-    finally:
-        camera.mount(mounted)
-    if not images:
-        size = (0, camera.height, camera.width)
-        numbers = np.zeros(size, np.int32)
-        return Images(np.zeros((*size, 3), np.uint8), np.zeros(size, np.float32), numbers, numbers.copy())
-    return Images(*(np.stack([getattr(image, name) for image in images]) for name in Images._fields))
+
+    def __init__(self, scene: World, engine: Engine, threads: int | None) -> None:
+        self._scene = scene
+        self._engine = engine
+        self._threads = threads or core_count()
+        self._place: Task = engine.task(_launches, WORLDS_PER_THREAD)
+
+    def __call__(self, camera: Camera, worlds: np.ndarray) -> Images:
+        """Images of some worlds, by index.
+
+        A camera that is mounted on a link of the original world follows that link in each world.
+        """
+        if self._scene.contact_arrays.soft.bodies or not len(worlds):
+            raw = self._one_by_one(camera, worlds)
+        else:
+            raw = self._at_once(camera, worlds)
+        return Images(np.ascontiguousarray(raw.rgba[..., :3]), raw.distance, *bodies_and_links(raw.label))
+
+    def _at_once(self, camera: Camera, worlds: np.ndarray) -> RawImages:
+        """One native call on each thread."""
+        self._place(worlds)
+        link_poses = np.asarray(self._engine.arrays.state.numpy["link_pose"])[worlds]
+        return renderer_of(self._scene).draw_worlds(
+            self._scene,
+            link_poses,
+            camera.views(self._camera_poses(camera, link_poses)),
+            camera.projection,
+            camera.width,
+            camera.height,
+            camera.light,
+            self._threads,
+        )
+
+    def _camera_poses(self, camera: Camera, link_poses: Array) -> Array:
+        """World poses of the camera in each world, (n, 7)."""
+        if camera.link is None:
+            return np.repeat(np.concatenate(camera.pose_on(None))[None], len(link_poses), axis=0)
+        link = self._own(camera.link)
+        row, offset = link.body.first_link + 1 + link.index, inverse(link.inertial_frame)
+        poses = np.empty((len(link_poses), 7))
+        for pose, (x, y, z, qx, qy, qz, qw) in zip(poses, link_poses[:, row].tolist(), strict=True):
+            frame = compose(Pose((x, y, z), (qx, qy, qz, qw)), offset)
+            camera_pose = camera.pose_on(LinkPose(np.array(frame.position), np.array(frame.orientation)))
+            pose[:3], pose[3:] = camera_pose
+        return poses
+
+    def _own(self, link: Link) -> Link:
+        """The link of the scene that stands for one of the original world."""
+        return self._scene.bodies[link.body.id].links[link.index]
+
+    def _one_by_one(self, camera: Camera, worlds: np.ndarray) -> RawImages:
+        """The same with soft bodies: the vertices of their surfaces differ between worlds."""
+        size = (len(worlds), camera.height, camera.width)
+        images = RawImages(
+            np.empty((*size, 4), np.uint8), np.empty(size, np.float32), np.empty(size, np.int32)
+        )
+        link = None if camera.link is None else self._own(camera.link)
+        for place, world in enumerate(worlds.tolist()):
+            copy_coordinates(self._engine, world, self._scene)
+            pose = camera.pose_on(None if link is None else link.pose)
+            image = renderer_of(self._scene).draw(
+                self._scene,
+                camera.views(np.concatenate(pose)[None])[0],
+                camera.projection,
+                camera.width,
+                camera.height,
+                camera.light,
+            )
+            images.rgba[place], images.distance[place] = image.rgba, image.distance
+            images.label[place] = image.label
+        return images
+
+
+def _launches(structs: KernelStructs) -> list[Launch]:
+    return [structs.launch(link_poses_kernel, first_world=0)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.checks import Array
 from carom.description.sensor import SensorObject
@@ -28,7 +29,9 @@ class BatchSource(Source):
         self._engine = engine
         self._times = times
         first = scene.parameters.sensor_seed
-        self.own_seeds: np.ndarray = np.arange(first, first + engine.arrays.world_count, dtype=np.int64)
+        self.own_seeds: NDArray[np.int64] = np.arange(
+            first, first + engine.arrays.world_count, dtype=np.int64
+        )
         self._finders: dict[int, PoseFinder] = {}
         self._casters: dict[int, RayCaster] = {}
         self.remembered: list[tuple[Body, int]] = remembered(list(scene.bodies.values()))

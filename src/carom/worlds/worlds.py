@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, positive
 from carom.closed import Closed
@@ -25,7 +25,7 @@ from carom.worlds.checks import Mask
 from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contacts import ContactFinder, ContactSummary
 from carom.worlds.devices import CPU, make_engine
-from carom.worlds.images import Images, take_images
+from carom.worlds.images import Images, ImageTaker
 from carom.worlds.keyframes import reset_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
@@ -77,6 +77,7 @@ class Worlds(Closed):
         if threads is not None and threads < 1:
             raise ValueError(f"threads must be at least 1, not {threads}")
         self.count: int = count
+        self._thread_count = threads
         self._scene = world.copy()
         self._scene.prepare()
         self._engine = make_engine(self._scene, count, device, threads)
@@ -330,7 +331,7 @@ class Worlds(Closed):
     # Parameters
 
     @property
-    def sensor_seeds(self) -> np.ndarray:
+    def sensor_seeds(self) -> NDArray[np.int64]:
         """Seed of the noise of sensors in each world, a view (count,).
 
         At first `World.parameters.sensor_seed` and the numbers after it: a lone world with the seed of one of
@@ -495,12 +496,14 @@ class Worlds(Closed):
         return RayCaster(self._engine, self._scene.link_places)
 
     def images(self, camera: Camera, where: ArrayLike | None = None) -> Images:
-        """Camera images of each world.
+        """Camera images of each world, drawn on all threads; those of soft bodies one after the other.
 
         Args:
             camera: A `Camera`, mounted on a link of the original world or fixed in the world.
             where: Which worlds: a mask (count,) or their indices; None for all.
         """
-        return take_images(
-            self._scene, self._engine, camera, world_numbers(self._engine.take(where), self.count)
-        )
+        return self._take_images(camera, world_numbers(self._engine.take(where), self.count))
+
+    @cached_property
+    def _take_images(self) -> ImageTaker:
+        return ImageTaker(self._scene, self._engine, self._thread_count)

@@ -243,9 +243,9 @@ def calculateInverseKinematics2(
 @cache
 def _algorithm() -> Callable[..., tuple[float, ...]]:
     """The function of `carom.algorithms`, imported at the first call to keep the module's import quick."""
-    from carom.algorithms import inverse_kinematics
+    from carom.algorithms.inverse_kinematics import find_positions
 
-    return inverse_kinematics
+    return find_positions
 
 
 def _orientation(values: Any) -> tuple[float, ...] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from pybullet._calls.arguments import Indices, few, indices, integer
 from pybullet._calls.builtin import exported
@@ -19,6 +19,32 @@ _NO_STATE = "getLinkState failed."
 _NEGATIVE_BODY = "getLinkState failed; invalid bodyUniqueId"
 
 
+# The state of a link that does not exist is None. The types leave that out: otherwise all who pass a link
+# that exists would have to check for it.
+@overload
+def getLinkState(
+    bodyUniqueId: int,
+    linkIndex: int,
+    computeLinkVelocity: Literal[0, False] = 0,
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> LinkState: ...
+@overload
+def getLinkState(
+    bodyUniqueId: int,
+    linkIndex: int,
+    computeLinkVelocity: Literal[1, True],
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> LinkStateWithVelocity: ...
+@overload
+def getLinkState(
+    bodyUniqueId: int,
+    linkIndex: int,
+    computeLinkVelocity: int,
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> LinkState | LinkStateWithVelocity: ...
 @exported
 def getLinkState(
     bodyUniqueId: int,
@@ -77,6 +103,30 @@ def getLinkState(
     return _state(access, index, with_velocity)
 
 
+@overload
+def getLinkStates(
+    bodyUniqueId: int,
+    linkIndices: Indices,
+    computeLinkVelocity: Literal[0, False] = 0,
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> tuple[LinkState, ...]: ...
+@overload
+def getLinkStates(
+    bodyUniqueId: int,
+    linkIndices: Indices,
+    computeLinkVelocity: Literal[1, True],
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> tuple[LinkStateWithVelocity, ...]: ...
+@overload
+def getLinkStates(
+    bodyUniqueId: int,
+    linkIndices: Indices,
+    computeLinkVelocity: int,
+    computeForwardKinematics: int = 0,
+    physicsClientId: int = 0,
+) -> tuple[LinkState | LinkStateWithVelocity, ...]: ...
 @exported
 def getLinkStates(
     bodyUniqueId: int,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.camera import DAYLIGHT, NOTHING
+from carom.camera import DAYLIGHT
+from carom.camera_image import NOTHING
 from carom.recording.recorder import Film
 from carom.recording.video import VideoFile
 from carom.render.renderer import renderer_of

@@ -13,7 +13,7 @@ from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
 
 if TYPE_CHECKING:
-    from carom.queries.ray_cast import RayHit
+    from carom.queries.ray_cast import RayTuple
     from pybullet._clients.clients import Client
 
 __all__ = ["rayTest", "rayTestBatch"]
@@ -32,7 +32,7 @@ def rayTest(
     collisionFilterMask: int = -1,
     reportHitNumber: int = -1,
     physicsClientId: int = 0,
-) -> tuple[RayHit]:
+) -> tuple[RayTuple]:
     """Casts a ray; returns its first hit.
 
     Args:
@@ -60,7 +60,7 @@ def rayTest(
     mask = integer(collisionFilterMask, "collisionFilterMask")
     number = integer(reportHitNumber, "reportHitNumber")
     with client.lock:
-        hit = client.world.queries().cast_ray(start, end, mask=mask, hit_number=max(number, 0))
+        hit = client.world.queries().ray_tuple(start, end, mask=mask, hit_number=max(number, 0))
     client.window.show_rays((start,), (end,), (hit,))
     return (hit,)
 
@@ -76,7 +76,7 @@ def rayTestBatch(
     collisionFilterMask: int = -1,
     fractionEpsilon: float = -1.0,
     physicsClientId: int = 0,
-) -> tuple[RayHit, ...]:
+) -> tuple[RayTuple, ...]:
     """Casts many rays; returns their first hits.
 
     Args:
@@ -127,7 +127,7 @@ def rayTestBatch(
     if frame is not None:
         starts, ends = in_world(starts, frame), in_world(ends, frame)
     with client.lock:
-        hits = client.world.queries().cast_rays(
+        hits = client.world.queries().ray_tuples(
             starts, ends, mask=mask, hit_number=max(number, 0), separation=max(epsilon, 0.0)
         )
     client.window.show_rays(starts, ends, hits)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from carom.queries.ray_cast import Points, RayHit
+    from carom.queries.ray_cast import Points, RayTuple
     from carom.render.image_target import RawImage
     from carom.viewer.viewer import Viewer
     from pybullet._clients.clients import Client
@@ -143,7 +143,7 @@ class PageWindow(Window):
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         self.viewer.camera.move(distance, yaw, pitch, target)
 
-    def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
+    def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayTuple]) -> None:
         if self.viewer.rays.wanted:
             self.viewer.rays.tell(starts, ends, hits)
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.description.pose import Vector3
-    from carom.queries.ray_cast import Points, RayHit
+    from carom.queries.ray_cast import Points, RayTuple
     from carom.render.image_target import RawImage
     from carom.viewer.items import DebugItem, Slider
     from pybullet._window.options import VisualizerOptions
@@ -99,7 +99,7 @@ class Window:
     def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
         """Shows an image of the script; `camera` is its projection matrix times view matrix, shape (4, 4)."""
 
-    def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayHit]) -> None:
+    def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayTuple]) -> None:
         """Shows rays that the script has cast, and their hits."""
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:

@@ -95,20 +95,25 @@ def shade_span(
     light: View,
     picture: Picture,
     lighting: Lighting,
+    first_link: Int32,
+    first_pixel: Int32,
     row: Int32,
     first_column: Int32,
     end_column: Int32,
 ):
-    """Write colour, depth, distance and label of neighbouring pixels that show the same facet."""
+    """Write colour, depth, distance and label of neighbouring pixels that show the same facet.
+
+    The matrices of the links begin at `first_link`, and the pixels of the picture at `first_pixel`.
+    """
     line = row * view.width
     facet = view.pixel_facet[line + first_column]
     if facet < 0:
-        shade_background(picture, line + first_column, line + end_column)
+        shade_background(picture, first_pixel + line + first_column, first_pixel + line + end_column)
         return
     triangle = view.facet_triangle[facet]
     corners = scene.triangle_corners[triangle]
     part = scene.triangle_part[triangle]
-    link = scene.part_link[part]
+    link = first_link + scene.part_link[part]
     label = scene.part_label[part]
     # Rotating the light's direction into the link frame saves rotating every normal into world axes.
     to_link = wp.transpose(picture.link_rotation[link])
@@ -152,18 +157,28 @@ def shade_span(
                 uv = Vector2(cast[0] / cast[3], cast[1] / cast[3])
         normal = wp.normalize(first_normal * u + second_normal * v + third_normal * w)
         colour = surface_colour(scene, part, uv)
-        picture.rgba[pixel] = lit(lighting, towards, up, colour, normal, shadow)
-        picture.depth[pixel] = wp.float32(0.5 + 0.5 * view.pixel_depth[pixel])
-        picture.distance[pixel] = wp.float32(distance)
-        picture.label[pixel] = label
+        drawn = first_pixel + pixel
+        picture.rgba[drawn] = lit(lighting, towards, up, colour, normal, shadow)
+        picture.depth[drawn] = wp.float32(0.5 + 0.5 * view.pixel_depth[pixel])
+        picture.distance[drawn] = wp.float32(distance)
+        picture.label[drawn] = label
 
 
 @func
-def shade_row(scene: Scene, view: View, light: View, picture: Picture, lighting: Lighting, row: Int32):
+def shade_row(
+    scene: Scene,
+    view: View,
+    light: View,
+    picture: Picture,
+    lighting: Lighting,
+    first_link: Int32,
+    first_pixel: Int32,
+    row: Int32,
+):
     """Write the pixels of a row whose facets are known, one span of equal facets after the other."""
     line = row * view.width
     first = Int32(0)
     for column in range(1, view.width + 1):
         if column == view.width or view.pixel_facet[line + column] != view.pixel_facet[line + first]:
-            shade_span(scene, view, light, picture, lighting, row, first, column)
+            shade_span(scene, view, light, picture, lighting, first_link, first_pixel, row, first, column)
             first = column

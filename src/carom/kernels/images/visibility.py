@@ -14,6 +14,7 @@ from carom.kernels.types import Index4, Int32, Matrix4, Vector2, Vector3, Vector
 # A pixel that is this far outside an edge still counts as on the edge [pixels].
 _ON_EDGE = real(1.0e-7)
 _HUGE = real(1.0e9)
+_FEW_COLUMNS = wp.constant(4)
 
 
 @func
@@ -102,13 +103,17 @@ def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_
 
 
 @func
-def project_chunk(scene: Scene, view: View, chunk: Int32):
-    """Write the facets of a chunk, from the index of its first triangle on."""
-    first_part = scene.chunk_first_part[chunk]
-    first_facet = scene.part_first_triangle[first_part]
+def first_facet_of(scene: Scene, chunk: Int32) -> Int32:
+    """Where the facets of a chunk begin, if those of all chunks are kept: at the index of its first triangle."""
+    return scene.part_first_triangle[scene.chunk_first_part[chunk]]
+
+
+@func
+def project_chunk(scene: Scene, view: View, chunk: Int32, first_link: Int32, first_facet: Int32):
+    """Write the facets of a chunk, from `first_facet` on; the matrices of the links begin at `first_link`."""
     facet = Int32(first_facet)
-    for part in range(first_part, scene.chunk_first_part[chunk + 1]):
-        matrix = view.link_to_pixel[scene.part_link[part]]
+    for part in range(scene.chunk_first_part[chunk], scene.chunk_first_part[chunk + 1]):
+        matrix = view.link_to_pixel[first_link + scene.part_link[part]]
         if scene.part_rgba[part][3] == 0.0 or is_out_of_sight(scene, view, part, matrix):
             continue
         for vertex in range(scene.part_first_vertex[part], scene.part_first_vertex[part + 1]):
@@ -132,12 +137,52 @@ def where_positive(span: Vector2, slope: real, start: real) -> Vector2:
 
 
 @func
+def is_inside(slope: real, column: real, start: real) -> bool:
+    """Whether slope * column + start >= 0, or the column is just beside those where it is."""
+    value = slope * column + start
+    # Where the slope is 0, no other column is better.
+    return value >= -_ON_EDGE * wp.abs(slope)
+
+
+@func
+def fill_small_facet(view: View, facet: Int32, left: Int32, right: Int32, top: Int32, bottom: Int32):
+    """As `fill_facet`, pixel by pixel: for few columns this takes less time than to find out which are inside."""
+    first = view.facet_first[facet]
+    second = view.facet_second[facet]
+    third = view.facet_third[facet]
+    depth = view.facet_depth[facet]
+    for row in range(top, bottom + 1):
+        y = real(row)
+        first_start = first[1] * y + first[2]
+        second_start = second[1] * y + second[2]
+        third_start = third[1] * y + third[2]
+        start = depth[1] * y + depth[2]
+        line = row * view.width
+        for column in range(left, right + 1):
+            x = real(column)
+            if (
+                is_inside(first[0], x, first_start)
+                and is_inside(second[0], x, second_start)
+                and is_inside(third[0], x, third_start)
+                and is_inside(depth[0], x, start + 1.0)
+                and is_inside(-depth[0], x, 1.0 - start)
+            ):
+                z = depth[0] * x + start
+                if z <= view.pixel_depth[line + column]:
+                    view.pixel_depth[line + column] = z
+                    view.pixel_facet[line + column] = facet
+
+
+@func
 def fill_facet(view: View, facet: Int32, first_row: Int32, end_row: Int32):
     """Write a facet to the pixels of rows first_row <= row < end_row that show no nearer facet so far."""
     box = view.facet_box[facet]
     top = wp.max(box[1], first_row)
     bottom = wp.min(box[3], end_row - 1)
     if top > bottom:
+        return
+    if box[2] - box[0] < _FEW_COLUMNS:
+        fill_small_facet(view, facet, box[0], box[2], top, bottom)
         return
     first = view.facet_first[facet]
     second = view.facet_second[facet]
@@ -162,12 +207,37 @@ def fill_facet(view: View, facet: Int32, first_row: Int32, end_row: Int32):
 
 
 @func
-def fill_rows(scene: Scene, view: View, first_row: Int32, end_row: Int32):
-    """Find the nearest facet of every pixel in a range of rows; the last one of equally near facets."""
+def clear_rows(view: View, first_row: Int32, end_row: Int32):
+    """Set the pixels in a range of rows to the background."""
     for pixel in range(first_row * view.width, end_row * view.width):
         view.pixel_depth[pixel] = 1.0
         view.pixel_facet[pixel] = -1
+
+
+@func
+def fill_facets(view: View, chunk: Int32, first_facet: Int32, first_row: Int32, end_row: Int32):
+    """Write the facets of a chunk, which begin at `first_facet`, to the pixels in a range of rows."""
+    for facet in range(first_facet, first_facet + view.chunk_facet_count[chunk]):
+        fill_facet(view, facet, first_row, end_row)
+
+
+@func
+def fill_rows(scene: Scene, view: View, first_row: Int32, end_row: Int32):
+    """Find the nearest facet of every pixel in a range of rows; the last one of equally near facets."""
+    clear_rows(view, first_row, end_row)
     for chunk in range(view.chunk_facet_count.shape[0]):
-        first_facet = scene.part_first_triangle[scene.chunk_first_part[chunk]]
-        for facet in range(first_facet, first_facet + view.chunk_facet_count[chunk]):
-            fill_facet(view, facet, first_row, end_row)
+        fill_facets(view, chunk, first_facet_of(scene, chunk), first_row, end_row)
+
+
+@func
+def fill_view(scene: Scene, view: View, first_link: Int32, kept: Int32):
+    """Find the nearest facet of every pixel; the facets are kept for shading if `kept` is 1.
+
+    A chunk is filled while its facets are in the processor's caches. Without shading all chunks have the same
+    place for them.
+    """
+    clear_rows(view, 0, view.height)
+    for chunk in range(view.chunk_facet_count.shape[0]):
+        first_facet = kept * first_facet_of(scene, chunk)
+        project_chunk(scene, view, chunk, first_link, first_facet)
+        fill_facets(view, chunk, first_facet, 0, view.height)

@@ -1,0 +1,136 @@
+"""Images of many worlds at once: one native call on each thread, which draws one world after the other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.engine.interpreter import Interpreter
+from carom.engine.program import Program
+from carom.engine.threads import Threads
+from carom.layouts.images import Picture
+from carom.layouts.status import STEPS_DONE
+from carom.native.kernels import shadow_map_kernel, whole_image_kernel
+from carom.native.launch import Launch
+from carom.native.products import product
+from carom.native.tables import put_array, put_zeros
+from carom.record import record
+from carom.render.lights import Light
+from carom.render.projection import Matrix
+from carom.render.scene import SceneArrays
+from carom.render.shadows import ShadowCameras, shadow_cameras
+from carom.render.views import ViewBuffers, write_bias, write_lighting
+
+
+@record(eq=False)
+class RawImages:
+    """The results of `RawImage` for n worlds, but for the depth; row 0 is the top.
+
+    Attributes:
+        rgba: (n, height, width, 4) uint8 red, green, blue and 255.
+        distance: (n, height, width) float32 distance from the camera along its viewing direction [m];
+            infinite for the background.
+        label: (n, height, width) int32: body id + (link + 1) << 24; -1 for the background.
+    """
+
+    rgba: NDArray[np.uint8]
+    distance: NDArray[np.float32]
+    label: NDArray[np.int32]
+
+
+class _Thread:
+    """The workspace of a thread: the view of the camera, and that from the light once shadows were drawn."""
+
+    def __init__(self, scene: SceneArrays, width: int, height: int) -> None:
+        self._scene = scene
+        self.view = ViewBuffers(scene, width, height)
+        self._light: tuple[tuple[int, int], ViewBuffers] | None = None
+
+    def light_view(self, width: int, height: int) -> ViewBuffers:
+        if self._light is None or self._light[0] != (width, height):
+            light = ViewBuffers(self._scene, width, height)
+            # A shadow map is ready before the camera's facets are found.
+            light.share_facets(self.view)
+            self._light = (width, height), light
+        return self._light[1]
+
+
+class ImageBatch:
+    """Draw images of one size of one scene in many worlds, on all threads.
+
+    Args:
+        scene: What is visible; none of it soft, because all worlds share the vertices.
+        width: Number of columns.
+        height: Number of rows.
+        threads: Number of threads.
+    """
+
+    def __init__(self, scene: SceneArrays, width: int, height: int, threads: int) -> None:
+        self._scene = scene
+        self._size = (width, height)
+        self._threads = Threads(threads)
+        self._workspaces = [_Thread(scene, width, height) for _ in range(threads)]
+
+    def draw(self, link_to_world: Matrix, views: Matrix, projection: Matrix, light: Light) -> RawImages:
+        """Draw an image of each world.
+
+        Args:
+            link_to_world: (n, links, 4, 4) poses of the links of the scene in each world.
+            views: (n, 4, 4) world to eye coordinates in each world.
+            projection: (4, 4) eye to clip coordinates.
+            light: The light.
+        """
+        width, height = self._size
+        count = len(link_to_world)
+        picture = Picture()
+        lighting = put_zeros(picture, "lighting", count)
+        put_array(picture, "link_rotation", link_to_world[..., :3, :3].reshape(-1, 3, 3))
+        put_zeros(picture, "link_to_projector", 0)
+        rgba, _, distance, label = (
+            put_zeros(picture, name, count * width * height)
+            for name in ("rgba", "depth", "distance", "label")
+        )
+        write_lighting(lighting, light)
+        cameras = None
+        if light.shadow:
+            cameras = shadow_cameras(light, self._scene, link_to_world, projection, width, height)
+            write_bias(lighting, cameras)
+        world_to_clip = product(projection, views)
+        status = np.zeros((count, STEPS_DONE + 1), dtype=np.int32)
+        worlds, nothing_due = np.arange(count, dtype=np.int32), np.zeros(1, dtype=np.int32)
+        counter = np.zeros(1, dtype=np.int32)
+        links = len(self._scene.link_rows)
+        interpreters: list[Interpreter] = []
+        scene = self._scene.struct
+        for view, lamp in self._look(world_to_clip, link_to_world, cameras)[:count]:
+            launches = [Launch(whole_image_kernel, 1, [scene, view, lamp, picture, links, 0])]
+            if light.shadow:
+                launches.insert(0, Launch(shadow_map_kernel, 1, [scene, lamp, links, 0]))
+            interpreter = Interpreter(status, worlds, nothing_due, counter)
+            interpreter.load(Program([], launches, [], [], []))
+            interpreter.ask(chunk=1)
+            interpreters.append(interpreter)
+        if interpreters:
+            self._threads.run([interpreter.run for interpreter in interpreters])
+        shape = (count, height, width)
+        return RawImages(
+            rgba.view(np.uint8).reshape(*shape, 4), distance.reshape(shape), label.reshape(shape)
+        )
+
+    def _look(
+        self, world_to_clip: Matrix, link_to_world: Matrix, cameras: ShadowCameras | None
+    ) -> list[tuple[Any, Any]]:
+        """The views of each thread, from the camera and from the light."""
+        views = [workspace.view for workspace in self._workspaces]
+        views[0].look(world_to_clip, link_to_world)
+        lights = views
+        if cameras is not None:
+            size = cameras.width, cameras.height
+            lights = [workspace.light_view(*size) for workspace in self._workspaces]
+            lights[0].look(cameras.world_to_clip, link_to_world, two_sided=True)
+        for others in (views, lights):
+            for other in others[1:]:
+                other.share_cameras(others[0])
+        return [(view.struct, light.struct) for view, light in zip(views, lights, strict=True)]
