@@ -35,6 +35,8 @@ export class Scene {
     this.transparent = false;
     /** Increases with every change of shapes or poses. */
     this.version = 0;
+    /** Increases with every change of shapes, textures or hidden bodies. */
+    this.looks = 0;
     /** Poses of the newest frame in one array, and the index at which the poses of each body begin. */
     this.poses = new Float32Array(0);
     this.starts = new Map();
@@ -54,6 +56,7 @@ export class Scene {
 
   addTexture(header, payload) {
     this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.byProcessor));
+    this.looks += 1;
   }
 
   removeTexture({ texture }) {
@@ -89,6 +92,7 @@ export class Scene {
     if (hidden) this.hidden.add(body);
     else this.hidden.delete(body);
     this.version += 1;
+    this.looks += 1;
   }
 
   /** Sets the poses of all links; a frame that was made for other bodies is ignored. */
@@ -154,6 +158,7 @@ export class Scene {
     }
     this.groups = [...groups.values()];
     this.version += 1;
+    this.looks += 1;
   }
 
   /**
@@ -161,8 +166,9 @@ export class Scene {
    *
    * @param {number[]} eye position of the camera
    * @param {number} focal focal length of the camera [pixels]
+   * @param {boolean} stillOnly whether only those that do not move are wanted
    */
-  fill(options, eye, focal) {
-    for (const group of this.groups) group.fill(this, options, eye, focal);
+  fill(options, eye, focal, stillOnly = false) {
+    for (const group of this.groups) group.fill(this, options, eye, focal, stillOnly);
   }
 }
