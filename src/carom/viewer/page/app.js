@@ -18,6 +18,7 @@ import { Player } from "./time/player.js";
 import { Plots } from "./panel/plots.js";
 import { Pointer } from "./view/pointer.js";
 import { Previews } from "./panel/previews.js";
+import { Quality } from "./panel/quality.js";
 import { Readings } from "./view/readings.js";
 import { Renderer } from "./view/renderer.js";
 import { Saving } from "./time/saving.js";
@@ -60,6 +61,7 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.legend = new Legend();
     this.previews = new Previews();
+    this.quality = new Quality(this.renderer, this.memory, () => this.changed());
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
@@ -232,6 +234,7 @@ export class App {
       const element = document.getElementById(id);
       if (element) element.open = open;
     }
+    this.quality.recall();
     this.recallSwitches();
     this.optionsChanged();
   }
@@ -313,6 +316,7 @@ export class App {
     this.frames += 1;
     if (now - this.since > 500) {
       this.panel.showFps((this.frames * 1000) / (now - this.since));
+      this.quality.show();
       [this.frames, this.since] = [0, now];
     }
     if (!this.stale || this.renderer.lost) return;

@@ -217,13 +217,13 @@ export class Picture {
     this.target = gl.createFramebuffer();
   }
 
-  /** Makes the picture the render target. */
-  begin(width, height) {
+  /** Makes the picture the render target; depths are cleared if it is `fresh`. */
+  begin(width, height, fresh = true) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     if (this.width !== width || this.height !== height) this.resize(width, height);
     gl.viewport(0, 0, width, height);
-    gl.clear(gl.DEPTH_BUFFER_BIT);
+    if (fresh) gl.clear(gl.DEPTH_BUFFER_BIT);
   }
 
   resize(width, height) {

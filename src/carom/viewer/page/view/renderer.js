@@ -85,7 +85,8 @@ export class Renderer {
       layer.keep(canvas, world);
     }
     scene.fill(options, camera.eye, focal);
-    if (window) layer.compose(window, canvas, world);
+    const more = drawings.lines.count + drawings.solids.count + drawings.clouds.length > 0;
+    if (window) layer.compose(window, more, canvas, world);
     else world(() => this.aimAtCanvas());
     gl.enable(gl.DEPTH_TEST);
     this.drawSigns(drawings.signs, scene, camera);

@@ -25,6 +25,8 @@ export class StillLayer {
     this.key = "";
     /** Whether the picture is that of `key`. */
     this.made = false;
+    /** The part of the last picture that is not that of what does not move; null for all of it. */
+    this.spoilt = null;
     this.ground = Infinity;
     this.clear = false;
   }
@@ -94,33 +96,42 @@ export class StillLayer {
   keep(canvas, draw) {
     draw(() => this.still.begin(canvas.width, canvas.height));
     this.made = true;
+    this.spoilt = null;
   }
 
-  /** Draws the part of the view that has changed over a copy of the picture. */
-  compose([x, y, width, height], canvas, draw) {
+  /**
+   * Draws the part of the view that has changed over the last picture, after what had changed there is restored.
+   *
+   * @param {boolean} more whether more is drawn afterwards, anywhere in the view
+   */
+  compose([x, y, width, height], more, canvas, draw) {
     const gl = this.gl;
+    const all = [0, 0, canvas.width, canvas.height];
     draw(() => {
-      this.present.begin(canvas.width, canvas.height);
-      this.copy(this.still.target, this.present.target, canvas, gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+      this.present.begin(canvas.width, canvas.height, false);
+      const both = gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT;
+      // Copying takes the CPU as long as drawing the sky.
+      this.copy(this.still.target, this.present.target, this.spoilt ?? all, both);
       gl.bindFramebuffer(gl.FRAMEBUFFER, this.present.target);
       gl.enable(gl.SCISSOR_TEST);
       gl.scissor(x, y, width, height);
       gl.clear(gl.DEPTH_BUFFER_BIT);
     });
     gl.disable(gl.SCISSOR_TEST);
+    this.spoilt = more ? all : [x, y, width, height];
   }
 
   /** Shows the composed picture. */
   show(canvas) {
-    this.copy(this.present.target, null, canvas, this.gl.COLOR_BUFFER_BIT);
+    this.copy(this.present.target, null, [0, 0, canvas.width, canvas.height], this.gl.COLOR_BUFFER_BIT);
     this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
   }
 
-  copy(from, to, { width, height }, what) {
+  copy(from, to, [x, y, width, height], what) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
-    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, what, gl.NEAREST);
+    gl.blitFramebuffer(x, y, x + width, y + height, x, y, x + width, y + height, what, gl.NEAREST);
   }
 }
 
