@@ -334,6 +334,17 @@ class Camera:
             pose = compose(Pose((px, py, pz), (qx, qy, qz, qw)), pose)
         return LinkPose(np.array(pose.position), np.array(pose.orientation))
 
+    @property
+    def view(self) -> Array:
+        """The matrix from the world to OpenGL's eye now, shape (4, 4): it looks along -z, and y points up."""
+        return _EYE_FROM_CAMERA @ _inverse(poses_to_matrices(np.concatenate(self.pose)[None])[0])
+
+    @property
+    def projection(self) -> Array:
+        """The matrix from OpenGL's eye to clip coordinates, shape (4, 4)."""
+        fx, fy, cx, cy = self._intrinsics.tolist()
+        return pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
+
     def capture(self, world: World | None = None) -> CameraImage:
         """Take an image.
 
@@ -351,10 +362,9 @@ class Camera:
         if world is None:
             raise ValueError("a camera that is not mounted needs to be told which world to look at")
         pose = self.pose
-        view = _EYE_FROM_CAMERA @ _inverse(poses_to_matrices(np.concatenate(pose)[None])[0])
-        fx, fy, cx, cy = self._intrinsics.tolist()
-        projection = pinhole_projection(self.width, self.height, fx, fy, cx, cy, self._near, self._far)
-        image = renderer_of(world).draw(world, view, projection, self.width, self.height, self.light)
+        image = renderer_of(world).draw(
+            world, self.view, self.projection, self.width, self.height, self.light
+        )
         return CameraImage(
             np.ascontiguousarray(image.rgba[:, :, :3]),
             image.distance,

@@ -10,6 +10,7 @@ import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
 import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Legend } from "./panel/legend.js";
+import { Lenses } from "./panel/lenses.js";
 import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
@@ -61,6 +62,7 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.legend = new Legend();
     this.previews = new Previews();
+    this.lenses = new Lenses(this.camera, () => this.changed());
     this.quality = new Quality(this.renderer, this.memory, () => this.changed());
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
@@ -127,6 +129,7 @@ export class App {
       "no handle": (header) => this.handles.remove(header),
       pyramid: (header) => (overlays.pyramid = header.corners),
       "no pyramid": () => (overlays.pyramid = []),
+      lens: (header) => this.lenses.take(header),
       rays: (_, payload) => overlays.takeRays(payload),
       "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
       previews: (header, payload) => {
@@ -157,7 +160,7 @@ export class App {
 
   /** Clears the page at the start of a connection: the simulation sends the whole scene again. */
   begin() {
-    for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
+    for (const part of [this.scene, this.drawings, this.panel, this.previews, this.lenses, this.history, this.readings]) part.clear();
     for (const part of [this.overlays, this.handles, this.timeline, this.plots, this.player]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
@@ -338,6 +341,7 @@ export class App {
     this.drawn = true;
     const { scene, camera, options, drawings, pointer } = this;
     this.viewpoint.follow();
+    this.lenses.show();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
     const lines = this.overlays.draw(drawings, this.grasp.line(), named);
     this.renderer.draw(scene, camera, options, { lines, solids: this.overlays.solids, clouds: drawings.clouds, signs: drawings.signs });

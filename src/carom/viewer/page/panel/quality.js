@@ -12,8 +12,9 @@ export class Quality {
     this.reason = document.getElementById("coarse");
     document.getElementById("quality").hidden = !byProcessor;
     this.select.addEventListener("change", () => {
-      memory.put("sharp", this.select.value === "sharp");
-      this.recall();
+      pace.sharp = this.select.value === "sharp";
+      memory.put("sharp", pace.sharp);
+      this.show();
       changed();
     });
   }

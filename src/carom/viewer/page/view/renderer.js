@@ -196,7 +196,7 @@ export class Renderer {
     const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.distance * 1.6));
     // The shadow map moves in whole texels, so that edges of shadows do not flicker when the camera moves.
     const texel = (2 * extent) / this.map.size;
-    const centre = add(camera.target, scale(camera.forward, Math.min(0, extent - camera.distance)));
+    const centre = add(camera.centre, scale(camera.forward, Math.min(0, extent - camera.distance)));
     const snapped = [side, up].map((axis) => {
       const along = axis[0] * centre[0] + axis[1] * centre[1] + axis[2] * centre[2];
       return scale(axis, Math.round(along / texel) * texel - along);
@@ -237,9 +237,8 @@ export class Renderer {
     const gl = this.gl;
     gl.depthFunc(gl.LEQUAL);
     gl.bindVertexArray(this.nothing);
-    const { forward, right, up } = camera;
-    const aspect = camera.width / camera.height;
-    this.sky.use({ ...common, forward, rightward: right, overhead: up, aspect });
+    const [forward, rightward, overhead] = camera.spread;
+    this.sky.use({ ...common, forward, rightward, overhead });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.depthFunc(gl.LESS);
   }

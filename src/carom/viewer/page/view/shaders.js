@@ -206,11 +206,10 @@ export const SKY = {
 uniform vec3 forward;
 uniform vec3 rightward;
 uniform vec3 overhead;
-uniform float aspect;
 out vec3 direction;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  direction = forward + rightward * corner.x * aspect + overhead * corner.y;
+  direction = forward + rightward * corner.x + overhead * corner.y;
   gl_Position = vec4(corner, 1.0, 1.0);
 }`,
   fragment: `#version 300 es
