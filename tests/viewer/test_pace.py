@@ -122,7 +122,7 @@ def test_fast_pictures_get_finer_again(replay: Page):
     assert steps == [0.5, 0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1, 1]
 
 
-# Draws moments of the recording, coarse as while something moves: with the part that does not move kept, and without.
+# Draws moments of the recording as while something moves: with what does not move kept, and without.
 LAYERS = """async ([first, last]) => {
   const { renderer } = app, { gl, pace, layer } = renderer;
   app.draw = () => {};
@@ -146,7 +146,8 @@ LAYERS = """async ([first, last]) => {
   const before = shown();
   delete layer.window;
   const differ = (a, b) => a.reduce((sum, value, i) => sum + (Math.abs(value - b[i]) > 3), 0);
-  return { windows, differing: differ(quick, whole), moved: differ(before, whole), area: app.canvas.width * app.canvas.height };
+  const area = app.canvas.width * app.canvas.height;
+  return { windows, differing: differ(quick, whole), moved: differ(before, whole), area };
 }"""
 
 
@@ -165,7 +166,7 @@ def test_only_what_moves_is_drawn_anew(tmp_path: Path, browser):
     for lines in ("false", "true"):
         page.page.evaluate(f"app.options.frames = {lines}")
         result = page.page.evaluate(LAYERS, [0.1, 0.4])
-        # A picture from a new camera is drawn as a whole, and the next ones only where the ball and its shadow are.
+        # The first picture of a camera is drawn as a whole, the next ones where the ball and its shadow are.
         assert all(width * height < 0.5 * result["area"] for *_, width, height in result["windows"][1:])
         assert result["moved"] > 100
         assert result["differing"] <= 4

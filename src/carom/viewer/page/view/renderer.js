@@ -3,6 +3,7 @@
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
+import { NoGraphics } from "./no_graphics.js";
 import { Pace } from "./pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
@@ -27,11 +28,19 @@ function drawnByTheProcessor() {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-export class Renderer {
-  constructor(canvas) {
-    const slow = drawnByTheProcessor();
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: !slow, powerPreference: "high-performance" });
-    if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
+/** The renderer of a canvas; in a browser without WebGL 2 one that draws nothing. */
+export function rendererFor(canvas) {
+  const slow = drawnByTheProcessor();
+  const gl = canvas.getContext("webgl2", { alpha: false, antialias: !slow, powerPreference: "high-performance" });
+  return gl ? new Renderer(canvas, gl, slow) : new NoGraphics();
+}
+
+class Renderer {
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {boolean} slow whether the CPU renders
+   */
+  constructor(canvas, gl, slow) {
     this.canvas = canvas;
     this.gl = gl;
     /** Whether the WebGL context is lost; a restored context has none of the objects made here. */
