@@ -23,9 +23,9 @@ def red_ball(position: tuple[float, float, float], radius: float = 0.06) -> int:
     return p.createMultiBody(0, -1, shape, position)
 
 
-def hide_previews(page: Page) -> None:
-    """They show the ball, too."""
-    page.page.evaluate("document.getElementById('previews').style.opacity = 0")
+def show_balls_only(page: Page) -> None:
+    """Hides what else is red: the balls in the previews, and an axis of the grid."""
+    page.page.evaluate("document.getElementById('previews').style.opacity = 0, app.options.grid = false")
 
 
 def red(picture: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ def off_centre() -> list[float]:
 
 @pytest.mark.parametrize("lens", [off_centre(), p.computeProjectionMatrixFOV(50, 2, 0.1, 5)])
 def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: list[float]):
-    hide_previews(page)
+    show_balls_only(page)
     ball = red_ball(POINT)
     view = p.computeViewMatrix([1.6, -0.9, 1.2], [0, 0.2, 0.4], [0.1, 0, 1])
     aim = on_page(taken(view, lens), IMAGE)
@@ -86,7 +86,7 @@ def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: lis
 
 
 def test_far_things_are_cut_off_as_in_the_image(page: Page):
-    hide_previews(page)
+    show_balls_only(page)
     red_ball((0, 0, 0.5), 0.2)
     view = p.computeViewMatrix([2, 0, 0.5], [0, 0, 0.5], [0, 0, 1])
     for far, seen in ((1.5, False), (5, True)):
@@ -121,10 +121,11 @@ def test_escape_and_drags_go_back_to_the_own_view(page: Page):
 
 
 def test_a_mounted_camera_is_followed(page: Page, viewer: Viewer):
+    show_balls_only(page)
     arm = red_ball((0, 0, 0))
     red_ball(POINT)
     body = viewer._world.bodies[arm]
-    camera = Camera(300, 300, fx=250, cx=120, link=body.base).look_at((0, 0, 0.4), (1, 1, 0.5))
+    camera = Camera(300, 300, fx=250, cx=120, link=body.links.base).look_at((0, 0, 0.4), (1, 1, 0.5))
     viewer.show_camera("on the hand", camera)
     page.page.locator("#camera summary").click()
     page.page.get_by_role("button", name="on the hand").click()

@@ -32,8 +32,7 @@ class ImageSource(NamedTuple):
         texels: Weak reference to the image.
         file: Its file.
         stamp: What the file was like when it was read.
-        form: Pillow's name of the format and of the mode of the file, or None if the image is turned when it is
-            shown.
+        form: Pillow's names of the format and of the mode of the file; None if viewers turn the image.
     """
 
     texels: ref[Texels]

@@ -51,7 +51,9 @@ def _own_file(texels: Texels) -> TextureFile | None:
     if known is None or media_type is None or known.texels() is not texels:
         return None
     try:
-        data, stamp = read_bounded(known.file, MAX_FILE_BYTES)
-    except DescriptionError:
+        if not known.stamp.is_of(known.file):
+            return None
+        data, _ = read_bounded(known.file, MAX_FILE_BYTES)
+    except (OSError, DescriptionError):
         return None
-    return TextureFile(media_type, data) if stamp == known.stamp else None
+    return TextureFile(media_type, data)
