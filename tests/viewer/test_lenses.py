@@ -25,7 +25,9 @@ def red_ball(position: tuple[float, float, float], radius: float = 0.06) -> int:
 
 def show_balls_only(page: Page) -> None:
     """Hides what else is red: the balls in the previews, and an axis of the grid."""
-    page.page.evaluate("document.getElementById('previews').style.opacity = 0, app.options.grid = false")
+    page.page.evaluate(
+        "document.getElementById('previews').style.opacity = 0, app.options.grid = false, app.changed()"
+    )
 
 
 def red(picture: np.ndarray) -> np.ndarray:
