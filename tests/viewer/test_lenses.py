@@ -1,6 +1,6 @@
 """The page looks through the script's cameras."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
@@ -51,19 +51,19 @@ def near(aim: np.ndarray) -> Callable[[np.ndarray], bool]:
     return lambda picture: bool(red(picture).sum() > 40 and np.abs(middle(picture) - aim).max() < 2.5)
 
 
-def taken(view: list[float], projection: list[float]) -> np.ndarray:
+def taken(view: Sequence[float], projection: Sequence[float]) -> np.ndarray:
     """Middle of the red ball in an image of the script."""
     width, height, colours, *_ = p.getCameraImage(*IMAGE, view, projection, shadow=0)
     return middle(np.reshape(colours, (height, width, 4))[..., :3])
 
 
-def off_centre() -> list[float]:
+def off_centre() -> Sequence[float]:
     """A lens whose axis does not meet the middle of the image."""
     return p.computeProjectionMatrix(-0.09, 0.15, -0.03, 0.09, 0.1, 5)
 
 
 @pytest.mark.parametrize("lens", [off_centre(), p.computeProjectionMatrixFOV(50, 2, 0.1, 5)])
-def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: list[float]):
+def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: Sequence[float]):
     show_balls_only(page)
     ball = red_ball(POINT)
     view = p.computeViewMatrix([1.6, -0.9, 1.2], [0, 0.2, 0.4], [0.1, 0, 1])
