@@ -83,7 +83,8 @@ def colours_of(page: Page) -> list[str]:
     found = []
     for row, column in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
         pixel = picture[320 + 60 * row, 450 + 60 * column]
-        found.append(names.get(tuple(int(value > 0.5 * pixel.max()) for value in pixel), "none"))
+        red, green, blue = (int(value > 0.5 * pixel.max()) for value in pixel)
+        found.append(names.get((red, green, blue), "none"))
     return found
 
 
