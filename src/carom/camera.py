@@ -218,6 +218,11 @@ class Camera:
         return product(_EYE_FROM_CAMERA, _inverses(poses_to_matrices(poses)))
 
     @property
+    def view(self) -> Array:
+        """(4, 4) matrix from the world to eye coordinates as in OpenGL: it looks along -z, and y points up."""
+        return self.views(np.concatenate(self.pose)[None])[0]
+
+    @property
     def projection(self) -> Array:
         """(4, 4) matrix from eye to clip coordinates as in OpenGL."""
         fx, fy, cx, cy = self._intrinsics.tolist()
@@ -240,8 +245,9 @@ class Camera:
         if world is None:
             raise ValueError("a camera that is not mounted needs to be told which world to look at")
         pose = self.pose
-        view = self.views(np.concatenate(pose)[None])[0]
-        image = renderer_of(world).draw(world, view, self.projection, self.width, self.height, self.light)
+        image = renderer_of(world).draw(
+            world, self.view, self.projection, self.width, self.height, self.light
+        )
         return CameraImage(
             np.ascontiguousarray(image.rgba[:, :, :3]),
             image.distance,

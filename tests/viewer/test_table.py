@@ -73,6 +73,7 @@ TRIED = {
     "zoom in plots, export to CSV": ["panel.everything_is_plotted_zoomed_and_saved"],
     "camera: fit, follow, presets, numbers": ["panel.camera_presets_numbers_and_following"],
     "camera images of the script beside the view": ["page.plots_names_and_previews"],
+    "view through a camera of the script": ["lenses.a_point_lies_where_the_image_of_the_script_has_it"],
     "cameras drawn in the scene": ["views.the_camera_of_a_script_is_drawn"],
     "in notebooks": [
         "notebooks.a_window_is_shown_below_the_cell",

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import NamedTuple
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.formats.files import FileCache, read_bounded
+from carom.formats.files import FileCache, FileStamp, read_bounded
 
 Texels = NDArray[np.uint8]
 
@@ -18,6 +20,29 @@ MAX_FILE_BYTES = 256 << 20
 
 MAX_TEXELS = 8192 * 8192
 """Largest image that is decoded."""
+
+# The tag that says how an image is to be turned when it is shown; textures are not turned.
+_ORIENTATION = 0x0112
+
+
+class ImageSource(NamedTuple):
+    """Where an image comes from.
+
+    Attributes:
+        texels: Weak reference to the image.
+        file: Its file.
+        stamp: What the file was like when it was read.
+        form: Pillow's names of the format and of the mode of the file; None if viewers turn the image.
+    """
+
+    texels: ref[Texels]
+    file: Path
+    stamp: FileStamp
+    form: tuple[str, str] | None
+
+
+sources: dict[int, ImageSource] = {}
+"""Sources of the images that are in use, by their ids."""
 
 
 def read_image(path: Path) -> Texels:
@@ -37,13 +62,15 @@ def read_image(path: Path) -> Texels:
     if cached is not None:
         return cached
     data, stamp = read_bounded(file, MAX_FILE_BYTES)
-    texels = _decoded(data, file)
+    texels, form = _decoded(data, file)
     texels.setflags(write=False)
+    number = id(texels)
+    sources[number] = ImageSource(ref(texels, lambda _: sources.pop(number, None)), file, stamp, form)
     _cache.put(file, stamp, texels)
     return texels
 
 
-def _decoded(data: bytes, file: Path) -> Texels:
+def _decoded(data: bytes, file: Path) -> tuple[Texels, tuple[str, str] | None]:
     from PIL import Image, UnidentifiedImageError
 
     try:
@@ -51,6 +78,7 @@ def _decoded(data: bytes, file: Path) -> Texels:
             if image.width * image.height > MAX_TEXELS:
                 reason = f"{image.width} x {image.height} texels are more than the {MAX_TEXELS} accepted"
                 raise DescriptionError(reason, file=file)
+            form = None if image.getexif().get(_ORIENTATION, 1) != 1 else (image.format or "", image.mode)
             texels = np.array(image.convert("RGB"))
     except UnidentifiedImageError:
         raise DescriptionError("the image cannot be read", file=file) from None
@@ -59,7 +87,7 @@ def _decoded(data: bytes, file: Path) -> Texels:
         raise DescriptionError(f"the image is broken: {error}", file=file) from error
     if texels.size == 0:
         raise DescriptionError("the image has no texels", file=file)
-    return texels
+    return texels, form
 
 
 _cache: FileCache[Path, Texels] = FileCache(64)

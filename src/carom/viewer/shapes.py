@@ -21,6 +21,7 @@ from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
 from carom.render.primitives import primitive_mesh
 from carom.render.soft_surfaces import surface_mesh
+from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
 from carom.scene.joint_constraints import moving_links
 from carom.scene.soft_body import SoftBody
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 _MAX_TEXTURE_SIDE = 4096
+# Patterns of so few bytes are sent as they are, and shown at once; others as files, which browsers decode.
+_SMALL_TEXTURE = 3072
 # Each body id rotates the hue by the golden ratio [turns], so that neighbouring ids get different colours.
 _HUE_STEP = 0.61803398875
 _FIRST_HUE = 0.57
@@ -120,10 +123,14 @@ class Assets:
         number = self._number()
         self._textures[id(image)] = (image, number)
         every = -(-max(image.shape[:2]) // _MAX_TEXTURE_SIDE)
-        texels = image[::every, ::every]
+        texels = image if every == 1 else image[::every, ::every]
         header = {"type": "texture", "texture": number, "width": texels.shape[1], "height": texels.shape[0]}
-        # The bottom row comes first, as in texture coordinates.
-        self._board.put(("texture", number), header, np.ascontiguousarray(texels[::-1]).tobytes())
+        if texels.nbytes <= _SMALL_TEXTURE:
+            # The bottom row comes first, as in texture coordinates.
+            payload = np.ascontiguousarray(texels[::-1]).tobytes()
+        else:
+            header["file"], payload = texture_file(texels)
+        self._board.put(("texture", number), header, payload)
         return number
 
     def keep_only(self, meshes: set[int], textures: set[int]) -> None:

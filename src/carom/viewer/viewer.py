@@ -10,6 +10,7 @@ from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
+from carom.native.products import product
 from carom.remote.user_token import fresh_token, user_token
 from carom.viewer.access import Access, is_loopback
 from carom.viewer.board import Board, boards
@@ -28,6 +29,7 @@ from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
 from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.last_words import LastWords
+from carom.viewer.lenses import Lenses
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -42,6 +44,11 @@ from carom.viewer.steps.step_lock import StepLock
 from carom.viewer.still import still
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from carom.camera import Camera
+    from carom.render.image_target import RawImage
     from carom.world.world import World
 
 # How long to wait for the world when a page closes, to end its pulls [s].
@@ -132,6 +139,7 @@ class Viewer:
         self._feed = SceneFeed(world, self.lock, self._board)
         self._past = HistoryRecorder(self._board, max(history, 0))
         self.previews: Previews = Previews(self._board)
+        self._lenses = Lenses(self._board)
         self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
         self._details = Details(world, self.lock, self._board, always=self._past.is_on)
         self._sleeping = Sleeping(world)
@@ -352,6 +360,28 @@ class Viewer:
         self._handles.add(handle)
         return handle
 
+    def show_camera(self, name: str, camera: Camera) -> None:
+        """Lists a camera on the pages, under a name; with a click on it they look through it.
+
+        Raises:
+            ValueError: The camera is mounted on a link of another world.
+        """
+        if camera.link is not None and camera.link.body.world is not self._world:
+            raise ValueError(f"camera {name!r} is mounted on a link of another world")
+        self._lenses.follow(name, camera)
+
+    def show_image(self, image: RawImage, view: NDArray[np.float64], projection: NDArray[np.float64]) -> None:
+        """Shows an image of the script, where its camera stands, and what it sees.
+
+        Args:
+            image: The image.
+            view: (4, 4) from the world to the eye, as in OpenGL.
+            projection: (4, 4) from the eye to clip coordinates.
+        """
+        self.previews.show(image, product(projection, view))
+        height, width = image.rgba.shape[:2]
+        self._lenses.saw(view, projection, width, height)
+
     def _add_control(self, control: Slider) -> None:
         self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
 
@@ -415,6 +445,7 @@ class Viewer:
         self.drawings.expire()
         # This may take long.
         self._feed.follow()
+        self._lenses.update()
         blocks = self._details.blocks()
         extras: dict[str, Any] = {"picture": self._pictures.asked}
         if self._values:

@@ -138,7 +138,7 @@ def getCameraImage(
         label.fill(-1)
     elif not options & ER_SEGMENTATION_MASK_OBJECT_AND_LINKINDEX:
         label[label >= 0] &= _BODY_BITS
-    client.window.show_image(image, product(projection, view))
+    client.window.show_image(image, view, projection)
     return columns, rows, image.rgba, image.depth, label
 
 

@@ -147,9 +147,9 @@ class PageWindow(Window):
         if self.viewer.rays.wanted:
             self.viewer.rays.tell(starts, ends, hits)
 
-    def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
+    def show_image(self, image: RawImage, view: NDArray[np.float64], projection: NDArray[np.float64]) -> None:
         if self.viewer.page_count:
-            self.viewer.previews.show(image, camera)
+            self.viewer.show_image(image, view, projection)
 
     def camera_info(self) -> tuple[int | float | tuple[float, ...], ...]:
         return camera_info(self.viewer.camera.orbit, self._up_axis)

@@ -96,7 +96,7 @@ class Window:
     def move_camera(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """Moves the camera; angles in degrees."""
 
-    def show_image(self, image: RawImage, camera: NDArray[np.float64]) -> None:
+    def show_image(self, image: RawImage, view: NDArray[np.float64], projection: NDArray[np.float64]) -> None:
         """Shows an image of the script; `camera` is its projection matrix times view matrix, shape (4, 4)."""
 
     def show_rays(self, starts: Points, ends: Points, hits: Sequence[RayTuple]) -> None:

@@ -10,6 +10,7 @@ import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
 import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Legend } from "./panel/legend.js";
+import { Lenses } from "./panel/lenses.js";
 import { Memory } from "./memory.js";
 import { Options } from "./panel/options.js";
 import { Overlays } from "./view/overlays.js";
@@ -19,8 +20,9 @@ import { Player } from "./time/player.js";
 import { Plots } from "./panel/plots.js";
 import { Pointer } from "./view/pointer.js";
 import { Previews } from "./panel/previews.js";
+import { Quality } from "./panel/quality.js";
 import { Readings } from "./view/readings.js";
-import { Renderer } from "./view/renderer.js";
+import { rendererFor } from "./view/renderer.js";
 import { Saving } from "./time/saving.js";
 import { Scene } from "./view/scene.js";
 import { Shots } from "./time/shots.js";
@@ -42,8 +44,9 @@ export class App {
     this.send = send;
     this.canvas = document.getElementById("view");
     const labels = document.getElementById("labels");
-    this.renderer = new Renderer(this.canvas);
+    this.renderer = rendererFor(this.canvas);
     this.scene = new Scene(this.renderer.gl, this.renderer.byProcessor);
+    this.scene.textureArrived = () => this.changed();
     this.camera = new Camera();
     this.options = new Options();
     this.memory = new Memory();
@@ -70,6 +73,8 @@ export class App {
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
     this.legend = new Legend();
     this.previews = new Previews();
+    this.lenses = new Lenses(this.camera, () => this.changed());
+    this.quality = new Quality(this.renderer, this.memory, () => this.changed());
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
@@ -140,6 +145,7 @@ export class App {
       "no handle": (header) => this.handles.remove(header),
       pyramid: (header) => (overlays.pyramid = header.corners),
       "no pyramid": () => (overlays.pyramid = []),
+      lens: (header) => this.lenses.take(header),
       rays: (_, payload) => overlays.takeRays(payload),
       "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
       previews: (header, payload) => {
@@ -170,8 +176,9 @@ export class App {
 
   /** Clears the page at the start of a connection: the simulation sends the whole scene again. */
   begin() {
-    for (const part of [this.scene, this.drawings, this.panel, this.previews, this.history, this.readings]) part.clear();
-    for (const part of [this.overlays, this.handles, this.timeline, this.player, this.past, this.part, this.plots]) part.clear();
+    for (const part of [this.scene, this.drawings, this.panel, this.previews, this.lenses, this.history]) part.clear();
+    for (const part of [this.readings, this.overlays, this.handles, this.timeline, this.player]) part.clear();
+    for (const part of [this.past, this.part, this.plots]) part.clear();
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.begin();
@@ -260,6 +267,7 @@ export class App {
       const element = document.getElementById(id);
       if (element) element.open = open;
     }
+    this.quality.recall();
     this.recallSwitches();
     this.plots.dock.recall();
     this.optionsChanged();
@@ -342,6 +350,7 @@ export class App {
     this.frames += 1;
     if (now - this.since > 500) {
       this.panel.showFps((this.frames * 1000) / (now - this.since));
+      this.quality.show();
       [this.frames, this.since] = [0, now];
     }
     if (!this.stale || this.renderer.lost) return;
@@ -363,6 +372,7 @@ export class App {
     this.drawn = true;
     const { scene, camera, options, drawings, pointer } = this;
     this.viewpoint.follow();
+    this.lenses.show();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
     const lines = this.overlays.draw(drawings, this.grasp.line(), named);
     this.renderer.draw(scene, camera, options, { lines, solids: this.overlays.solids, clouds: drawings.clouds, signs: drawings.signs });

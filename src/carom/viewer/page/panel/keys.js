@@ -54,6 +54,8 @@ export class Keys {
     if (event.repeat) return;
     // While the help is open, ESC closes the help and not the simulation.
     if (key === "Escape" && this.app.help.open) return this.app.help.toggle();
+    // While the view is that of a script's camera, ESC goes back to the user's own.
+    if (key === "Escape" && this.app.lenses.looking) return this.app.lenses.leave();
     this.app.send({ type: "key", key, code: event.code, down: true });
     if (!this.app.options.shortcuts || command || event.altKey) return;
     const name = SHORTCUTS[key];

@@ -109,7 +109,7 @@ export class Viewpoint {
 
   /** Moves the camera along with the selected body or link, if following is on. */
   follow() {
-    if (!this.following.checked) return;
+    if (!this.following.checked || this.camera.lens) return;
     const { body, link } = this.selection ?? {};
     const pose = body === undefined ? null : this.scene.inertialPose(body, link ?? 0);
     this.camera.follow(pose && pose.position);

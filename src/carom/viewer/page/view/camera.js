@@ -32,6 +32,8 @@ export class Camera {
     /** Last position of the point that the camera follows; null if there is none. */
     this.followed = null;
     this.yUp = false;
+    /** The lens of a script's camera while the view is that camera's; null for the user's own view, which is kept. */
+    this.lens = null;
     this.width = 1;
     this.height = 1;
     this.update();
@@ -48,7 +50,14 @@ export class Camera {
     this.update();
   }
 
+  /** Takes the view of a script's camera; null goes back to the user's own. */
+  look(lens) {
+    this.lens = lens;
+    this.update();
+  }
+
   orbit(dx, dy) {
+    this.lens = null;
     this.yaw -= dx * DEGREES_PER_PIXEL;
     this.pitch = Math.max(-STEEPEST, Math.min(STEEPEST, this.pitch - dy * DEGREES_PER_PIXEL));
     this.update();
@@ -56,6 +65,7 @@ export class Camera {
 
   /** Moves the target so that objects there follow the mouse. */
   pan(dx, dy) {
+    this.look(null);
     const perPixel = (2 * this.distance) / this.height;
     const shift = add(scale(this.right, -dx * perPixel), scale(this.up, dy * perPixel));
     this.target = add(this.target, shift);
@@ -63,6 +73,7 @@ export class Camera {
   }
 
   zoom(factor) {
+    this.lens = null;
     this.distance = Math.max(0.02, Math.min(500, this.distance * factor));
     this.update();
   }
@@ -84,6 +95,18 @@ export class Camera {
     this.view = viewMatrix(this.eye, this.right, this.up, this.forward);
     this.projection = perspective(this.width / this.height, NEAR, FAR);
     this.matrix = multiply(this.projection, this.view);
+    /** The point about which shadows are drawn. */
+    this.centre = this.target;
+    if (!this.lens) return;
+    this.lens.fit(this.width, this.height);
+    const { eye, forward, right, up, view, fitted, matrix } = this.lens;
+    Object.assign(this, { eye, forward, right, up, view, matrix, projection: fitted });
+    this.centre = add(eye, scale(forward, this.distance));
+  }
+
+  /** Directions: of the middle of the window, and from there to its right and to its upper edge. */
+  get spread() {
+    return this.lens?.spread ?? [this.forward, scale(this.right, this.width / this.height), this.up];
   }
 
   /**
@@ -93,6 +116,7 @@ export class Camera {
    * @param {{side: number, below: number}} insets what covers the view at its right and at its bottom [pixels]
    */
   fit([lower, upper], { side, below } = { side: 0, below: 0 }) {
+    this.lens = null;
     this.target = lower.map((x, i) => 0.5 * (x + upper[i]));
     const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
     // The vertical field of view is 90 degrees; in a tall window the horizontal one is narrower.
@@ -104,6 +128,7 @@ export class Camera {
 
   /** Sets the direction of a preset view. */
   preset(name) {
+    this.lens = null;
     [this.yaw, this.pitch] = PRESETS[name];
     this.update();
   }
@@ -119,9 +144,8 @@ export class Camera {
 
   /** Unit vector from the eye through a pixel. */
   ray(x, y) {
-    const right = ((2 * x) / this.width - 1) * (this.width / this.height);
-    const up = 1 - (2 * y) / this.height;
-    return unit(add(this.forward, add(scale(this.right, right), scale(this.up, up))));
+    const [middle, rightward, overhead] = this.spread;
+    return unit(add(middle, add(scale(rightward, (2 * x) / this.width - 1), scale(overhead, 1 - (2 * y) / this.height))));
   }
 
   /** Pixel of a point and its depth along the view direction; null for points behind the eye. */
@@ -129,8 +153,8 @@ export class Camera {
     const offset = subtract(point, this.eye);
     const depth = dot(offset, this.forward);
     if (depth < NEAR) return null;
-    const x = (dot(offset, this.right) / depth) * (this.height / this.width);
-    const y = dot(offset, this.up) / depth;
+    const row = (i) => dot([this.matrix[i], this.matrix[4 + i], this.matrix[8 + i]], point) + this.matrix[12 + i];
+    const [x, y] = [row(0) / row(3), row(1) / row(3)];
     return [((x + 1) / 2) * this.width, ((1 - y) / 2) * this.height, depth];
   }
 
@@ -141,7 +165,8 @@ export class Camera {
     const matrix = this.matrix.map((value, i) => (i >> 2 === axis ? -value : value));
     const { width, height, yUp, distance } = this;
     const [eye, forward, right, up] = [this.eye, this.forward, this.right, this.up].map(flip);
-    return { eye, forward, right, up, matrix, width, height, yUp, distance };
+    const spread = this.spread.map(flip);
+    return { eye, forward, right, up, matrix, width, height, yUp, distance, spread };
   }
 
   state() {

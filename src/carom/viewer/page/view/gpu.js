@@ -1,4 +1,4 @@
-// Shader programs, meshes and textures on the GPU.
+// Shader programs, meshes and render targets on the GPU.
 
 export class Program {
   constructor(gl, { vertex, fragment }) {
@@ -142,43 +142,6 @@ function faceNormal(positions, [a, b, c]) {
   return n.map((value) => value / size);
 }
 
-/** A repeating texture of RGB bytes, the bottom row first; a `plain` one has no anisotropic filtering. */
-export function imageTexture(gl, { width, height }, payload, plain) {
-  let texels = new Uint8Array(payload);
-  // Small patterns are enlarged, because linear filtering would blur their sharp borders.
-  const times = Math.max(width, height) <= 16 ? 32 : 1;
-  if (times > 1) {
-    texels = enlarged(texels, width, height, times);
-    [width, height] = [width * times, height * times];
-  }
-  const texture = gl.createTexture();
-  gl.activeTexture(gl.TEXTURE0);
-  gl.bindTexture(gl.TEXTURE_2D, texture);
-  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB8, width, height, 0, gl.RGB, gl.UNSIGNED_BYTE, texels);
-  gl.generateMipmap(gl.TEXTURE_2D);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-  const sharper = plain ? null : gl.getExtension("EXT_texture_filter_anisotropic");
-  if (sharper) {
-    const most = gl.getParameter(sharper.MAX_TEXTURE_MAX_ANISOTROPY_EXT);
-    gl.texParameterf(gl.TEXTURE_2D, sharper.TEXTURE_MAX_ANISOTROPY_EXT, Math.min(8, most));
-  }
-  return texture;
-}
-
-function enlarged(texels, width, height, times) {
-  const result = new Uint8Array(width * height * 3 * times * times);
-  let at = 0;
-  for (let row = 0; row < height * times; row++) {
-    for (let column = 0; column < width * times; column++) {
-      const from = (Math.floor(row / times) * width + Math.floor(column / times)) * 3;
-      for (let channel = 0; channel < 3; channel++) result[at++] = texels[from + channel];
-    }
-  }
-  return result;
-}
-
 /** A square depth texture, seen from the light, for shadows. */
 export class ShadowMap {
   constructor(gl, size) {
@@ -217,13 +180,13 @@ export class Picture {
     this.target = gl.createFramebuffer();
   }
 
-  /** Makes the picture the render target. */
-  begin(width, height) {
+  /** Makes the picture the render target; depths are cleared if it is `fresh`. */
+  begin(width, height, fresh = true) {
     const gl = this.gl;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
     if (this.width !== width || this.height !== height) this.resize(width, height);
     gl.viewport(0, 0, width, height);
-    gl.clear(gl.DEPTH_BUFFER_BIT);
+    if (fresh) gl.clear(gl.DEPTH_BUFFER_BIT);
   }
 
   resize(width, height) {

@@ -37,17 +37,17 @@ export class Group {
   }
 
   /** Updates the poses and colours of the instances; see `Scene.fill`. */
-  fill(scene, options, eye, focal) {
+  fill(scene, options, eye, focal, stillOnly) {
     const [levels, several] = [this.levels, this.levels.length > 1];
     // With a single level of detail the camera does not matter.
     const looks = [options.wireframe, options.linkColours, options.version];
-    const filledFor = [scene.version, ...looks, ...(several ? [...eye, focal] : [])].join();
+    const filledFor = [scene.version, stillOnly, ...looks, ...(several ? [...eye, focal] : [])].join();
     if (this.filledFor === filledFor) return;
     this.filledFor = filledFor;
     for (const level of levels) level.begin(this.members.length);
     for (const { body, shape, radius } of this.members) {
       const at = scene.poseAt(body.body, shape.link);
-      if (at < 0 || scene.hidden.has(body.body)) continue;
+      if (at < 0 || scene.hidden.has(body.body) || (stillOnly && body.links[shape.link].moves)) continue;
       let level = 0;
       if (several) {
         const distance = Math.hypot(scene.poses[at] - eye[0], scene.poses[at + 1] - eye[1], scene.poses[at + 2] - eye[2]);

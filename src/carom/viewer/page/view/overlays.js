@@ -99,7 +99,7 @@ export class Overlays {
     this.addSelection();
     if (options.constraints) this.addConstraints();
     if (options.rays) this.addRays();
-    if (options.cameras) this.addCamera();
+    if (options.cameras && !this.camera.lens) this.addCamera();
     if (options.trail) this.addTrail();
     addContacts(this);
     lines.goInside();

@@ -6,6 +6,8 @@ const STEPS = [0.25, 0.3, 0.4, 0.5, 0.65, 0.8, 1];
 const MODEST = STEPS.indexOf(0.5);
 /** Slower pictures lower the resolution, faster ones raise it; the aim is 30 pictures per second [ms]. */
 const SLOW_MS = 34;
+/** At half the resolution and below 20 pictures per second are enough [ms]. */
+const MODEST_SLOW_MS = 50;
 const VERY_SLOW_MS = 70;
 const FAST_MS = 20;
 /** Number of pictures whose times are averaged, without the slowest: another process may have delayed it. */
@@ -24,11 +26,13 @@ export class Pace {
     this.held = null;
     /** Whether a picture is drawn that is saved, with all details. */
     this.careful = false;
+    /** Whether the user wants all pixels while something moves, however long that takes. */
+    this.sharp = false;
   }
 
   /** Keeps one resolution while `holding`, because a video cannot change its size: without a GPU the present one. */
   hold(holding) {
-    this.held = holding ? (this.byProcessor ? STEPS[this.step] : 1) : null;
+    this.held = holding ? (this.byProcessor && !this.sharp ? STEPS[this.step] : 1) : null;
   }
 
   /** Whether nothing has moved for a while, so that there is time for all details. */
@@ -39,7 +43,7 @@ export class Pace {
   /** Resolution scale of the next picture: drawn pixels per screen pixel, along an edge. */
   get sharpness() {
     if (this.held !== null) return this.held;
-    if (!this.still) return STEPS[this.step];
+    if (!this.still) return this.sharp ? 1 : STEPS[this.step];
     // Without a GPU pictures have no antialiasing: a higher resolution replaces it.
     return this.byProcessor && this.unchanged > RESTING_MS ? 2 : 1;
   }
@@ -55,13 +59,14 @@ export class Pace {
 
   /** Records the time that a picture took [ms]; adapts the resolution while something moves. */
   note(duration) {
-    if (this.still || this.held !== null) return;
+    if (this.still || this.sharp || this.held !== null) return;
     this.durations.push(duration);
     if (this.durations.length < PICTURES) return;
     const total = this.durations.reduce((sum, each) => sum + each, -Math.max(...this.durations));
     const mean = total / (PICTURES - 1);
     this.durations = [];
-    const change = mean > VERY_SLOW_MS ? -2 : mean > SLOW_MS ? -1 : mean < FAST_MS ? 1 : 0;
+    const slow = this.step <= MODEST ? MODEST_SLOW_MS : SLOW_MS;
+    const change = mean > VERY_SLOW_MS && this.step > MODEST ? -2 : mean > slow ? -1 : mean < FAST_MS ? 1 : 0;
     this.step = Math.min(Math.max(this.step + change, 0), STEPS.length - 1);
   }
 }

@@ -3,9 +3,11 @@
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
+import { NoGraphics } from "./no_graphics.js";
 import { Pace } from "./pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
+import { StillLayer } from "./still_layer.js";
 import { Surfaces } from "./surfaces.js";
 
 const GRID_EXTENT = 60;
@@ -26,11 +28,19 @@ function drawnByTheProcessor() {
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-export class Renderer {
-  constructor(canvas) {
-    const slow = drawnByTheProcessor();
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: !slow, powerPreference: "high-performance" });
-    if (!gl) throw new Error("This browser has no WebGL 2, which the view needs.");
+/** The renderer of a canvas; in a browser without WebGL 2 one that draws nothing. */
+export function rendererFor(canvas) {
+  const slow = drawnByTheProcessor();
+  const gl = canvas.getContext("webgl2", { alpha: false, antialias: !slow, powerPreference: "high-performance" });
+  return gl ? new Renderer(canvas, gl, slow) : new NoGraphics();
+}
+
+class Renderer {
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {boolean} slow whether the CPU renders
+   */
+  constructor(canvas, gl, slow) {
     this.canvas = canvas;
     this.gl = gl;
     /** Whether the WebGL context is lost; a restored context has none of the objects made here. */
@@ -49,6 +59,7 @@ export class Renderer {
     this.solidBatch = new SolidBatch(gl);
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
+    this.layer = new StillLayer(gl);
     this.byProcessor = slow;
     this.pace = new Pace(slow);
   }
@@ -71,12 +82,55 @@ export class Renderer {
    * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[]}} drawings
    */
   draw(scene, camera, options, drawings) {
-    const gl = this.gl;
+    const { gl, canvas, layer } = this;
     scene.regroup(options);
-    scene.fill(options, camera.eye, this.canvas.height / 2);
-    const shown = scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
     // If the CPU renders, details are left out while something moves.
     const detailed = !this.byProcessor || this.pace.still;
+    const window = detailed ? null : this.changedPart(scene, camera, options, drawings);
+    const focal = canvas.height / 2;
+    const world = (aim) => this.drawWorld(scene, camera, options, detailed, aim);
+    if (window && !layer.made) {
+      scene.fill(options, camera.eye, focal, true);
+      layer.keep(canvas, world);
+    }
+    scene.fill(options, camera.eye, focal);
+    const more = drawings.lines.count + drawings.solids.count + drawings.clouds.length > 0;
+    if (window) layer.compose(window, more, canvas, world);
+    else world(() => this.aimAtCanvas());
+    gl.enable(gl.DEPTH_TEST);
+    this.drawSigns(drawings.signs, scene, camera);
+    if (!options.wireframe) this.drawClear(scene, camera, options);
+    this.drawPoints(drawings.clouds, scene, camera);
+    this.drawLines(drawings.lines, camera);
+    this.solidBatch.draw(drawings.solids, camera);
+    gl.disable(gl.DEPTH_TEST);
+    if (window) layer.show(canvas);
+  }
+
+  /** The part of the view in which something moves, see `StillLayer.window`; null to draw everything. */
+  changedPart(scene, camera, options, drawings) {
+    if (options.wireframe || options.reflections || drawings.signs.length > 0) return null;
+    const shadows = options.shadows && !options.flat;
+    if (shadows) this.sizeShadows(options, false);
+    const light = this.light(camera, options);
+    return this.layer.window(scene, camera, options, this.canvas, light.direction, shadows ? light.texel : 0);
+  }
+
+  aimAtCanvas() {
+    const gl = this.gl;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+  }
+
+  shown(scene, options) {
+    return scene.groups.filter((group) => group.instances > 0 && options.shows(group.collision));
+  }
+
+  /** Draws surfaces, sky and grid; `aim` is called before these to set the target, after shadows and reflections. */
+  drawWorld(scene, camera, options, detailed, aim) {
+    const gl = this.gl;
+    const shown = this.shown(scene, options);
     const { flat } = options;
     const shadows = options.shadows && !options.wireframe && !flat;
     if (shadows) this.sizeShadows(options, detailed);
@@ -90,12 +144,10 @@ export class Renderer {
       shadowTexel: 1 / this.map.size,
       shadowBias: (light.extent / this.map.size) * 0.04 + 2e-5,
     };
-    const lit = [shadows && "SHADOWED", detailed && "SOFT", detailed && "GLOSSY"];
+    const lit = [shadows && "SHADOWED", ...(detailed ? ["SOFT", "GLOSSY"] : [!reflecting && "QUICK"])];
     const features = flat ? ["FLAT", options.depth && "DEPTH"].filter(Boolean) : lit.filter(Boolean);
     if (reflecting) this.drawReflection(shown, scene, camera.mirrored(), options, shading, features);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-    gl.clear(gl.DEPTH_BUFFER_BIT);
+    aim();
     const common = this.seenFrom(camera, options);
     gl.enable(gl.DEPTH_TEST);
     if (options.wireframe) this.drawWires(shown, camera);
@@ -107,12 +159,6 @@ export class Renderer {
     }
     this.drawSky(camera, common);
     if (options.grid && !flat) this.drawGrid(camera, common);
-    this.drawSigns(drawings.signs, scene, camera);
-    if (!options.wireframe) this.drawClear(shown, scene, camera);
-    this.drawPoints(drawings.clouds, scene, camera);
-    this.drawLines(drawings.lines, camera);
-    this.solidBatch.draw(drawings.solids, camera);
-    gl.disable(gl.DEPTH_TEST);
   }
 
   /** Uniforms that all programs need for a view. */
@@ -159,7 +205,7 @@ export class Renderer {
     const extent = options.shadowWorldSize ?? Math.min(60, Math.max(0.5, camera.distance * 1.6));
     // The shadow map moves in whole texels, so that edges of shadows do not flicker when the camera moves.
     const texel = (2 * extent) / this.map.size;
-    const centre = add(camera.target, scale(camera.forward, Math.min(0, extent - camera.distance)));
+    const centre = add(camera.centre, scale(camera.forward, Math.min(0, extent - camera.distance)));
     const snapped = [side, up].map((axis) => {
       const along = axis[0] * centre[0] + axis[1] * centre[1] + axis[2] * centre[2];
       return scale(axis, Math.round(along / texel) * texel - along);
@@ -167,7 +213,7 @@ export class Renderer {
     const reach = 4 * extent + 10;
     const eye = add(add(add(centre, snapped[0]), snapped[1]), scale(direction, reach));
     const view = viewMatrix(eye, side, up, scale(direction, -1));
-    return { direction, extent: extent / reach, matrix: multiply(orthographic(extent, 0, 2 * reach), view) };
+    return { direction, texel, extent: extent / reach, matrix: multiply(orthographic(extent, 0, 2 * reach), view) };
   }
 
   /** Replaces the shadow map if another size is needed. */
@@ -200,9 +246,8 @@ export class Renderer {
     const gl = this.gl;
     gl.depthFunc(gl.LEQUAL);
     gl.bindVertexArray(this.nothing);
-    const { forward, right, up } = camera;
-    const aspect = camera.width / camera.height;
-    this.sky.use({ ...common, forward, rightward: right, overhead: up, aspect });
+    const [forward, rightward, overhead] = camera.spread;
+    this.sky.use({ ...common, forward, rightward, overhead });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     gl.depthFunc(gl.LESS);
   }
@@ -224,9 +269,9 @@ export class Renderer {
     this.drawGroup(group);
   }
 
-  drawClear(groups, scene, camera) {
+  drawClear(scene, camera, options) {
     const gl = this.gl;
-    const clear = groups.filter((group) => group.clear);
+    const clear = this.shown(scene, options).filter((group) => group.clear);
     if (clear.length === 0) return;
     const depth = (group) => group.middle.reduce((sum, x, i) => sum + (x - camera.eye[i]) * camera.forward[i], 0);
     clear.sort((a, b) => depth(b) - depth(a));

@@ -1,8 +1,9 @@
 // The scene: bodies, their shapes, and the poses of their links.
 
 import { composed } from "./maths.js";
-import { Mesh, imageTexture } from "./gpu.js";
+import { Mesh } from "./gpu.js";
 import { Group } from "./group.js";
+import { bitmapTexture, decodedImage, imageTexture } from "./textures.js";
 
 const IDENTITY = { position: [0, 0, 0], orientation: [0, 0, 0, 1] };
 /** Number of floats of a pose in a frame: position and quaternion. */
@@ -15,6 +16,8 @@ export class Scene {
   constructor(gl, byProcessor) {
     this.gl = gl;
     this.byProcessor = byProcessor;
+    /** Called when an image has been decoded, some time after its message. */
+    this.textureArrived = () => {};
     this.clear();
   }
 
@@ -25,6 +28,8 @@ export class Scene {
     for (const group of this.groups ?? []) group.dispose();
     this.meshes = new Map();
     this.textures = new Map();
+    /** Messages of the images that are being decoded. */
+    this.decoding = new Map();
     this.bodies = new Map();
     this.dynamics = new Map();
     /** Numbers of the bodies that the user has hidden. */
@@ -35,6 +40,8 @@ export class Scene {
     this.transparent = false;
     /** Increases with every change of shapes or poses. */
     this.version = 0;
+    /** Increases with every change of shapes, textures or hidden bodies. */
+    this.looks = 0;
     /** Poses of the newest frame in one array, and the index at which the poses of each body begin. */
     this.poses = new Float32Array(0);
     this.starts = new Map();
@@ -61,12 +68,31 @@ export class Scene {
   }
 
   addTexture(header, payload) {
-    this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.byProcessor));
+    this.removeTexture(header);
+    this.looks += 1;
+    if (header.file) this.decodeTexture(header, payload);
+    else this.textures.set(header.texture, imageTexture(this.gl, header, payload, this.byProcessor));
+  }
+
+  /** Decodes an image; until then shapes have their plain colour. */
+  async decodeTexture(header, payload) {
+    const { decoding } = this;
+    decoding.set(header.texture, header);
+    const bitmap = await decodedImage(header, payload);
+    // It may have been removed or replaced in the meantime, or all of the scene.
+    if (decoding === this.decoding && decoding.get(header.texture) === header) {
+      decoding.delete(header.texture);
+      this.textures.set(header.texture, bitmapTexture(this.gl, bitmap, this.byProcessor));
+      this.looks += 1;
+      this.textureArrived();
+    }
+    bitmap.close();
   }
 
   removeTexture({ texture }) {
     this.gl.deleteTexture(this.textures.get(texture) ?? null);
     this.textures.delete(texture);
+    this.decoding.delete(texture);
   }
 
   /** Sets the masses and inertias of a body's links. */
@@ -97,6 +123,7 @@ export class Scene {
     if (hidden) this.hidden.add(body);
     else this.hidden.delete(body);
     this.version += 1;
+    this.looks += 1;
   }
 
   /** Sets the poses of all links; a frame that was made for other bodies is ignored. */
@@ -162,6 +189,7 @@ export class Scene {
     }
     this.groups = [...groups.values()];
     this.version += 1;
+    this.looks += 1;
   }
 
   /**
@@ -169,8 +197,9 @@ export class Scene {
    *
    * @param {number[]} eye position of the camera
    * @param {number} focal focal length of the camera [pixels]
+   * @param {boolean} stillOnly whether only those that do not move are wanted
    */
-  fill(options, eye, focal) {
-    for (const group of this.groups) group.fill(this, options, eye, focal);
+  fill(options, eye, focal, stillOnly = false) {
+    for (const group of this.groups) group.fill(this, options, eye, focal, stillOnly);
   }
 }

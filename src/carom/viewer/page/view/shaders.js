@@ -1,5 +1,7 @@
 // The shader programs.
 
+import { quickSurface } from "./quick_surface.js";
+
 /** Light, sky and haze, shared by all programs. Colours are mixed in linear light. */
 const COMMON = `
 precision highp float;
@@ -52,6 +54,7 @@ vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * positio
  *   TEXTURED: surfaces have a texture
  *   SHADOWED: surfaces receive shadows
  *   SOFT: edges of shadows are smoothed; otherwise each pixel reads the shadow map once
+ *   QUICK: light is computed for each vertex, without SOFT, GLOSSY and MIRRORING
  *   GLOSSY: specular highlights and reflections of the sky
  *   ABOVE_GROUND: only surfaces above the ground are drawn
  *   MIRRORING: the ground shows its reflection
@@ -60,6 +63,7 @@ vec3 placed() { return axisX * position.x + axisY * position.y + axisZ * positio
  */
 export function surface(features) {
   const head = ["#version 300 es", ...features.map((name) => `#define ${name}`)].join("\n");
+  if (features.includes("QUICK")) return quickSurface(head, COMMON, INSTANCE);
   return { vertex: `${head}\n${SURFACE_VERTEX}`, fragment: `${head}\n${SURFACE_FRAGMENT}` };
 }
 
@@ -202,11 +206,10 @@ export const SKY = {
 uniform vec3 forward;
 uniform vec3 rightward;
 uniform vec3 overhead;
-uniform float aspect;
 out vec3 direction;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  direction = forward + rightward * corner.x * aspect + overhead * corner.y;
+  direction = forward + rightward * corner.x + overhead * corner.y;
   gl_Position = vec4(corner, 1.0, 1.0);
 }`,
   fragment: `#version 300 es

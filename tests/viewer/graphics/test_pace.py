@@ -107,7 +107,7 @@ def test_fast_pictures_get_finer_again(replay: Page):
           };
           const first = pace.sharpness;
           const single = (told(15, 2), told(900, 1), told(30, 5));
-          const some = (told(30, 5), told(50, 3)), slow = told(50, 8);
+          const some = (told(30, 5), told(48, 3)), slow = told(60, 8);
           const slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
           pace.wait(600);
           const still = (told(500, 50), pace.sharpness);
@@ -119,4 +119,68 @@ def test_fast_pictures_get_finer_again(replay: Page):
           return [first, single, some, slow, slowest, enough, fast, still, moving, filmed];
         }"""
     )
-    assert steps == [0.5, 0.5, 0.4, 0.3, 0.25, 0.25, 1, 1, 1, 1]
+    assert steps == [0.5, 0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1, 1]
+
+
+# Draws moments of the recording as while something moves: with what does not move kept, and without.
+LAYERS = """async ([first, last]) => {
+  const { renderer } = app, { gl, pace, layer } = renderer;
+  app.draw = () => {};
+  pace.wait(0);
+  renderer.resize();
+  app.fitCanvas();
+  const shown = () => {
+    app.drawScene();
+    const bytes = new Uint8Array(4 * app.canvas.width * app.canvas.height);
+    gl.readPixels(0, 0, app.canvas.width, app.canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return bytes;
+  };
+  const seek = (moment) => app.player.seek(app.history.start + moment);
+  const windows = [], window = layer.window.bind(layer);
+  layer.window = (...told) => (windows.push(window(...told)), windows.at(-1));
+  for (const moment of [first, first, 0.5 * (first + last), last]) seek(moment), shown();
+  const quick = shown();
+  layer.window = () => null;
+  const whole = shown();
+  seek(first);
+  const before = shown();
+  delete layer.window;
+  const differ = (a, b) => a.reduce((sum, value, i) => sum + (Math.abs(value - b[i]) > 3), 0);
+  const area = app.canvas.width * app.canvas.height;
+  return { windows, differing: differ(quick, whole), moved: differ(before, whole), area };
+}"""
+
+
+def test_only_what_moves_is_drawn_anew(tmp_path: Path, browser):
+    data = Path(pybullet_data.getDataPath())
+    world = World()
+    world.gravity = (0, 0, -9.81)
+    world.load_urdf(data / "plane.urdf")
+    world.load_urdf(data / "table/table.urdf", (0.6, 0, 0), fixed_base=True)
+    ball = world.load_urdf(data / "sphere_small.urdf", (0, 0.3, 1.1))
+    ball.set_base_velocity((0.8, 0, 0), (0, 0, 0))
+    with world.record(tmp_path / "ball.html"):
+        world.step(240)
+    page = Page(browser, (tmp_path / "ball.html").as_uri(), WIDTH, HEIGHT)
+    page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
+    for lines in ("false", "true"):
+        page.page.evaluate(f"app.options.frames = {lines}")
+        result = page.page.evaluate(LAYERS, [0.1, 0.4])
+        # The first picture of a camera is drawn as a whole, the next ones where the ball and its shadow are.
+        assert all(width * height < 0.5 * result["area"] for *_, width, height in result["windows"][1:])
+        assert result["moved"] > 100
+        assert result["differing"] <= 4
+    assert page.complaints == []
+
+
+def test_the_user_chooses_sharp_or_fluent(replay: Page):
+    replay.page.evaluate("app.renderer.pace.note = () => {}, app.renderer.pace.step = 0")
+    move = "app.player.seek(app.history.start + Math.random())"
+    replay.page.evaluate(f"window.moving = setInterval(() => {move}, 10)")
+    replay.page.get_by_text("25 % of the pixels").wait_for()
+    replay.page.locator("#sharpness").select_option("sharp")
+    replay.until(f"app.canvas.width === {WIDTH}")
+    replay.page.get_by_text("of the pixels").wait_for(state="detached")
+    replay.page.locator("#sharpness").select_option("fluent")
+    replay.until(f"app.canvas.width === {WIDTH // 4}")
+    replay.page.evaluate("clearInterval(window.moving)")

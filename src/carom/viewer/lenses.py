@@ -1,0 +1,95 @@
+"""The views of a script's cameras, which pages can take."""
+
+from __future__ import annotations
+
+from threading import Lock
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.viewer.board import Board
+
+if TYPE_CHECKING:
+    from carom.camera import Camera
+
+# Most cameras that pages list: a lens that changes all the time would make a new one with each image.
+_MOST = 16
+# Minimum interval between two views of one camera [s].
+_PERIOD = 1 / 60
+
+_Lens = tuple[int, int, bytes]
+
+
+class Lenses:
+    """Puts the views and projections of cameras on the board, for pages to look through them.
+
+    Safe to use from all threads.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self._lock = Lock()
+        self._numbers: dict[str | _Lens, int] = {}
+        self._told: dict[int, tuple[object, ...]] = {}
+        self._due: dict[int, float] = {}
+        self._followed: dict[str, Camera] = {}
+
+    def follow(self, name: str, camera: Camera) -> None:
+        """Lists a camera under a name; its view is kept up to date by `update`."""
+        self._followed[name] = camera
+
+    def update(self) -> None:
+        """Tells pages how the followed cameras see the world now."""
+        for name, camera in list(self._followed.items()):
+            body = None if camera.link is None else camera.link.body
+            if body is not None and body.world.bodies.get(body.id) is not body:
+                continue
+            self._tell(name, name, camera.view, camera.projection, camera.width, camera.height)
+
+    def saw(
+        self, view: NDArray[np.float64], projection: NDArray[np.float64], width: int, height: int
+    ) -> None:
+        """Notes an image. Images of one size with one projection count as those of one camera.
+
+        Args:
+            view: (4, 4) from the world to the eye, as in OpenGL.
+            projection: (4, 4) from the eye to clip coordinates.
+            width: Columns of the image.
+            height: Rows of the image.
+        """
+        lens = (width, height, projection.tobytes())
+        if lens not in self._numbers and len(self._numbers) >= _MOST:
+            return
+        self._tell(lens, None, view, projection, width, height)
+
+    def _tell(
+        self,
+        key: str | _Lens,
+        name: str | None,
+        view: NDArray[np.float64],
+        projection: NDArray[np.float64],
+        width: int,
+        height: int,
+    ) -> None:
+        with self._lock:
+            number = self._numbers.setdefault(key, len(self._numbers) + 1)
+        facts = (view.tobytes(), projection.tobytes(), width, height)
+        now = monotonic()
+        if self._told.get(number) == facts or now < self._due.get(number, 0.0):
+            return
+        if not (np.isfinite(view).all() and np.isfinite(projection).all()):
+            return
+        self._told[number], self._due[number] = facts, now + _PERIOD
+        header = {
+            "type": "lens",
+            "lens": number,
+            "name": name or f"camera {number}",
+            "width": width,
+            "height": height,
+            # By columns, as in WebGL.
+            "view": view.T.ravel().tolist(),
+            "projection": projection.T.ravel().tolist(),
+        }
+        self._board.put(("lens", number), header)

@@ -1,0 +1,36 @@
+// Sharp or fluent: the choice that a browser without a graphics card leaves, and why the picture is coarse.
+
+export class Quality {
+  /**
+   * @param {Renderer} renderer
+   * @param {Memory} memory keeps the choice for the next run of the script
+   * @param {() => void} changed called when the view has to be drawn again
+   */
+  constructor({ byProcessor, pace }, memory, changed) {
+    Object.assign(this, { pace, memory });
+    this.select = document.getElementById("sharpness");
+    this.reason = document.getElementById("coarse");
+    document.getElementById("quality").hidden = !byProcessor;
+    this.select.addEventListener("change", () => {
+      pace.sharp = this.select.value === "sharp";
+      memory.put("sharp", pace.sharp);
+      this.show();
+      changed();
+    });
+  }
+
+  /** Takes the choice that the browser has kept. */
+  recall() {
+    this.pace.sharp = this.memory.get("sharp") === true;
+    this.select.value = this.pace.sharp ? "sharp" : "fluent";
+    this.show();
+  }
+
+  /** Says how coarse the picture is while something moves. */
+  show() {
+    const { byProcessor, sharpness } = this.pace;
+    const coarse = byProcessor && sharpness < 1;
+    const text = coarse ? `No graphics card: ${Math.round(sharpness * 100)} % of the pixels along each edge while something moves.` : "";
+    if (this.reason.textContent !== text) this.reason.textContent = text;
+  }
+}

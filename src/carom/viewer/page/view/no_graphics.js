@@ -1,0 +1,24 @@
+// What stands for the renderer in a browser without WebGL: the page shows everything but the picture.
+
+import { Pace } from "./pace.js";
+
+/** Stands for the context of WebGL: all its functions do nothing. */
+const NO_CONTEXT = new Proxy({}, { get: () => () => null });
+
+export class NoGraphics {
+  constructor() {
+    this.gl = NO_CONTEXT;
+    this.byProcessor = false;
+    this.lost = false;
+    this.pace = new Pace(false);
+    // Pictures and films would be empty.
+    for (const id of ["picture", "film", "render", "size"]) document.getElementById(id).disabled = true;
+    document.getElementById("no-picture").hidden = false;
+  }
+
+  resize() {
+    return false;
+  }
+
+  draw() {}
+}
