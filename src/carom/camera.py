@@ -219,7 +219,7 @@ class Camera:
 
     @property
     def view(self) -> Array:
-        """(4, 4) matrix from the world to eye coordinates as in OpenGL: it looks along -z, and y points up."""
+        """(4, 4) matrix from the world to the eye as in OpenGL: it looks along -z, and y points up."""
         return self.views(np.concatenate(self.pose)[None])[0]
 
     @property

@@ -104,7 +104,7 @@ def add_facet(view: View, facet: Int32, triangle: Int32, corners: wp.vec3i, two_
 
 @func
 def first_facet_of(scene: Scene, chunk: Int32) -> Int32:
-    """Where the facets of a chunk begin, if those of all chunks are kept: at the index of its first triangle."""
+    """Where the facets of a chunk begin, if those of all are kept: at the index of its first triangle."""
     return scene.part_first_triangle[scene.chunk_first_part[chunk]]
 
 
@@ -146,7 +146,7 @@ def is_inside(slope: real, column: real, start: real) -> bool:
 
 @func
 def fill_small_facet(view: View, facet: Int32, left: Int32, right: Int32, top: Int32, bottom: Int32):
-    """As `fill_facet`, pixel by pixel: for few columns this takes less time than to find out which are inside."""
+    """As `fill_facet`, pixel by pixel: for few columns that is quicker than to find out which are inside."""
     first = view.facet_first[facet]
     second = view.facet_second[facet]
     third = view.facet_third[facet]

@@ -209,7 +209,8 @@ export class App {
 
   /** Makes everything on the GPU anew, in a graphics context that was lost and has come back. */
   refillGraphics() {
-    this.renderer = new Renderer(this.canvas);
+    this.renderer = rendererFor(this.canvas);
+    this.quality.take(this.renderer.pace);
     this.scene.forgetGraphics();
     this.drawings.forgetGraphics();
     for (const [name, { header, payload }] of this.player.staged) {

@@ -12,11 +12,17 @@ export class Quality {
     this.reason = document.getElementById("coarse");
     document.getElementById("quality").hidden = !byProcessor;
     this.select.addEventListener("change", () => {
-      pace.sharp = this.select.value === "sharp";
-      memory.put("sharp", pace.sharp);
+      this.pace.sharp = this.select.value === "sharp";
+      memory.put("sharp", this.pace.sharp);
       this.show();
       changed();
     });
+  }
+
+  /** Goes on with the pace of another renderer. */
+  take(pace) {
+    this.pace = pace;
+    this.recall();
   }
 
   /** Takes the choice that the browser has kept. */
