@@ -21,11 +21,13 @@ from carom.viewer.history.history import DEFAULT_BYTES
 from carom.viewer.history.recorder import HistoryRecorder, told
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import MODES, JointHands
+from carom.viewer.input.gamepads import Gamepad, Gamepads
 from carom.viewer.input.handles import Handles
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
+from carom.viewer.input.turning import Turning
 from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.last_words import LastWords
 from carom.viewer.notebook import frame, in_notebook, show
@@ -120,6 +122,7 @@ class Viewer:
         self.camera: SharedCamera = SharedCamera(self._board, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
+        self._gamepads = Gamepads()
         self.pause_control: PauseControl = PauseControl()
         self._pictures = Pictures()
         self.lock: Any = RLock() if lock is None else lock
@@ -133,6 +136,7 @@ class Viewer:
         self._past = HistoryRecorder(self._board, max(history, 0))
         self.previews: Previews = Previews(self._board)
         self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
+        self._turning = Turning(world, self.lock, lambda: self.pause_control.closed)
         self._details = Details(world, self.lock, self._board, always=self._past.is_on)
         self._sleeping = Sleeping(world)
         self._values: dict[str, float] = {}
@@ -156,7 +160,9 @@ class Viewer:
             "profile": lambda page, told: self.on_profile(bool(told["running"])),
             "grasp": self._take_grasp,
             "pull": lambda page, told: self._picking.move(page, _vector(told["target"])),
-            "let go": lambda page, told: self._picking.release(page),
+            "turn": self._turning.turn,
+            "let go": self._let_go,
+            "gamepads": self._take_gamepads,
             "pause": lambda page, told: self.pause(bool(told["paused"])),
             "step": lambda page, told: self.pause_control.let_through(),
             "speed": self._take_speed,
@@ -352,6 +358,13 @@ class Viewer:
         self._handles.add(handle)
         return handle
 
+    def gamepads(self) -> list[Gamepad]:
+        """The gamepads at the machines that show the page, as they are now.
+
+        A browser tells of a gamepad once one of its buttons was pressed, and only while the page is in view.
+        """
+        return self._gamepads.all()
+
     def _add_control(self, control: Slider) -> None:
         self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
 
@@ -405,6 +418,7 @@ class Viewer:
 
     def _frame(self) -> bytes | None:
         self._picking.apply()
+        self._turning.apply()
         self._chores.do()
         if not self.held and not self._moments.start_is_known:
             self._update_hold()
@@ -432,8 +446,10 @@ class Viewer:
         self.keyboard.release_all(page)
         self._pictures.forget(page)
         self._want(page, NOTHING)
-        self._picking.release(page)
+        self._gamepads.forget(page)
+        self._let_go(page, {})
         self._picking.apply(_PATIENCE)
+        self._turning.apply(_PATIENCE)
         if not self.page_count and self.pause_control.closed:
             go_on = Timer(_RECONNECTION, self._go_on_unwatched)
             go_on.daemon = True
@@ -443,6 +459,14 @@ class Viewer:
         """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
         if self.is_open and not self.page_count and self.pause_control.closed:
             self.pause(False)
+
+    def _let_go(self, page: int, told: dict[str, Any]) -> None:
+        self._picking.release(page)
+        self._turning.release(page)
+
+    def _take_gamepads(self, page: int, told: dict[str, Any]) -> None:
+        self._gamepads.take(page, told)
+        self.pause_control.call_back()
 
     def _take_key(self, page: int, told: dict[str, Any]) -> None:
         key, code, down = str(told["key"]), str(told["code"]), bool(told["down"])

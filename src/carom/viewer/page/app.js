@@ -3,8 +3,9 @@
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
-import { Grasp, pick } from "./view/picking.js";
-import { Handles, Hands } from "./view/handles.js";
+import { Gamepads } from "./input/gamepads.js";
+import { Grasp, pick } from "./input/picking.js";
+import { Handles, Hands } from "./input/handles.js";
 import { Help } from "./panel/help.js";
 import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
@@ -17,7 +18,7 @@ import { Panel } from "./panel/panel.js";
 import { Past } from "./time/past.js";
 import { Player } from "./time/player.js";
 import { Plots } from "./panel/plots.js";
-import { Pointer } from "./view/pointer.js";
+import { Pointer } from "./input/pointer.js";
 import { Previews } from "./panel/previews.js";
 import { Readings } from "./view/readings.js";
 import { Renderer } from "./view/renderer.js";
@@ -54,6 +55,7 @@ export class App {
     this.drawings = new Drawings(this.renderer.gl, labels);
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
+    this.gamepads = new Gamepads(send);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
     this.panel = new Panel(send, this.options, notices);
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
@@ -175,6 +177,7 @@ export class App {
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.begin();
+    this.gamepads.begin();
     this.tellVisibility();
     this.tellSize();
     this.tellWants();
@@ -306,6 +309,7 @@ export class App {
   }
 
   tellVisibility() {
+    this.gamepads.tell();
     this.send({ type: "visible", visible: !document.hidden });
   }
 
@@ -331,6 +335,7 @@ export class App {
     this.last = now;
     this.drawn = false;
     this.player.tick(passed / 1000);
+    this.gamepads.tell();
     if (this.stale) this.moved = now;
     this.renderer.pace.wait(now - this.moved);
     if (this.renderer.resize()) this.changed();
@@ -364,7 +369,7 @@ export class App {
     const { scene, camera, options, drawings, pointer } = this;
     this.viewpoint.follow();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
-    const lines = this.overlays.draw(drawings, this.grasp.line(), named);
+    const lines = this.overlays.draw(drawings, this.grasp.line(), named ?? this.grasp.turned);
     this.renderer.draw(scene, camera, options, { lines, solids: this.overlays.solids, clouds: drawings.clouds, signs: drawings.signs });
     drawings.placeLabels(scene, camera);
     drawings.showName(scene, named, pointer.hovered);
