@@ -152,6 +152,7 @@ class Viewer:
             "visible": lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             "past": self._tell_past,
+            "preview width": lambda page, told: self.previews.ask(page, int(told["width"])),
             "want": lambda page, told: self._want(page, Wish.told(told)),
             "drive": self._take_drive,
             "give back": self._give_back,
@@ -447,6 +448,7 @@ class Viewer:
         self._pictures.forget(page)
         self._want(page, NOTHING)
         self._gamepads.forget(page)
+        self.previews.forget(page)
         self._let_go(page, {})
         self._picking.apply(_PATIENCE)
         self._turning.apply(_PATIENCE)

@@ -60,9 +60,9 @@ def test_two_fingers_move_the_view_and_one_that_stays_does_nothing(page: ViewerP
     wait_for(lambda: camera(page)["target"][0] == pytest.approx(-40 * 4 / height, abs=1e-6), page)
     assert camera(page)["distance"] == pytest.approx(2)
     # The driver cannot lift one finger of two.
-    second = "[...app.pointer.pinch.fingers.keys()][1]"
     page.page.evaluate(
-        f"app.canvas.dispatchEvent(new PointerEvent('pointerup', {{ pointerId: {second}, pointerType: 'touch' }}))"
+        "() => { const pointerId = [...app.pointer.pinch.fingers.keys()][1];"
+        " app.canvas.dispatchEvent(new PointerEvent('pointerup', { pointerId, pointerType: 'touch' })); }"
     )
     before = camera(page)
     for step in (10, 20, 30):

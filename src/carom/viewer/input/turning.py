@@ -41,7 +41,7 @@ class Turning:
 
     Requests are made by one thread, which also calls `apply`; only that changes the world, under its lock.
     While the simulation is `paused`, bodies with a free base are turned at once about the centre of mass of
-    the link; their velocity stays. Other bodies, and all while the simulation goes on, are turned by a torque.
+    the link; their velocity stays. Otherwise, and with a fixed base, a torque turns the link in each step.
     """
 
     def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:

@@ -4,6 +4,7 @@ import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
 import { Gamepads } from "./input/gamepads.js";
+import { Gizmo } from "./panel/gizmo.js";
 import { Grasp, pick } from "./input/picking.js";
 import { Handles, Hands } from "./input/handles.js";
 import { Help } from "./panel/help.js";
@@ -70,8 +71,9 @@ export class App {
     this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
+    this.gizmo = new Gizmo(this.viewpoint);
     this.legend = new Legend();
-    this.previews = new Previews();
+    this.previews = new Previews(this.memory, send);
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
     this.help = new Help();
     this.keys = new Keys(this);
@@ -264,6 +266,7 @@ export class App {
       if (element) element.open = open;
     }
     this.recallSwitches();
+    this.previews.recall();
     this.plots.dock.recall();
     this.optionsChanged();
   }
@@ -370,14 +373,16 @@ export class App {
     this.viewpoint.follow();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
     const lines = this.overlays.draw(drawings, this.grasp.line(), named ?? this.grasp.turned);
-    this.renderer.draw(scene, camera, options, { lines, solids: this.overlays.solids, clouds: drawings.clouds, signs: drawings.signs });
-    drawings.placeLabels(scene, camera);
+    const { solids, selected } = this.overlays;
+    this.renderer.draw(scene, camera, options, { lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
+    drawings.addLabels(this.labels, scene, camera);
+    this.handles.addLabels(this.labels);
     if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
     if (options.linkNames) labelLinks(this.labels, camera, scene);
-    this.handles.addLabels(this.labels);
-    this.labels.end();
+    this.labels.end(camera);
+    this.gizmo.show(camera, options.panel);
     this.legend.show(this.shownScales(), camera.height / (2 * camera.distance));
     this.viewpoint.show();
     this.plots.draw();

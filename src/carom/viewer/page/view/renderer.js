@@ -3,6 +3,7 @@
 import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./maths.js";
 import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
+import { Outline } from "./outline.js";
 import { Pace } from "./pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
@@ -49,6 +50,7 @@ export class Renderer {
     this.solidBatch = new SolidBatch(gl);
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
+    this.outline = new Outline(gl, this.wire);
     this.byProcessor = slow;
     this.pace = new Pace(slow);
   }
@@ -68,7 +70,8 @@ export class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[]}} drawings
+   * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[], selected: object}} drawings
+   *   what is drawn over the scene; `selected` is the body that has an outline, undefined for none
    */
   draw(scene, camera, options, drawings) {
     const gl = this.gl;
@@ -112,6 +115,7 @@ export class Renderer {
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
     this.solidBatch.draw(drawings.solids, camera);
+    this.outline.draw(scene, camera, options, drawings.selected, this.canvas.width / camera.width);
     gl.disable(gl.DEPTH_TEST);
   }
 
