@@ -5,7 +5,7 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import hypot, inf, isfinite
+from math import inf, isfinite
 from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
@@ -342,22 +342,12 @@ class Viewer:
             orientation: Initial orientation: a quaternion (x, y, z, w).
 
         Returns:
-            The handle; its `position` and `orientation` are set by the user.
+            The handle; its `position` and `orientation` are set by the user, or by its `move_to`.
 
         Raises:
             ValueError: The numbers are not a position and a quaternion.
         """
-        x, y, z = map(float, position)
-        a, b, c, d = map(float, orientation)
-        if not all(map(isfinite, (x, y, z, a, b, c, d))) or not any((a, b, c, d)):
-            raise ValueError(
-                f"handle {name!r} needs a finite position and a quaternion that is not 0, "
-                f"not {(x, y, z)} and {(a, b, c, d)}"
-            )
-        size = hypot(a, b, c, d)
-        handle = Handle(name, ((x, y, z), (a / size, b / size, c / size, d / size)))
-        self._handles.add(handle)
-        return handle
+        return self._handles.add(name, tuple(position), tuple(orientation))
 
     def gamepads(self) -> list[Gamepad]:
         """The gamepads at the machines that show the page, as they are now.
