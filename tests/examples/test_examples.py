@@ -190,7 +190,7 @@ def test_the_hand_comes_to_the_handle(example, monkeypatch):
         teleoperation.teleoperate(world, arm, viewer, 0.5)
         still = hand.pose.position
         # As if the user had moved it at once.
-        goal = viewer.handle("moved", hand.pose.position + [-0.1, 0.1, -0.1], hand.pose.orientation)
+        goal = viewer.handle("moved", still + np.array([-0.1, 0.1, -0.1]), hand.pose.orientation)
         monkeypatch.setattr(viewer, "handle", lambda name, position, orientation: goal)
         teleoperation.teleoperate(world, arm, viewer, 2.5)
     finally:

@@ -69,7 +69,7 @@ class Handle:
         return self.pose[1]
 
     def move_to(self, position: Sequence[float], orientation: Sequence[float] | None = None) -> None:
-        """Move it, on all pages; while the user drags it on a page, that page goes on from where the user has it.
+        """Move it, on all pages; a page on which the user drags it goes on from where the user has it.
 
         Args:
             position: [m], in the world.

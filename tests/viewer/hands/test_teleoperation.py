@@ -3,6 +3,7 @@
 import sys
 import threading
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +25,7 @@ def teleoperated(monkeypatch: pytest.MonkeyPatch, browser: Any) -> Iterator[tupl
     """The page, the arm and the viewer, with the example running beside."""
     monkeypatch.syspath_prepend(str(EXAMPLES))
     monkeypatch.delitem(sys.modules, "teleoperate_panda", raising=False)
-    import teleoperate_panda as example
-
+    example = import_module("teleoperate_panda")
     world, arm = example.load()
     viewer = Viewer(world, port=0)
     viewer.set_speed(1.0)
