@@ -38,7 +38,7 @@ def test_previews_are_folded_enlarged_moved_and_remembered(page: Page, viewer: V
     assert width(page, "depth") == 0
     page.page.get_by_title("Enlarge the preview of colour").click()
     large = width(page, "colour")
-    assert large > 1.5 * small
+    assert large > 1.4 * small
 
     def finer() -> bool:
         photograph()

@@ -87,7 +87,7 @@ export class Bodies {
     const body = this.scene.bodies.get(this.selected);
     this.card.hidden = !body;
     if (!body) return;
-    const title = Object.assign(document.createElement("h2"), { textContent: titlesOf(this.scene).get(body.body) });
+    const title = Object.assign(document.createElement("h2"), { textContent: `${body.name} (body ${body.body})` });
     this.facts = document.createElement("dl");
     const copy = Object.assign(document.createElement("button"), { textContent: "Copy state", className: "copy" });
     copy.title = "Copy pose and joint positions as calls of resetBasePositionAndOrientation and resetJointState";
