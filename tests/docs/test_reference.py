@@ -55,7 +55,7 @@ INTERNAL: dict[str, set[str]] = {
     "Keyframe": {"of"},
     "Log": {"after_step", "before_step"},
     "Queries": {"ray_tuple", "ray_tuples", "soft_contacts"},
-    "Viewer": {"draw_now", "handle", "has_turn", "wait_for_turn"},
+    "Viewer": {"draw_now", "has_turn", "wait_for_turn"},
 }
 # Classes that users pass on and do not look into.
 OPAQUE = {"SavedWorlds", "LinkDynamics"}

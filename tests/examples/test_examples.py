@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from tests.cluster.small_ray import ray_here
 
+from carom.viewer import Viewer
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -177,6 +179,24 @@ def test_frames_agree(example):
 def test_the_hand_follows_the_circle(example):
     error = example("inverse_kinematics").main(duration=4, window=False)["error"]
     assert max(error[240:]) < 0.01
+
+
+def test_the_hand_comes_to_the_handle(example, monkeypatch):
+    teleoperation = example("teleoperate_panda")
+    world, arm = teleoperation.load()
+    viewer = Viewer(world, port=0)
+    hand = arm.links["panda_grasptarget"]
+    try:
+        teleoperation.teleoperate(world, arm, viewer, 0.5)
+        still = hand.pose.position
+        # As if the user had moved it at once.
+        goal = viewer.handle("moved", still + np.array([-0.1, 0.1, -0.1]), hand.pose.orientation)
+        monkeypatch.setattr(viewer, "handle", lambda name, position, orientation: goal)
+        teleoperation.teleoperate(world, arm, viewer, 2.5)
+    finally:
+        viewer.close()
+    assert np.allclose(hand.pose.position, goal.position, atol=0.002)
+    assert np.linalg.norm(hand.pose.position - still) > 0.15
 
 
 def test_rays_hit_the_box_and_it_presses_with_its_weight(example):

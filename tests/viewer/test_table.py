@@ -59,10 +59,14 @@ TRIED = {
     "sliders for all joints without code": [
         "panel.a_click_selects_a_body_and_its_joints_are_driven_without_code"
     ],
-    "pull bodies with the mouse": ["page.a_body_is_dragged_with_the_mouse"],
+    "pull bodies with the mouse": [
+        "page.a_body_is_dragged_with_the_mouse",
+        "turning.a_body_is_turned_by_a_torque_and_comes_to_rest",
+    ],
     "sliders and buttons of a script": ["page.a_slider_moves_what_the_script_reads"],
     "lists and boxes to check of a script": ["views.a_script_has_lists_and_boxes"],
     "frames of a script that the mouse moves": ["views.a_handle_is_shifted_carried_and_turned"],
+    "gamepads": ["gamepads.a_script_reads_sticks_and_buttons_of_a_gamepad"],
     "keys and mouse events for a script": [
         "page.keys_are_down_triggered_and_released",
         "page.the_mouse_is_told_to_the_script",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import hypot, isfinite
 
 from carom.description.pose import Quaternion, Vector3
 
@@ -54,6 +56,7 @@ class Handle:
 
     name: str
     pose: tuple[Vector3, Quaternion]
+    _moved: Callable[[], None] = field(default=lambda: None, repr=False, compare=False)
 
     @property
     def position(self) -> Vector3:
@@ -64,6 +67,28 @@ class Handle:
     def orientation(self) -> Quaternion:
         """Its orientation, in the world: a unit quaternion (x, y, z, w)."""
         return self.pose[1]
+
+    def move_to(self, position: Sequence[float], orientation: Sequence[float] | None = None) -> None:
+        """Move it, on all pages; a page on which the user drags it goes on from where the user has it.
+
+        Args:
+            position: [m], in the world.
+            orientation: Quaternion (x, y, z, w) of any length but 0; None for the present one.
+
+        Raises:
+            ValueError: The numbers are not a position and a quaternion.
+        """
+        x, y, z = map(float, position)
+        a, b, c, d = map(float, self.orientation if orientation is None else orientation)
+        size = hypot(a, b, c, d)
+        if not all(map(isfinite, (x, y, z, size))) or size < 1e-9:
+            raise ValueError(
+                f"handle {self.name!r} needs a finite position and a quaternion that is not 0, "
+                f"not {(x, y, z)} and {(a, b, c, d)}"
+            )
+        # Position and orientation are replaced together, because other threads may read them.
+        self.pose = ((x, y, z), (a / size, b / size, c / size, d / size))
+        self._moved()
 
 
 @dataclass(slots=True)

@@ -13,7 +13,7 @@ from carom.viewer.page_files import page_files
 
 HEIGHT = 520
 # Permissions of the page in the frame: full screen, and copying the camera's numbers.
-_ALLOWED = "fullscreen; clipboard-write"
+_ALLOWED = "fullscreen; clipboard-write; gamepad"
 _UNREACHABLE = """<p style="font: 14px system-ui, sans-serif">The simulation cannot be reached from here. It
 has ended, or the notebook server has no proxy: <code>pip install jupyter-server-proxy</code> and restart it.
 A recording needs no connection: <code>with world.record("run.html") as replay: ...</code> and

@@ -13,7 +13,9 @@ from carom.viewer.board import Board
 if TYPE_CHECKING:
     from carom.render.image_target import RawImage
 
+# Width of previews, unless a page that shows larger ones asks for more; and the largest width [pixels].
 _WIDTH = 200
+_MOST_WIDTH = 640
 # Minimum interval between previews [s]; scripts may take hundreds of images a second.
 _PERIOD = 0.1
 # Each label rotates the hue by the golden ratio [turns], so that neighbouring labels get different colours.
@@ -31,6 +33,15 @@ class Previews:
         self._board = board
         self._due = 0.0
         self._corners: list[list[float]] | None = None
+        self._widths: dict[int, int] = {}
+
+    def ask(self, page: int, width: int) -> None:
+        """Sets the width that a page needs at least, as far as images have it [pixels]."""
+        self._widths[page] = min(max(width, 1), _MOST_WIDTH)
+
+    def forget(self, page: int) -> None:
+        """Drops what a page needed that has been closed."""
+        self._widths.pop(page, None)
 
     def show(self, image: RawImage, camera: NDArray[np.float64]) -> None:
         """Shows an image, unless one was just shown; `camera` is (4, 4), from world to clip coordinates."""
@@ -38,7 +49,7 @@ class Previews:
         if now < self._due:
             return
         self._due = now + _PERIOD
-        every = -(-image.rgba.shape[1] // _WIDTH)
+        every = -(-image.rgba.shape[1] // max([_WIDTH, *self._widths.copy().values()]))
         small = np.s_[::every, ::every]
         pictures = [image.rgba[small][..., :3], _shades(image.depth[small]), _colours(image.label[small])]
         height, width = pictures[0].shape[:2]

@@ -158,11 +158,13 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
+    source = body.spec.source
     return {
         "type": "body",
         "body": body.id,
         "name": body.name,
-        "file": None if body.spec.source is None else body.spec.source.name,
+        "file": None if source is None else source.name,
+        "path": None if source is None else "/".join(source.parts[-2:]),
         "links": [
             {**_link(body, link), "moves": moves} for link, moves in enumerate(moving_links(body), start=BASE)
         ],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import hypot, inf, isfinite
+from math import inf, isfinite
 from threading import RLock, Timer
 from typing import TYPE_CHECKING, Any
 
@@ -22,11 +22,13 @@ from carom.viewer.history.history import DEFAULT_BYTES
 from carom.viewer.history.recorder import HistoryRecorder, told
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import MODES, JointHands
+from carom.viewer.input.gamepads import Gamepad, Gamepads
 from carom.viewer.input.handles import Handles
 from carom.viewer.input.keys import Keyboard, key_code
 from carom.viewer.input.leaving import ESCAPE, Leaving
 from carom.viewer.input.mouse import Mouse
 from carom.viewer.input.picking import Picking
+from carom.viewer.input.turning import Turning
 from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.last_words import LastWords
 from carom.viewer.lenses import Lenses
@@ -127,6 +129,7 @@ class Viewer:
         self.camera: SharedCamera = SharedCamera(self._board, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
+        self._gamepads = Gamepads()
         self.pause_control: PauseControl = PauseControl()
         self._pictures = Pictures()
         self.lock: Any = RLock() if lock is None else lock
@@ -141,6 +144,7 @@ class Viewer:
         self.previews: Previews = Previews(self._board)
         self._lenses = Lenses(self._board)
         self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
+        self._turning = Turning(world, self.lock, lambda: self.pause_control.closed)
         self._details = Details(world, self.lock, self._board, always=self._past.is_on)
         self._sleeping = Sleeping(world)
         self._values: dict[str, float] = {}
@@ -156,6 +160,7 @@ class Viewer:
             "visible": lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
             "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             "past": self._tell_past,
+            "preview width": lambda page, told: self.previews.ask(page, int(told["width"])),
             "want": lambda page, told: self._want(page, Wish.told(told)),
             "drive": self._take_drive,
             "give back": self._give_back,
@@ -164,7 +169,9 @@ class Viewer:
             "profile": lambda page, told: self.on_profile(bool(told["running"])),
             "grasp": self._take_grasp,
             "pull": lambda page, told: self._picking.move(page, _vector(told["target"])),
-            "let go": lambda page, told: self._picking.release(page),
+            "turn": self._turning.turn,
+            "let go": self._let_go,
+            "gamepads": self._take_gamepads,
             "pause": lambda page, told: self.pause(bool(told["paused"])),
             "step": lambda page, told: self.pause_control.let_through(),
             "speed": self._take_speed,
@@ -343,22 +350,19 @@ class Viewer:
             orientation: Initial orientation: a quaternion (x, y, z, w).
 
         Returns:
-            The handle; its `position` and `orientation` are set by the user.
+            The handle; its `position` and `orientation` are set by the user, or by its `move_to`.
 
         Raises:
             ValueError: The numbers are not a position and a quaternion.
         """
-        x, y, z = map(float, position)
-        a, b, c, d = map(float, orientation)
-        if not all(map(isfinite, (x, y, z, a, b, c, d))) or not any((a, b, c, d)):
-            raise ValueError(
-                f"handle {name!r} needs a finite position and a quaternion that is not 0, "
-                f"not {(x, y, z)} and {(a, b, c, d)}"
-            )
-        size = hypot(a, b, c, d)
-        handle = Handle(name, ((x, y, z), (a / size, b / size, c / size, d / size)))
-        self._handles.add(handle)
-        return handle
+        return self._handles.add(name, tuple(position), tuple(orientation))
+
+    def gamepads(self) -> list[Gamepad]:
+        """The gamepads at the machines that show the page, as they are now.
+
+        A browser tells of a gamepad once one of its buttons was pressed, and only while the page is in view.
+        """
+        return self._gamepads.all()
 
     def show_camera(self, name: str, camera: Camera) -> None:
         """Lists a camera on the pages, under a name; with a click on it they look through it.
@@ -435,6 +439,7 @@ class Viewer:
 
     def _frame(self) -> bytes | None:
         self._picking.apply()
+        self._turning.apply()
         self._chores.do()
         if not self.held and not self._moments.start_is_known:
             self._update_hold()
@@ -463,8 +468,11 @@ class Viewer:
         self.keyboard.release_all(page)
         self._pictures.forget(page)
         self._want(page, NOTHING)
-        self._picking.release(page)
+        self._gamepads.forget(page)
+        self.previews.forget(page)
+        self._let_go(page, {})
         self._picking.apply(_PATIENCE)
+        self._turning.apply(_PATIENCE)
         if not self.page_count and self.pause_control.closed:
             go_on = Timer(_RECONNECTION, self._go_on_unwatched)
             go_on.daemon = True
@@ -474,6 +482,14 @@ class Viewer:
         """Ends a pause that no page can end; a page being reloaded would be connected again by now."""
         if self.is_open and not self.page_count and self.pause_control.closed:
             self.pause(False)
+
+    def _let_go(self, page: int, told: dict[str, Any]) -> None:
+        self._picking.release(page)
+        self._turning.release(page)
+
+    def _take_gamepads(self, page: int, told: dict[str, Any]) -> None:
+        self._gamepads.take(page, told)
+        self.pause_control.call_back()
 
     def _take_key(self, page: int, told: dict[str, Any]) -> None:
         key, code, down = str(told["key"]), str(told["code"]), bool(told["down"])

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from math import hypot, isfinite
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 
-from carom.description.pose import Quaternion, Vector3
 from carom.viewer.board import Board
 from carom.viewer.items import Handle
 
@@ -16,24 +17,26 @@ class Handles:
         self._board = board
         self._handles: dict[int, Handle] = {}
 
-    def add(self, handle: Handle) -> None:
-        """Shows a handle."""
+    def add(self, name: str, position: Sequence[float], orientation: Sequence[float]) -> Handle:
+        """Adds a handle and shows it; see `Handle.move_to` for its pose and errors."""
         number = len(self._handles)
+        handle = Handle(name, ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)), partial(self._show, number))
         self._handles[number] = handle
-        self._show(number, handle)
+        try:
+            handle.move_to(position, orientation)
+        except ValueError:
+            del self._handles[number]
+            raise
+        return handle
 
-    def move(self, number: int, position: Vector3, orientation: Quaternion) -> None:
+    def move(self, number: int, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Sets the pose of a handle, moved by the user; unknown handles and invalid poses are ignored."""
-        handle = self._handles.get(number)
-        length = hypot(*orientation)
-        if handle is None or not all(map(isfinite, (*position, *orientation))) or length < 1e-6:
-            return
-        x, y, z, w = (part / length for part in orientation)
-        # Position and orientation are replaced together, because other threads may read them.
-        handle.pose = (position, (x, y, z, w))
-        self._show(number, handle)
+        if number in self._handles:
+            with suppress(ValueError):
+                self._handles[number].move_to(position, orientation)
 
-    def _show(self, number: int, handle: Handle) -> None:
+    def _show(self, number: int) -> None:
+        handle = self._handles[number]
         position, orientation = handle.pose
         header = {"type": "handle", "handle": number, "name": handle.name}
         self._board.put(("handle", number), {**header, "position": position, "orientation": orientation})

@@ -3,8 +3,10 @@
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
-import { Grasp, pick } from "./view/picking.js";
-import { Handles, Hands } from "./view/handles.js";
+import { Gamepads } from "./input/gamepads.js";
+import { Gizmo } from "./panel/gizmo.js";
+import { Grasp, pick } from "./input/picking.js";
+import { Handles, Hands } from "./input/handles.js";
 import { Help } from "./panel/help.js";
 import { History, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
@@ -18,7 +20,7 @@ import { Panel } from "./panel/panel.js";
 import { Past } from "./time/past.js";
 import { Player } from "./time/player.js";
 import { Plots } from "./panel/plots.js";
-import { Pointer } from "./view/pointer.js";
+import { Pointer } from "./input/pointer.js";
 import { Previews } from "./panel/previews.js";
 import { Quality } from "./panel/quality.js";
 import { Readings } from "./view/readings.js";
@@ -57,6 +59,7 @@ export class App {
     this.drawings = new Drawings(this.renderer.gl, labels);
     this.labels = new Labels(labels);
     this.handles = new Handles(this.camera, send);
+    this.gamepads = new Gamepads(send);
     this.overlays = new Overlays(this.scene, this.options, this.readings, this.handles, this.camera);
     this.panel = new Panel(send, this.options, notices);
     this.toggles = new Toggles(this.options, (name) => this.optionSet(name));
@@ -71,8 +74,9 @@ export class App {
     this.history.prepended = (frames) => this.plots.takeEarlier(frames);
     this.bodies = new Bodies(this.scene, this.readings, send);
     this.viewpoint = new Viewpoint(this.camera, this.scene, this.options, this.memory, () => this.cameraMoved());
+    this.gizmo = new Gizmo(this.viewpoint);
     this.legend = new Legend();
-    this.previews = new Previews();
+    this.previews = new Previews(this.memory, send);
     this.lenses = new Lenses(this.camera, () => this.changed());
     this.quality = new Quality(this.renderer, this.memory, () => this.changed());
     this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
@@ -182,6 +186,7 @@ export class App {
     this.bodies.select(null);
     [this.awaited, this.told] = [null, 0];
     this.viewpoint.begin();
+    this.gamepads.begin();
     this.tellVisibility();
     this.tellSize();
     this.tellWants();
@@ -270,6 +275,7 @@ export class App {
     }
     this.quality.recall();
     this.recallSwitches();
+    this.previews.recall();
     this.plots.dock.recall();
     this.optionsChanged();
   }
@@ -315,6 +321,7 @@ export class App {
   }
 
   tellVisibility() {
+    this.gamepads.tell();
     this.send({ type: "visible", visible: !document.hidden });
   }
 
@@ -340,6 +347,7 @@ export class App {
     this.last = now;
     this.drawn = false;
     this.player.tick(passed / 1000);
+    this.gamepads.tell();
     if (this.stale) this.moved = now;
     this.renderer.pace.wait(now - this.moved);
     if (this.renderer.resize()) this.changed();
@@ -375,15 +383,17 @@ export class App {
     this.viewpoint.follow();
     this.lenses.show();
     const named = options.names && pointer.hovered && !pointer.grasp.busy ? this.underMouse() : null;
-    const lines = this.overlays.draw(drawings, this.grasp.line(), named);
-    this.renderer.draw(scene, camera, options, { lines, solids: this.overlays.solids, clouds: drawings.clouds, signs: drawings.signs });
-    drawings.placeLabels(scene, camera);
+    const lines = this.overlays.draw(drawings, this.grasp.line(), named ?? this.grasp.turned);
+    const { solids, selected } = this.overlays;
+    this.renderer.draw(scene, camera, options, { lines, solids, selected, clouds: drawings.clouds, signs: drawings.signs });
     drawings.showName(scene, named, pointer.hovered);
     this.labels.begin();
+    drawings.addLabels(this.labels, scene, camera);
+    this.handles.addLabels(this.labels);
     if (options.positions) labelJoints(this.labels, camera, scene, this.readings);
     if (options.linkNames) labelLinks(this.labels, camera, scene);
-    this.handles.addLabels(this.labels);
-    this.labels.end();
+    this.labels.end(camera);
+    this.gizmo.show(camera, options.panel);
     this.legend.show(this.shownScales(), camera.height / (2 * camera.distance));
     this.viewpoint.show();
     this.plots.draw();

@@ -1,8 +1,9 @@
 // The list of bodies, and the data of the selected body, with sliders that drive its joints.
 
-import { fixed } from "./numbers.js";
+import { fixed, shown } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { press } from "./states.js";
+import { titlesOf } from "../view/names.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
 /** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
@@ -37,14 +38,14 @@ export class Bodies {
   /** Updates the list of bodies. */
   offer() {
     const bodies = [...this.scene.bodies.values()];
-    const known = JSON.stringify(bodies.map(({ body, name, links, file }) => [body, name, links.length, file]));
-    const shared = (wanted) => bodies.filter(({ name }) => name === wanted).length > 1;
+    const known = JSON.stringify(bodies.map(({ body, name, links, path }) => [body, name, links.length, path]));
     if (known === this.known) return;
     this.known = known;
+    const titles = titlesOf(this.scene);
     document.getElementById("bodies-count").textContent = bodies.length;
     this.list.replaceChildren(
-      ...bodies.slice(0, MOST_LISTED).map(({ body, name, file }) => {
-        const text = `${body}  ${name}${file && shared(name) ? ` (${file})` : ""}`;
+      ...bodies.slice(0, MOST_LISTED).map(({ body, name }) => {
+        const text = `${body}  ${titles.get(body)}`;
         const button = Object.assign(document.createElement("button"), { textContent: text, title: text });
         button.dataset.body = body;
         button.addEventListener("click", () => this.select(body === this.selected ? null : body));
@@ -190,12 +191,13 @@ export class Bodies {
   showJoint(slider, reading) {
     if (!reading) return;
     const [length, speed, force] = slider.unit;
-    slider.now.textContent = `${fixed(reading.position, 3)} ${length}, ${fixed(reading.velocity, 2)} ${speed}, ${fixed(reading.torque, 2)} ${force}`;
+    const [least, most] = slider.ranges.position;
+    slider.now.textContent = `${shown(reading.position, most - least)} ${length}, ${fixed(reading.velocity, 2)} ${speed}, ${fixed(reading.torque, 2)} ${force}`;
     const [lower, upper] = slider.ranges[slider.mode];
     const aim = { position: [reading.target, reading.position], velocity: [reading.targetVelocity, 0], torque: [0, 0] }[slider.mode];
     const value = slider.mode === "position" ? aim : [slider.byHand, ...aim];
-    const shown = value.find((each) => each !== null && !Number.isNaN(each));
-    slider.show({ lower, upper, value: Math.min(Math.max(shown, lower), upper) });
+    const present = value.find((each) => each !== null && !Number.isNaN(each));
+    slider.show({ lower, upper, value: Math.min(Math.max(present, lower), upper) });
   }
 }
 

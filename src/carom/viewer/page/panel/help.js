@@ -7,8 +7,10 @@ const SECTIONS = {
     click: "select a body",
     drag: "pull a body, or turn the view",
     "Ctrl + drag": "turn the view",
+    "Ctrl + Shift + drag": "turn a body",
     "Shift + drag": "move the view",
     wheel: "zoom",
+    "two fingers": "zoom and move the view",
   },
   Show: {
     a: "bounds",

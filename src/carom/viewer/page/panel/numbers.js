@@ -11,4 +11,18 @@ export function digitsFor(range) {
   return Math.max(0, Math.min(MOST_DIGITS, 3 - Math.floor(Math.log10(range || 1))));
 }
 
-const MOST_DIGITS = 15;
+/** A number as it is shown for a range: with decimals or, if these were too many, with a power of ten. */
+export function shown(value, range) {
+  const digits = digitsFor(range);
+  if (digits <= MOST_SHOWN) return fixed(value, digits);
+  const smallest = 10 ** -digits;
+  return Math.abs(value) < smallest / 2 ? "0" : value.toExponential(Math.max(0, Math.min(3, Math.floor(Math.log10(Math.abs(value) / smallest)))));
+}
+
+/** A step for a range: a hundredth of its power of ten. */
+export function stepFor(range) {
+  return Number(`1e${Math.floor(Math.log10(range || 1)) - 2}`);
+}
+
+const MOST_DIGITS = 18;
+const MOST_SHOWN = 6;

@@ -1,6 +1,6 @@
 // A slider with a number field for its value, and a button that resets it to its first value.
 
-import { digitsFor, fixed } from "./numbers.js";
+import { shown, stepFor } from "./numbers.js";
 
 /**
  * @param {string} id of the slider's element
@@ -18,10 +18,10 @@ export function makeSlider(id, name, moved) {
   header.append(label, typed, reset);
   element.append(header, range);
   let start = null;
-  let digits = 3;
+  let span = 1;
   let held = false;
   const read = () => {
-    if (document.activeElement !== typed) typed.value = fixed(Number(range.value), digits);
+    if (document.activeElement !== typed) typed.value = shown(Number(range.value), span);
     reset.disabled = start === null || Number(range.value) === start;
   };
   const set = (value) => {
@@ -39,7 +39,8 @@ export function makeSlider(id, name, moved) {
   const show = ({ lower, upper, value }) => {
     // While the user moves the slider, the value that the simulation sends back is out of date.
     if (held) return;
-    digits = digitsFor(upper - lower);
+    span = upper - lower;
+    typed.step = stepFor(span);
     [range.min, range.max, range.value] = [lower, upper, value];
     start ??= Number(range.value);
     read();

@@ -1,6 +1,7 @@
 // The quantities that can be plotted, and how their numbers are read from a frame.
 
 import { composed } from "../view/maths.js";
+import { titlesOf } from "../view/names.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
 const AT_REST = { velocity: [0, 0, 0], rate: [0, 0, 0] };
@@ -10,10 +11,12 @@ const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
 /** All quantities that can be plotted now: groups of sources by title. */
 export function sourcesOf(scene, valueNames) {
   const groups = { Joints: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
+  const titles = titlesOf(scene);
   for (const body of scene.bodies.values()) {
+    const title = titles.get(body.body);
     body.links.forEach((link, index) => {
-      if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, index - 1, link));
-      if (index > 0) groups["Force-torque sensors"].push(sensorSource(body, index - 1, link));
+      if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, title, index - 1, link));
+      if (index > 0) groups["Force-torque sensors"].push(sensorSource(body, title, index - 1, link));
     });
     groups.Bodies.push(bodySource(scene, body));
     groups["Contact forces"].push(contactSource(body));
@@ -22,7 +25,7 @@ export function sourcesOf(scene, valueNames) {
   return groups;
 }
 
-function jointSource({ body, name }, joint, link) {
+function jointSource({ body }, name, joint, link) {
   const read = ({ readings }) => {
     const row = readings.joints.get(`${body},${joint}`);
     if (!row) return null;
@@ -61,7 +64,7 @@ function contactSource({ body, name }) {
   return { key: `contact ${body}`, title: `${name} (body ${body})`, charts, read, wants: { contacts: true } };
 }
 
-function sensorSource({ body, name }, joint, link) {
+function sensorSource({ body }, name, joint, link) {
   const read = ({ readings }) => {
     const row = readings.links.get(`${body},${joint}`);
     return row ? [row.force, row.moment] : null;

@@ -1,6 +1,7 @@
 // Lines, points and texts that scripts draw, fixed to links or in the world.
 
 import { add, turned } from "./maths.js";
+import { titlesOf } from "./names.js";
 import { Sign } from "./sign.js";
 
 const WORLD_AXES = [
@@ -105,18 +106,16 @@ export class Drawings {
     if (!named) return;
     const body = scene.bodies.get(named.body);
     const link = body.links[named.link];
-    this.name.textContent = [body.name, link.name, link.joint && `joint ${named.link - 1} ${link.joint}`].filter(Boolean).join(" · ");
+    this.name.textContent = [titlesOf(scene).get(body.body), link.name, link.joint && `joint ${named.link - 1} ${link.joint}`].filter(Boolean).join(" · ");
     this.name.style.transform = `translate(${pixel[0] + 14}px, ${pixel[1] + 14}px)`;
   }
 
-  /** Moves the texts to the pixels of their positions. */
-  placeLabels(scene, camera) {
+  /** Adds the texts to the labels, each with its lower left corner at its position. */
+  addLabels(labels, scene, camera) {
     for (const item of this.items.values()) {
       if (!item.label) continue;
       const pose = scene.linkPose(item.body, item.link);
-      const pixel = pose && camera.pixel(inFrame(pose, item.position));
-      item.label.hidden = !pixel;
-      if (pixel) item.label.style.transform = `translate(${pixel[0]}px, ${pixel[1]}px) translateY(-100%)`;
+      labels.addSpan(item.label, pose && camera.pixel(inFrame(pose, item.position)), [0, null]);
     }
   }
 }

@@ -1,29 +1,58 @@
-// Short texts at points in the view, such as the positions of joints.
+// Short texts at points in the view, such as names of links: they are moved so that they do not cover each other.
 
 import { fixed } from "../panel/numbers.js";
+import { Placement } from "./placement.js";
+
+/** Elements that texts do not run under. */
+const COVERS = "#panel, #timeline, #dock, #previews figure";
+/** Offset of a text from its point, to the right [pixels]. */
+const ASIDE = 10;
 
 export class Labels {
   constructor(overlay) {
     this.overlay = overlay;
     this.spans = [];
-    this.used = 0;
+    this.begin();
   }
 
   begin() {
     this.used = 0;
+    this.shown = [];
   }
 
+  /** Adds a text beside a point. */
   add(camera, point, text, down = -8) {
     const pixel = camera.pixel(point);
     if (!pixel) return;
     const span = (this.spans[this.used++] ??= this.make());
-    span.hidden = false;
     if (span.textContent !== text) span.textContent = text;
-    span.style.transform = `translate(${pixel[0] + 10}px, ${pixel[1] + down}px)`;
+    this.addSpan(span, pixel, [ASIDE, down]);
   }
 
-  end() {
+  /**
+   * Adds the element of a text; it is hidden without a pixel.
+   *
+   * @param {?number[]} pixel
+   * @param {Array} offset of the upper left corner from the pixel; null for down: the lower edge is at the pixel
+   */
+  addSpan(span, pixel, offset) {
+    if (pixel) this.shown.push({ span, pixel, offset });
+    span.hidden = !pixel;
+  }
+
+  /** Places all texts; those added first have the first choice. */
+  end(camera) {
     for (const span of this.spans.slice(this.used)) span.hidden = true;
+    if (this.shown.length === 0) return;
+    const covers = [...document.querySelectorAll(COVERS)].map((element) => element.getBoundingClientRect()).filter(({ width }) => width > 0);
+    const placement = new Placement(camera.width, camera.height, covers);
+    // All sizes are read before anything moves: the browser computes the layout once.
+    for (const each of this.shown) each.size = [each.span.offsetWidth, each.span.offsetHeight];
+    for (const { span, pixel, offset, size } of this.shown) {
+      const corner = placement.place(pixel, [offset[0], offset[1] ?? -size[1]], size);
+      span.hidden = corner === null;
+      if (corner) span.style.transform = `translate(${corner[0]}px, ${corner[1]}px)`;
+    }
   }
 
   make() {

@@ -1,7 +1,7 @@
-// Lines that the page draws over the scene: frames, bounding boxes, the selection, masses, constraints, rays.
+// Lines that the page draws over the scene: frames, bounding boxes, masses, constraints, rays.
 
 import { add, scale, turned } from "./maths.js";
-import { boundsOfBody, boundsOfLink } from "./bounds.js";
+import { boundsOfLink } from "./bounds.js";
 import { ArrowScale } from "./arrows/arrow_scale.js";
 import { addContacts, addJoints } from "./forces.js";
 import { Lines } from "./lines.js";
@@ -22,7 +22,6 @@ const THICKNESS = 0.007;
 const FRAME_LENGTH = 0.1;
 const PULL = [0.95, 0.62, 0.1];
 const BOUNDS = [0.9, 0.45, 0.1];
-const SELECTED = [0.1, 0.45, 0.85];
 const MASS = [0.75, 0.1, 0.6];
 const INERTIA = [0.55, 0.2, 0.75];
 const TIE = [0.1, 0.65, 0.6];
@@ -128,11 +127,13 @@ export class Overlays {
     if (bounds) this.lines.box(...bounds, (corner) => corner, colour);
   }
 
+  /** The selected body; undefined if there is none. */
+  get selected() {
+    return this.selection ? this.scene.bodies.get(this.selection.body) : undefined;
+  }
+
   addSelection() {
-    const body = this.selection && this.scene.bodies.get(this.selection.body);
-    if (!body) return;
-    this.addBounds(boundsOfBody(this.scene, body, this.options.collisions), SELECTED);
-    if (this.selection.link !== null) this.addFrame(body.body, this.selection.link);
+    if (this.selected && this.selection.link !== null) this.addFrame(this.selection.body, this.selection.link);
   }
 
   addMasses() {

@@ -4,6 +4,7 @@ import { add, cross, multiply, orthographic, scale, unit, viewMatrix } from "./m
 import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
 import { NoGraphics } from "./no_graphics.js";
+import { Outline } from "./outline.js";
 import { Pace } from "./pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
@@ -60,6 +61,7 @@ class Renderer {
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
     this.layer = new StillLayer(gl);
+    this.outline = new Outline(gl, this.wire);
     this.byProcessor = slow;
     this.pace = new Pace(slow);
   }
@@ -79,7 +81,8 @@ class Renderer {
    * @param {Scene} scene
    * @param {Camera} camera
    * @param {Options} options
-   * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[]}} drawings
+   * @param {{lines: Lines, solids: Solids, clouds: object[], signs: Sign[], selected: object}} drawings
+   *   what is drawn over the scene; `selected` is the body that has an outline, undefined for none
    */
   draw(scene, camera, options, drawings) {
     const { gl, canvas, layer } = this;
@@ -94,7 +97,7 @@ class Renderer {
       layer.keep(canvas, world);
     }
     scene.fill(options, camera.eye, focal);
-    const more = drawings.lines.count + drawings.solids.count + drawings.clouds.length > 0;
+    const more = drawings.lines.count + drawings.solids.count + drawings.clouds.length > 0 || drawings.selected !== undefined;
     if (window) layer.compose(window, more, canvas, world);
     else world(() => this.aimAtCanvas());
     gl.enable(gl.DEPTH_TEST);
@@ -103,6 +106,7 @@ class Renderer {
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
     this.solidBatch.draw(drawings.solids, camera);
+    this.outline.draw(scene, camera, options, drawings.selected, canvas.width / camera.width);
     gl.disable(gl.DEPTH_TEST);
     if (window) layer.show(canvas);
   }

@@ -180,8 +180,8 @@ export class Scene {
         // Transparent shapes are drawn one by one, from back to front.
         const key = [...numbers, shape.texture, shape.twoSided, !!shape.collision, clear && groups.size].join();
         if (!groups.has(key)) {
-          const levels = shape.meshes.map(([mesh, reach]) => ({ mesh: this.meshes.get(mesh), reach: reach ?? Infinity }));
-          if (!levels.every(({ mesh }) => mesh?.indices.length)) continue;
+          const levels = this.levelsOf(shape);
+          if (!levels) continue;
           groups.set(key, new Group(this.gl, levels, shape, clear, this.byProcessor));
         }
         groups.get(key).add(body, glassy ? { ...shape, rgba: [...shape.rgba.slice(0, 3), shape.rgba[3] * GLASS] } : shape);
@@ -190,6 +190,12 @@ export class Scene {
     this.groups = [...groups.values()];
     this.version += 1;
     this.looks += 1;
+  }
+
+  /** The levels of detail of a shape (see `Group`); null while a mesh is missing, or if one is empty. */
+  levelsOf(shape) {
+    const levels = shape.meshes.map(([mesh, reach]) => ({ mesh: this.meshes.get(mesh), reach: reach ?? Infinity }));
+    return levels.every(({ mesh }) => mesh?.indices.length) ? levels : null;
   }
 
   /**

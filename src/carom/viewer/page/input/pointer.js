@@ -1,7 +1,10 @@
-// Mouse input: moves the camera, selects and pulls bodies, and is sent to the script. The left button pulls
-// the body under the mouse, or else rotates the view; the middle button, or Shift and the left button, shifts
-// the view; the right button or the wheel zooms; Ctrl or Alt and the left button always rotates the view, as
-// in PyBullet's window.
+// Mouse and touch input: moves the camera, selects, pulls and turns bodies, and is sent to the script. The left
+// button pulls the body under the mouse, or else rotates the view; the middle button, or Shift and the left
+// button, shifts the view; the right button or the wheel zooms; Ctrl or Alt and the left button always rotates the
+// view, as in PyBullet's window, and with Shift as well it turns the body under the mouse. A finger does what the
+// left button does; two fingers zoom and shift the view.
+
+import { Pinch } from "./pinch.js";
 
 /** Motion of the mouse with a button down from which on it is a drag, not a click [pixels]. */
 const CLICK_PIXELS = 3;
@@ -23,6 +26,9 @@ export class Pointer {
     this.clicked = () => {};
     /** Pixel where the left button was pressed, until it is known to be a click or a drag. */
     this.pressed = null;
+    /** Whether the drag that begins there is to turn the body. */
+    this.turning = false;
+    this.pinch = new Pinch(camera);
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => this.up(event));
@@ -37,13 +43,19 @@ export class Pointer {
   down(event) {
     this.canvas.focus();
     this.canvas.setPointerCapture(event.pointerId);
+    this.pinch.down(event);
+    if (this.pinch.active) return this.release(event);
     this.at = [event.offsetX, event.offsetY];
     this.button = event.button;
     this.tell(event, { button: event.button, down: true });
-    if (event.button === 0 && !event.ctrlKey && !event.altKey && !event.shiftKey) this.pressed = this.at;
+    const turning = event.ctrlKey || event.altKey;
+    if (event.button === 0 && turning === event.shiftKey) this.pressed = this.at;
+    this.turning = turning;
   }
 
   move(event) {
+    this.pinch.move(event);
+    if (this.pinch.active) return this.cameraMoved();
     const [x, y] = [event.offsetX, event.offsetY];
     this.hovered = [x, y];
     this.hoverChanged();
@@ -51,7 +63,7 @@ export class Pointer {
     if (this.at === null) return;
     if (this.pressed) {
       if (Math.hypot(x - this.pressed[0], y - this.pressed[1]) < CLICK_PIXELS) return;
-      this.grasp?.begin(...this.pressed);
+      this.grasp?.begin(...this.pressed, this.turning);
       this.pressed = null;
     }
     const [dx, dy] = [x - this.at[0], y - this.at[1]];
@@ -68,9 +80,15 @@ export class Pointer {
   }
 
   up(event) {
-    if (this.at === null) return;
-    if (this.pressed) this.clicked(...this.pressed);
+    this.pinch.up(event);
+    if (this.pressed && !this.turning) this.clicked(...this.pressed);
+    this.release(event);
+  }
+
+  /** Ends what a button or finger does, without a click. */
+  release(event) {
     this.pressed = null;
+    if (this.at === null) return;
     this.at = null;
     this.tell(event, { button: event.button, down: false });
     this.grasp?.end();

@@ -1,6 +1,6 @@
-// Picking: finding the shape under the mouse, and pulling its body.
+// Picking: finding the shape under the mouse, and pulling or turning its body.
 
-import { add, dot, scale, subtract, turned } from "./maths.js";
+import { add, dot, quaternionProduct, scale, subtract, turned } from "../view/maths.js";
 
 /** The nearest shape hit by a ray: body, link, distance, and point in world and link; null without a hit. */
 export function pick(scene, options, eye, direction) {
@@ -72,7 +72,10 @@ function meetsBounds({ lower, upper }, from, way, limit) {
 
 const inverse = ([x, y, z, w]) => [-x, -y, -z, w];
 
-/** Grabs a point of a body, and pulls it in the plane through the point that faces the viewer. */
+/** Angle by which a body turns for a motion of the mouse [rad / pixel]. */
+const TURN_PER_PIXEL = 0.01;
+
+/** Grabs a body, and pulls its point in the plane that faces the viewer, or turns it. */
 export class Grasp {
   constructor(scene, camera, options, send) {
     Object.assign(this, { scene, camera, options, send });
@@ -83,21 +86,43 @@ export class Grasp {
     return this.held !== null;
   }
 
-  begin(x, y) {
+  /** The body and link that is being turned, if any. */
+  get turned() {
+    return this.held?.from ? this.held : null;
+  }
+
+  begin(x, y, turning = false) {
     if (!this.options.picking) return;
     const direction = this.camera.ray(x, y);
     const found = pick(this.scene, this.options, this.camera.eye, direction);
     if (!found || !this.scene.bodies.get(found.body).links[found.link].moves) return;
     const { body, link, local, point } = found;
+    if (turning) {
+      this.held = { body, link, start: [x, y], from: this.scene.inertialPose(body, link).orientation };
+      return;
+    }
     this.held = { body, link, local, target: point, depth: found.distance * dot(direction, this.camera.forward) };
     this.send({ type: "grasp", body, link: link - 1, point: local, target: point });
   }
 
   move(x, y) {
+    if (this.turned) return this.turn(x, y);
     const direction = this.camera.ray(x, y);
     const distance = this.held.depth / dot(direction, this.camera.forward);
     this.held.target = add(this.camera.eye, scale(direction, distance));
     this.send({ type: "pull", target: this.held.target });
+  }
+
+  /** Turns the body about the upward axis of the view by motions to the side, and about the other one by those up. */
+  turn(x, y) {
+    const { body, link, start, from } = this.held;
+    const [side, down] = [x - start[0], y - start[1]];
+    const vector = add(scale(this.camera.up, side), scale(this.camera.right, down));
+    const pixels = Math.hypot(...vector);
+    if (pixels === 0) return;
+    const half = (TURN_PER_PIXEL * pixels) / 2;
+    const turn = [...scale(vector, Math.sin(half) / pixels), Math.cos(half)];
+    this.send({ type: "turn", body, link: link - 1, orientation: quaternionProduct(turn, from) });
   }
 
   end() {
@@ -107,7 +132,7 @@ export class Grasp {
 
   /** Start and end of the line from the grabbed point to the target of the pull. */
   line() {
-    const pose = this.held && this.scene.inertialPose(this.held.body, this.held.link);
+    const pose = this.held?.local && this.scene.inertialPose(this.held.body, this.held.link);
     return pose ? [add(pose.position, turned(pose.orientation, this.held.local)), this.held.target] : null;
   }
 }

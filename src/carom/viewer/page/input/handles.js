@@ -1,7 +1,7 @@
 // Frames that the user can move for scripts. Each has an arrow along each axis to shift it, an arc about each
 // axis to rotate it, and a centre to move it in the plane that faces the viewer.
 
-import { add, dot, quaternionProduct, scale, subtract, turned } from "./maths.js";
+import { add, dot, quaternionProduct, scale, subtract, turned } from "../view/maths.js";
 
 const AXES = [
   [1, 0, 0],
@@ -50,8 +50,9 @@ export class Handles {
     return this.held !== null;
   }
 
-  /** Grabs the nearest knob at a pixel, if there is one. */
-  begin(x, y) {
+  /** Grabs the nearest knob at a pixel, if there is one, unless a body is to be turned. */
+  begin(x, y, turning = false) {
+    if (turning) return;
     let nearest = NEAR;
     for (const item of this.items.values()) {
       for (const knob of this.knobs(item)) {
@@ -149,9 +150,9 @@ export class Hands {
     return this.hands.some((hand) => hand.busy);
   }
 
-  begin(x, y) {
+  begin(x, y, turning) {
     for (const hand of this.hands) {
-      hand.begin(x, y);
+      hand.begin(x, y, turning);
       if (hand.busy) return;
     }
   }

@@ -1,0 +1,160 @@
+"""Turning bodies with the mouse: a torque that brings a link to the orientation that a page asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import hypot, isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description.pose import Quaternion, Vector3
+from carom.description.transform import conjugate, multiplied, rotate, rotation_matrix
+from carom.layouts.flags import ActivationChange
+from carom.model.body_spec import BASE
+from carom.scene.dynamics_changes import change_dynamics
+from carom.scene.joint_constraints import moving_links
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+# The torque is that of a critically damped spring of this frequency on the turned links [rad/s].
+_FREQUENCY = 20.0
+_PATIENCE = 0.02
+
+
+@dataclass(slots=True)
+class _Turn:
+    """The turn of one page: a link, those that hang on it, and the target of its inertial frame."""
+
+    body: Body
+    link: int
+    subtree: list[int]
+    target: Quaternion
+
+
+class Turning:
+    """The turns of all pages; an observer of the world while there are any.
+
+    Requests are made by one thread, which also calls `apply`; only that changes the world, under its lock.
+    While the simulation is `paused`, bodies with a free base are turned at once about the centre of mass of
+    the link; their velocity stays. Otherwise, and with a fixed base, a torque turns the link in each step.
+    """
+
+    def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:
+        self._world = world
+        self._world_lock = lock
+        self._paused = paused
+        self._asked: dict[int, tuple[int, int, Quaternion] | None] = {}
+        self._turns: dict[int, _Turn] = {}
+
+    def turn(self, page: int, told: dict[str, Any]) -> None:
+        """Sets what a page turns, by a message with body, link and the orientation of its inertial frame."""
+        x, y, z, w = map(float, told["orientation"])
+        length = hypot(x, y, z, w)
+        if isfinite(length) and length > 1e-6:
+            orientation = (x / length, y / length, z / length, w / length)
+            self._asked[page] = (int(told["body"]), int(told["link"]), orientation)
+
+    def release(self, page: int) -> None:
+        """Ends the turn of a page."""
+        if page in self._turns or page in self._asked:
+            self._asked[page] = None
+
+    def apply(self, patience: float = _PATIENCE) -> None:
+        """Does what pages have asked for; if no step ends in `patience` [s], at the next call."""
+        if not self._asked or not self._world_lock.acquire(timeout=patience):
+            return
+        try:
+            for page, asked in self._asked.items():
+                turn = None if asked is None else self._turn(self._turns.get(page), *asked)
+                if turn is None:
+                    self._turns.pop(page, None)
+                else:
+                    self._turns[page] = turn
+                    if self._paused():
+                        _carry(turn)
+            self._asked.clear()
+            observers = self._world.observers
+            if self._turns and self not in observers:
+                observers.append(self)
+            elif not self._turns and self in observers:
+                observers.remove(self)
+        finally:
+            self._world_lock.release()
+
+    def before_step(self) -> None:
+        """Adds the torques of all turns to the forces of the step."""
+        for turn in self._turns.values():
+            # The body may have been removed in the meantime.
+            if self._world.bodies.get(turn.body.id) is turn.body:
+                row = turn.body.first_link - BASE + turn.link
+                self._world.link_force[row, 3:] += self._torque(turn, row)
+
+    def after_step(self) -> None:
+        """Does nothing: the torque of the next step is not known yet."""
+
+    def _turn(self, turn: _Turn | None, number: int, link: int, target: Quaternion) -> _Turn | None:
+        """A turn with its new target; None if there is no such link, or it cannot move."""
+        body = self._world.bodies.get(number)
+        if body is None or body.spec.soft is not None or not BASE <= link < body.joint_count:
+            return None
+        if not moving_links(body)[link - BASE]:
+            return None
+        change_dynamics(body, BASE, {"activation_state": ActivationChange.WAKE_UP})
+        if turn is not None and turn.body is body and turn.link == link:
+            turn.target = target
+            return turn
+        return _Turn(body, link, _subtree(body, link), target)
+
+    def _torque(self, turn: _Turn, row: int) -> NDArray[np.float64]:
+        """(3,) the torque in the world [N m]."""
+        turn.body.update_link_poses()
+        turn.body.update_link_velocities()
+        x, y, z, w = multiplied(turn.target, conjugate(tuple(self._world.link_pose[row, 3:].tolist())))
+        # The rotation vector that is left, by its quaternion; the shorter way round.
+        sine = hypot(x, y, z)
+        angle = 2.0 * np.arctan2(sine, abs(w)) * (1.0 if w >= 0.0 else -1.0)
+        left = np.array([x, y, z]) * (angle / max(sine, 1e-12))
+        rate = self._world.link_velocity[row, 3:]
+        return self._inertia(turn) @ (_FREQUENCY**2 * left - 2.0 * _FREQUENCY * rate)
+
+    def _inertia(self, turn: _Turn) -> NDArray[np.float64]:
+        """(3, 3) inertia of a link and those that hang on it, about their centre of mass, in world axes."""
+        body = turn.body
+        first = body.first_link - BASE
+        poses = self._world.link_pose[[first + link for link in turn.subtree]]
+        dynamics = [body.dynamics(link) for link in turn.subtree]
+        masses = np.array([each.mass for each in dynamics])
+        arms = poses[:, :3] - (masses @ poses[:, :3]) / max(masses.sum(), 1e-12)
+        total = np.zeros((3, 3))
+        for mass, each, arm, pose in zip(masses, dynamics, arms, poses, strict=True):
+            axes = np.array(rotation_matrix(tuple(pose[3:].tolist()))).reshape(3, 3)
+            total += (axes * np.nan_to_num(each.inertia, posinf=0.0)) @ axes.T
+            total += mass * ((arm @ arm) * np.eye(3) - np.outer(arm, arm))
+        return total
+
+
+def _subtree(body: Body, link: int) -> list[int]:
+    """A link, and all those that hang on it, directly or by others."""
+    subtree = [link]
+    for child in range(max(link, BASE) + 1, body.joint_count):
+        if body.link_spec(child).parent in subtree:
+            subtree.append(child)
+    return subtree
+
+
+def _carry(turn: _Turn) -> None:
+    """Turns a body with a free base so that the link has its target; bodies with a fixed one stay."""
+    body = turn.body
+    if body.fixed_base:
+        return
+    first = body.first_link
+    base, held = (body.world.link_pose[row].tolist() for row in (first, first - BASE + turn.link))
+    turned = multiplied(turn.target, conjugate(tuple(held[3:])))
+    arm: Vector3 = (base[0] - held[0], base[1] - held[1], base[2] - held[2])
+    position = [middle + part for middle, part in zip(held, rotate(turned, arm), strict=False)]
+    body.set_base_pose(position, multiplied(turned, tuple(base[3:])))

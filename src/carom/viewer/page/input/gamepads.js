@@ -1,0 +1,40 @@
+// Gamepads: tells the simulation their axes and buttons when these change.
+
+/** Positions are told in steps of this size: sticks are never quite at rest. */
+const STEP = 0.001;
+
+export class Gamepads {
+  /** @param {(message: object) => void} send */
+  constructor(send) {
+    this.send = send;
+    this.begin();
+  }
+
+  /** Begins with a simulation that knows of no gamepads. */
+  begin() {
+    this.told = "[]";
+  }
+
+  /** Tells what has changed; called for each picture, because browsers have no events for axes and buttons. */
+  tell() {
+    const gamepads = document.hidden ? [] : connected().map(state);
+    const text = JSON.stringify(gamepads);
+    if (text === this.told) return;
+    this.told = text;
+    this.send({ type: "gamepads", gamepads });
+  }
+}
+
+function connected() {
+  try {
+    return [...navigator.getGamepads()].filter((pad) => pad?.connected);
+  } catch {
+    // A page inside another one may not be allowed to ask.
+    return [];
+  }
+}
+
+function state({ id, axes, buttons, mapping }) {
+  const rounded = (value) => Math.round(value / STEP) * STEP;
+  return { name: id, axes: axes.map(rounded), buttons: buttons.map(({ value }) => rounded(value)), standard: mapping === "standard" };
+}
