@@ -15,6 +15,7 @@ from carom.closed import Closed
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
+from carom.native.cpu import core_count
 from carom.scene.body import Body
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
@@ -86,9 +87,10 @@ class Worlds(Closed):
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
         self.halted: Mask = np.zeros(count, dtype=bool)
+        workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.times)
         self._bodies = {
-            number: BodyBatch(body, self._scene, self._engine, self._sensors)
+            number: BodyBatch(body, self._scene, self._engine, self._sensors, workers)
             for number, body in self._scene.bodies.items()
         }
 
