@@ -183,7 +183,8 @@ def _residuals(
     for link, pose, target in zip(links, poses, positions, strict=True):
         place = compose(pose, inverse(body.link_inertial_frame(link))).position
         distance = max(distance, hypot(*(float(a) - b for a, b in zip(target, place, strict=True))))
-    for pose, target in zip(poses, orientations or (), strict=orientations is not None):
+    turns = () if orientations is None else orientations
+    for pose, target in zip(poses, turns, strict=orientations is not None):
         x, y, z, w = (float(number) for number in target)
         dx, dy, dz, dw = multiplied(conjugate(pose.orientation), (x, y, z, w))
         angle = max(angle, 2.0 * atan2(hypot(dx, dy, dz), abs(dw)))

@@ -91,9 +91,7 @@ class BatchSource(Source):
 class SensorBatch(Batch):
     """The part of `BodyBatch` that is about sites and sensors."""
 
-    def __init__(
-        self, body: Body, scene: World, engine: Engine, source: BatchSource, threads: int
-    ) -> None:
+    def __init__(self, body: Body, scene: World, engine: Engine, source: BatchSource, threads: int) -> None:
         super().__init__(body, scene, engine, threads)
         self._source = source
 

@@ -1,4 +1,4 @@
-"""Inverse dynamics, mass matrices and Jacobians of a body in many worlds, in one native call on each thread."""
+"""Inverse dynamics, mass matrices and Jacobians of a body in many worlds: a native call on each thread."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class MechanicsBatch:
             ValueError: In a world they are not finite.
         """
         kernel, row = forces_in_worlds_kernel, questions.shape[1]
-        return self._ask(kernel, questions, worlds, (self.dofs,), "forces", row, varied=True)
+        return self._ask(kernel, questions, worlds, (self.dofs,), "force", row, varied=True)
 
     def mass_matrices(self, positions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
         """Mass matrices (n, dofs, dofs) at joint positions (n, coordinates), in some worlds.
@@ -68,7 +68,7 @@ class MechanicsBatch:
         return self._ask(kernel, positions, worlds, shape, "mass matrix", varied=True)
 
     def jacobians(self, link: int, points: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """Jacobians (n, 6, dofs), linear before angular, of points (n, 3) on a link; see `Mechanism.jacobian`.
+        """Jacobians (n, 6, dofs), linear before angular, of points (n, 3) on a link, as `Mechanism.jacobian`.
 
         Raises:
             ValueError: In a world one is not finite.
@@ -87,7 +87,7 @@ class MechanicsBatch:
         *numbers: int,
         varied: bool = False,
     ) -> np.ndarray:
-        """The answers of a kernel, which gets `numbers` as arguments, and for `varied` whether worlds differ."""
+        """The answers of a kernel, which gets `numbers`, and for `varied` also whether worlds differ."""
         count = len(worlds)
         batch, mechanisms = MechanismBatch(), self._mechanisms
         put_array(batch, "question", questions)
@@ -99,10 +99,11 @@ class MechanicsBatch:
         launches = [[Launch(kernel, 1, [*each.structs, batch, *numbers, 0])] for each in mechanisms]
         self._calls.run(count, launches)
         # The kernels make the first number NaN if any is not finite.
-        first = answer.reshape(count, -1)[:, :1]
-        if first.size and np.isnan(first).any():
-            world = int(worlds[np.flatnonzero(np.isnan(first[:, 0]))[0]])
-            raise ValueError(f"in world {world} the {name} is not finite: look at the arguments there")
+        wrong = np.flatnonzero(np.isnan(answer.reshape(count, int(np.prod(shape)))[:, :1]))
+        if len(wrong):
+            raise ValueError(
+                f"in world {worlds[wrong[0]]} the {name} is not finite: look at the arguments there"
+            )
         return answer
 
     def _put_parameters(self, batch: Any, found: Any, worlds: np.ndarray) -> list[Mechanism]:

@@ -36,7 +36,7 @@ class InverseKinematicsBatch(NamedTuple):
 
 
 class SearchOptions(NamedTuple):
-    """The numbers of `inverse_kinematics_kernel` that are the same in all worlds, in the order of arguments."""
+    """The numbers of `inverse_kinematics_kernel` that all worlds share, in the order of arguments."""
 
     oriented: bool
     step_kind: int
