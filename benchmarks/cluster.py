@@ -1,7 +1,7 @@
 """What rollouts on a cluster cost besides the simulation: python -m benchmarks.cluster. Needs Ray.
 
-The nodes are processes of this machine. Their environment has no physics and hardly takes any time, so what is
-measured is the way of batches, results and weights through Ray and through the process that collects.
+The nodes are processes of this machine. Their environment has no physics and hardly takes any time: measured
+is the way of batches, results and weights through Ray and through the process that collects.
 """
 
 from __future__ import annotations
@@ -93,16 +93,15 @@ def measure(nodes: int) -> None:
         batches = 50 * nodes
         wall, own = timed(lambda: short.reduce(Weights(0), total, episodes=ENVS * batches))
         print(
-            f"  a batch of one step, reduced: {wall / batches * 1e3:.2f} ms, of it here {own / batches * 1e3:.2f} ms"
+            f"  a batch of one step, reduced: {wall / batches * 1e3:.2f} ms, "
+            f"of it here {own / batches * 1e3:.2f} ms"
         )
         base, _ = timed(lambda: short.reduce(Weights(0), total, episodes=ENVS * nodes))
         for size in (1, 10, 100):
             wall, _ = timed(
                 lambda size=size: short.reduce(Weights(size * 1_000_000), total, episodes=ENVS * nodes)
             )
-            print(
-                f"  weights of {size} MB: {(wall - base) * 1e3:.0f} ms more for a collection of one batch each"
-            )
+            print(f"  weights of {size} MB: {(wall - base) * 1e3:.0f} ms more for a batch on each node")
     with rollouts(STEPS) as long:
         batches = 3 * nodes
         for name, run in (

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-ray = pytest.importorskip("ray", reason="needs Ray: make cluster")
+pytest.importorskip("ray", reason="needs Ray: make cluster")
 
+import ray  # pyright: ignore[reportMissingImports]
 from tests.cluster.dice import Dice, Guess, copy_throws, summed
 
 from carom.cluster import Episode, EpisodeError, Rollouts

@@ -138,7 +138,8 @@ def reach(batch: BodyBatch, random: np.random.Generator) -> dict[str, Any]:
 def test_inverse_kinematics_is_that_of_each_world_alone(robot: str, method: str):
     worlds, batch = varied(robot)
     random = np.random.default_rng(3)
-    asked, more = reach(batch, random), {}
+    asked: dict[str, Any] = reach(batch, random)
+    more: dict[str, Any] = {}
     if method == "selective":
         more = {"selective": True}
     elif method == "rest":
@@ -146,8 +147,12 @@ def test_inverse_kinematics_is_that_of_each_world_alone(robot: str, method: str)
     found = batch.inverse_kinematics(**asked, **more)
     assert found.success.any()
     for number in range(COUNT):
-        own = {name: value[number] if name != "links" else value for name, value in asked.items()}
-        rest = {name: value[number] if name == "rest" else value for name, value in more.items()}
+        own: dict[str, Any] = {
+            name: value[number] if name != "links" else value for name, value in asked.items()
+        }
+        rest: dict[str, Any] = {
+            name: value[number] if name == "rest" else value for name, value in more.items()
+        }
         alone = algorithms.inverse_kinematics(lone(worlds, number), **own, **rest)
         assert (np.array(alone.positions) == found.positions[number]).all()
         assert np.isclose(alone.residual, found.residuals[number], atol=1e-9)
@@ -162,9 +167,10 @@ def test_a_warm_start_follows_a_target_that_moves():
     assert first.success.sum() > COUNT // 2
     asked["positions"] = asked["positions"] + 1e-3
     # One step from where the last search ended gets near.
-    few = {"iterations": 1, "further": 0, "lower": None, "upper": None}
+    few: dict[str, Any] = {"iterations": 1, "further": 0, "lower": None, "upper": None}
     cold = batch.inverse_kinematics(**asked | few)
-    warm = batch.inverse_kinematics(**asked | few | {"start": first.positions})
+    asked["start"] = first.positions
+    warm = batch.inverse_kinematics(**asked | few)
     assert (warm.residuals < 0.1 * cold.residuals)[first.success].all()
 
 
@@ -198,7 +204,7 @@ def test_results_do_not_depend_on_threads_or_on_the_other_worlds():
     chosen = np.array([7, 2])
     assert (batch.mass_matrices(where=chosen) == results[0][0][chosen]).all()
     assert (batch.inverse_dynamics(where=chosen) == results[0][1][chosen]).all()
-    own = {name: value[chosen] if name != "links" else value for name, value in asked.items()}
+    own: dict[str, Any] = {name: value[chosen] if name != "links" else value for name, value in asked.items()}
     assert (batch.inverse_kinematics(**own, where=chosen).positions == results[0][2][chosen]).all()
 
 

@@ -103,7 +103,7 @@ def test_times_of_contact_and_in_the_air():
     worlds = Worlds(world, 2)
     worlds[ball].base_poses[:, 2] = [0.3, 50.0]
     times = ContactTimes(worlds, ball, [-1])
-    landings = []
+    landings, flight = [], 0.0
     for _ in range(120):
         worlds.step()
         times.update()
