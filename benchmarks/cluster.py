@@ -25,6 +25,7 @@ STEPS = 1000
 NUMBERS = 20
 """Numbers of an observation: an episode is 1,000 steps of 20 numbers, 160 kB, and a batch 10 MB."""
 STORE = 400_000_000
+ATTEMPTS = 4
 MEGABYTE = 1e6
 
 
@@ -116,6 +117,18 @@ def measure(nodes: int) -> None:
             )
 
 
+def add_node(cluster: Any) -> None:
+    """Another node; on a busy machine Ray's processes give each other up too soon."""
+    for attempt in range(ATTEMPTS):
+        try:
+            cluster.add_node(num_cpus=1, object_store_memory=STORE, include_dashboard=False)
+        except Exception:
+            if attempt == ATTEMPTS - 1:
+                raise
+        else:
+            return
+
+
 def main() -> None:
     """Measure with one node, and with more."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -123,7 +136,7 @@ def main() -> None:
     for nodes in parser.parse_args().nodes:
         cluster = Cluster()
         for _ in range(nodes):
-            cluster.add_node(num_cpus=1, object_store_memory=STORE, include_dashboard=False)
+            add_node(cluster)
         ray.init(address=cluster.address, log_to_driver=False)
         measure(nodes)
         ray.shutdown()
