@@ -1,12 +1,17 @@
 """An environment without physics, whose episodes are decided by their seeds, and policies for it."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
+
+if TYPE_CHECKING:
+    from carom.cluster import Episode
 
 _ENDLESS = np.full(2, np.inf)
 
@@ -44,6 +49,13 @@ class Dice(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         over = self._left == 0
         infos = {"left": self._left.copy(), "_left": self._left > 1, "inner": {"seed": self._seen[:, 0]}}
         return self._seen.copy(), self._seen[:, 1] + actions[:, 0], over, np.zeros_like(over), infos
+
+
+def summed(episodes: list[Episode]) -> dict[str, Any]:
+    return {
+        "ids": [episode.id for episode in episodes],
+        "observations": sum(episode.observations.sum(axis=0) for episode in episodes),
+    }
 
 
 def copy_throws(observations: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from functools import partial
 from math import hypot, inf
 from struct import Struct
 from struct import error as StructError
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 DEFAULT_ITERATIONS = 20
 DEFAULT_THRESHOLD = 1e-4
 DEFAULT_DAMPING = 0.5
-_LEAST_DAMPING = 1e-9
+LEAST_DAMPING = 1e-9
 _NUMBER = np.dtype(NUMPY_REAL)
 _NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
 _FIRST_OPTION = 3
-# Upper bound of iterations: more would not help, but take very long.
-_MOST_ITERATIONS = 100_000
+MOST_ITERATIONS = 100_000
+"""Upper bound of iterations: more would not help, but take very long."""
 Numbers = Sequence[float] | np.ndarray
 
 
@@ -183,29 +183,34 @@ def _residuals(
     for link, pose, target in zip(links, poses, positions, strict=True):
         place = compose(pose, inverse(body.link_inertial_frame(link))).position
         distance = max(distance, hypot(*(float(a) - b for a, b in zip(target, place, strict=True))))
-    for pose, target in zip(poses, orientations or (), strict=orientations is not None):
+    turns = () if orientations is None else orientations
+    for pose, target in zip(poses, turns, strict=orientations is not None):
         x, y, z, w = (float(number) for number in target)
         dx, dy, dz, dw = multiplied(conjugate(pose.orientation), (x, y, z, w))
         angle = max(angle, 2.0 * atan2(hypot(dx, dy, dz), abs(dw)))
     return distance, angle
 
 
-class _Solver:
-    """The search for one body and some of its links: arrays, and the kernel that works on them."""
+class SearchTable:
+    """The chain of a body to some of its links, and the arrays of a search.
+
+    Attributes:
+        chain: The chain.
+        arrays: The arrays of `Search`, by name.
+        structs: The arguments of kernels: sizes, chain and search.
+    """
 
     def __init__(self, body: Body, links: tuple[int, ...]) -> None:
-        chain = BodyChain(body, links)
-        sizes = chain.sizes
-        self._dofs = int(sizes.dofs)
-        self._coordinates = int(sizes.coordinates)
+        self.chain = BodyChain(body, links)
+        sizes = self.chain.sizes
         blocks = 2 * len(links)
         search = ArrayTable(Search)
         search.reserve(
             {
                 "base": BASE_POSITIONS,
                 "end": len(links),
-                "dof": self._dofs,
-                "coordinate": self._coordinates,
+                "dof": int(sizes.dofs),
+                "coordinate": int(sizes.coordinates),
                 "joint": int(sizes.joints),
                 "column": int(sizes.columns),
                 "block": blocks,
@@ -214,7 +219,18 @@ class _Solver:
                 "spectrum": 9 * blocks * blocks,
             }
         )
-        arrays = search.numpy
+        self.arrays: dict[str, np.ndarray] = search.numpy
+        self.structs: tuple[Any, Any, Any] = (sizes, self.chain.arrays.struct(), search.struct())
+
+
+class _Solver:
+    """The search for one body and some of its links: arrays, and the kernel that works on them."""
+
+    def __init__(self, body: Body, links: tuple[int, ...]) -> None:
+        table = SearchTable(body, links)
+        arrays, sizes = table.arrays, table.chain.sizes
+        self._dofs = int(sizes.dofs)
+        self._coordinates = int(sizes.coordinates)
         self._write_positions = _writers(arrays["end_given_position"][: len(links)])
         self._write_rotations = _writers(arrays["end_given_rotation"][: len(links)])
         self._base = arrays["base_pose"].data[:BASE_POSITIONS]
@@ -235,7 +251,7 @@ class _Solver:
         self._launch = Launch(
             inverse_kinematics_kernel,
             1,
-            [sizes, chain.arrays.struct(), search.struct(), 0, 0, 0, 0, 0, 0.0, 0.0],
+            [*table.structs, 0, 0, 0, 0, 0, 0.0, 0.0],
         )
 
     def set_targets(self, positions: Sequence[Numbers], orientations: Sequence[Numbers] | None) -> None:
@@ -262,7 +278,7 @@ class _Solver:
 
     def set_damping(self, damping: Numbers | None) -> None:
         if damping is not None:
-            np.maximum(damping, _LEAST_DAMPING, out=self._damping)
+            np.maximum(damping, LEAST_DAMPING, out=self._damping)
         elif self._has_damping:
             self._damping.fill(DEFAULT_DAMPING)
         self._has_damping = damping is not None
@@ -295,7 +311,7 @@ class _Solver:
         """The best positions found; the options are arguments of the kernel."""
         if options != self._options:
             oriented, step, bounded, *iterations, threshold, patience = options
-            limited = (min(count, _MOST_ITERATIONS) for count in iterations)
+            limited = (min(count, MOST_ITERATIONS) for count in iterations)
             arguments = (oriented, step, bounded, *limited, threshold, patience)
             for index, value in enumerate(arguments, start=_FIRST_OPTION):
                 self._launch.replace(index, value)

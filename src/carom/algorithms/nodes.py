@@ -66,20 +66,12 @@ def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
     moving = [link for link, kind in enumerate(body.joint_types) if kind != JointCode.FIXED]
     frames = JointFrames(body, moving)
     ends: list[End] = []
-    masses = np.zeros(1 + len(moving))
-    moments = np.zeros((1 + len(moving), 3))
-    inertias = np.zeros((1 + len(moving), 3, 3))
     for link in range(BASE, body.joint_count):
         carrier, frame = frames.of_link(link)
-        rotation, origin = _parts(frame)
-        ends.append(End(1 + carrier, rotation, origin))
-        dynamics = body.dynamics(link)
-        com = origin + dots(rotation, _com_from_joint(body, link))
-        offset = skew(com)
-        masses[1 + carrier] += dynamics.mass
-        moments[1 + carrier] += dynamics.mass * com
-        turned = product(product(rotation, np.diag(dynamics.inertia)), rotation.T)
-        inertias[1 + carrier] += turned + product(dynamics.mass * offset, offset.T)
+        ends.append(End(1 + carrier, *_parts(frame)))
+    dynamics = [body.dynamics(link) for link in range(BASE, body.joint_count)]
+    of_links = np.array([each.mass for each in dynamics]), np.array([each.inertia for each in dynamics])
+    masses, moments, inertias = node_inertias(body, ends, *of_links)
     at_base = (np.eye(3), np.zeros(3), masses[0], moments[0], inertias[0])
     nodes = [Node(BASE, JointCode.FIXED, *at_base, np.zeros((0, 2, 3)))]
     for index, link in enumerate(moving, start=1):
@@ -89,6 +81,33 @@ def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
         of_joint = _axes(body, link, kind), body.dynamics(link).joint_armature
         nodes.append(Node(1 + carrier, kind, *_parts(frame), *rigid, *of_joint))
     return nodes, ends
+
+
+def node_inertias(
+    body: Body, ends: list[End], masses: np.ndarray, inertias: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass, moment and inertia of each node, as in `Node`, for masses and inertias of the links.
+
+    Args:
+        body: The body.
+        ends: Its links, the base first.
+        masses: Masses of the links, the base first [kg], (..., links).
+        inertias: Their principal moments [kg m²], (..., links, 3).
+
+    Returns:
+        (..., nodes), (..., nodes, 3) and (..., nodes, 3, 3).
+    """
+    count, own = 1 + max(end.node for end in ends), masses.shape[:-1]
+    mass, moment, inertia = np.zeros((*own, count)), np.zeros((*own, count, 3)), np.zeros((*own, count, 3, 3))
+    for place, end in enumerate(ends):
+        com = end.origin + dots(end.rotation, _com_from_joint(body, place - 1))
+        offset, of_link = skew(com), masses[..., place, None]
+        mass[..., end.node] += masses[..., place]
+        moment[..., end.node, :] += of_link * com
+        diagonal = inertias[..., place, None, :] * np.eye(3)
+        turned = product(product(end.rotation, diagonal), end.rotation.T)
+        inertia[..., end.node, :, :] += turned + product(of_link[..., None] * offset, offset.T)
+    return mass, moment, inertia
 
 
 def _parts(frame: Pose) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ except ImportError as missing:
         f"carom.cluster needs {missing.name}; install it with: pip install 'carom[ray]'", name=missing.name
     ) from missing
 
-from carom.cluster.collection import Collection, Report, Steps
+from carom.cluster.collection import Collection, Part, Reduction, Report, Steps
 from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError, EpisodeError
 from carom.cluster.policies import Policy, PolicyWithMemory
@@ -21,8 +21,10 @@ __all__ = [
     "Collection",
     "Episode",
     "EpisodeError",
+    "Part",
     "Policy",
     "PolicyWithMemory",
+    "Reduction",
     "Report",
     "Rollouts",
     "Steps",

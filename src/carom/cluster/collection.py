@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 
@@ -115,3 +115,58 @@ class Collection(Sequence[Episode]):
             truncations=truncations,
             ids=np.repeat(self.ids, lengths),
         )
+
+
+@dataclass(frozen=True)
+class Part:
+    """What a reduction made of one batch of episodes.
+
+    Attributes:
+        ids: Ids of the episodes.
+        value: What the function returned.
+        length: Number of steps of the episodes.
+    """
+
+    ids: range
+    value: Any
+    length: int
+
+
+@dataclass(frozen=True, eq=False)
+class Reduction(Sequence[Any]):
+    """What reductions on the nodes returned, one value for each batch, in the order of the episodes.
+
+    Attributes:
+        parts: The batches.
+        report: Statistics: which nodes played them, and which were lost.
+    """
+
+    parts: tuple[Part, ...]
+    report: Report
+
+    def __len__(self) -> int:
+        return len(self.parts)
+
+    @overload
+    def __getitem__(self, index: int) -> Any: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Any, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Any:
+        return self.values[index]
+
+    @property
+    def values(self) -> tuple[Any, ...]:
+        """The values of the batches."""
+        return tuple(part.value for part in self.parts)
+
+    @property
+    def episode_count(self) -> int:
+        """Number of episodes."""
+        return sum(len(part.ids) for part in self.parts)
+
+    @property
+    def step_count(self) -> int:
+        """Number of steps of all episodes."""
+        return sum(part.length for part in self.parts)

@@ -13,7 +13,7 @@ from ray.exceptions import RayError, RayTaskError  # pyright: ignore[reportMissi
 from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError
 from carom.cluster.ledger import Outcome
-from carom.cluster.nodes import Failed, Failure, Node, living_nodes
+from carom.cluster.nodes import Failed, Failure, Node, living_nodes, unpacked
 
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"
@@ -90,10 +90,16 @@ class Crew:
                 prepared = member.actor.prepare.remote(self.make_env, self.num_envs, self.max_episode_steps)
                 self._jobs[prepared] = (member, None)
 
-    def give(self, member: Member, batch: range, policy: Any, seed: int, keep_steps: bool) -> None:
-        """Let an idle actor play a batch; `policy` is a Ray reference to the pickled policy."""
+    def give(
+        self, member: Member, batch: range, policy: Any, reduction: Any, seed: int, keep_steps: bool
+    ) -> None:
+        """Let an idle actor play a batch.
+
+        `policy` and `reduction` are Ray's references to them, pickled; `reduction` may be None. Ray brings
+        what they refer to to each node once, from any node that has it.
+        """
         self.idle.remove(member)
-        self._jobs[member.actor.play.remote(policy, batch, seed, keep_steps)] = (member, batch)
+        self._jobs[member.actor.play.remote(policy, reduction, batch, seed, keep_steps)] = (member, batch)
 
     def wait(self) -> Returned | None:
         """Wait for the next event; if it is the end of a batch, return its result.
@@ -168,9 +174,11 @@ class Crew:
             )
 
 
-def _received(outcome: list[Episode] | Failed) -> Outcome:
-    """The result of a batch from another process: an exception, or episodes with writable arrays."""
+def _received(outcome: list[Episode] | bytes | Failed) -> Outcome:
+    """The result of a batch from another process: an exception, episodes with writable arrays, or a part."""
     if isinstance(outcome, Failed):
         return outcome.error()
+    if isinstance(outcome, bytes):
+        return [unpacked(outcome)]
     # The received arrays are read-only memory of Ray's object store, which would fill up.
     return [episode.copy() for episode in outcome]

@@ -14,10 +14,10 @@ class ClusterError(CaromError):
 
 
 class EpisodeError(ClusterError):
-    """The policy or the environment failed; its exception is the cause of this one.
+    """The policy, the environment or a reduction failed; its exception is the cause of this one.
 
     Attributes:
-        what: "the policy" or "the environment".
+        what: "the policy", "the environment" or "the reduction".
         ids: Ids of the episodes that were being played.
         seeds: Seeds of these episodes.
     """

@@ -6,12 +6,21 @@ import heapq
 import itertools
 from collections import Counter
 from collections.abc import Iterator
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
-from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError, EpisodeError, named
 
-Outcome: TypeAlias = list[Episode] | EpisodeError
+
+class Entry(Protocol):
+    """An episode, or the part of a reduction that stands for a whole batch."""
+
+    @property
+    def length(self) -> int:
+        """Number of steps."""
+        ...
+
+
+Outcome: TypeAlias = list[Entry] | EpisodeError
 """Result of a batch."""
 
 
@@ -24,17 +33,20 @@ class Ledger:
     also fails if a batch loses its process so many times (`attempts`).
 
     Attributes:
-        counted: The episodes that count, in the order of their ids, which are consecutive.
+        first: Id of the first episode.
+        counted: What counts, in the order of the ids of the episodes, which are consecutive.
         repeated: Number of episodes that were repeated.
     """
 
     def __init__(
         self, first: int, batch_size: int, *, episodes: int | None, steps: int | None, attempts: int
     ) -> None:
-        self.counted: list[Episode] = []
+        self.first = first
+        self.counted: list[Entry] = []
         self.repeated = 0
-        self._episodes, self._steps, self._attempts = episodes, steps, attempts
-        self._fresh = _batches(first, batch_size, None if episodes is None else first + episodes)
+        self._end = None if episodes is None else first + episodes
+        self._steps, self._attempts = steps, attempts
+        self._fresh = _batches(first, batch_size, self._end)
         self._lost: list[tuple[int, range]] = []
         self._losses: Counter[int] = Counter()
         self._early: dict[int, Outcome] = {}
@@ -48,8 +60,8 @@ class Ledger:
     @property
     def is_full(self) -> bool:
         """Whether the requested number of episodes or steps is reached."""
-        if self._episodes is not None:
-            return len(self.counted) >= self._episodes
+        if self._end is not None:
+            return self._next >= self._end
         return self._steps is not None and self._steps_counted >= self._steps
 
     def take(self) -> range | None:
@@ -98,11 +110,11 @@ class Ledger:
         if isinstance(outcome, EpisodeError):
             raise outcome
         self._next += self._sizes.pop(self._next)
-        for episode in outcome:
-            if self.is_full:
+        for entry in outcome:
+            if self._steps is not None and self.is_full:
                 break
-            self.counted.append(episode)
-            self._steps_counted += episode.length
+            self.counted.append(entry)
+            self._steps_counted += entry.length
 
 
 def _batches(first: int, size: int, end: int | None) -> Iterator[range]:

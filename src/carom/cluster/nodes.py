@@ -14,6 +14,7 @@ from ray.util.scheduling_strategies import (  # pyright: ignore[reportMissingImp
     NodeAffinitySchedulingStrategy,
 )
 
+from carom.cluster.collection import Part
 from carom.cluster.episode import Episode
 from carom.cluster.errors import EpisodeError
 from carom.cluster.player import Player
@@ -21,6 +22,8 @@ from carom.cluster.policies import Policy
 
 MakeEnv = Callable[[int], VectorEnv]
 """Makes a vector environment with the given number of environments."""
+Reduce = Callable[[list[Episode]], Any]
+"""Makes something small of the episodes of a batch."""
 
 
 def packed(value: Any, name: str) -> bytes:
@@ -114,15 +117,37 @@ class NodePlayer:
             return Failure.of(error)
         return None
 
-    def play(self, policy: bytes, ids: range, seed: int, keep_steps: bool) -> list[Episode] | Failed:
-        """Play episodes with a pickled policy; see `Player.play`."""
+    def play(
+        self, policy: bytes, reduction: bytes | None, ids: range, seed: int, keep_steps: bool
+    ) -> list[Episode] | bytes | Failed:
+        """Play episodes with a pickled policy; see `Player.play`.
+
+        Returns:
+            The episodes; or, with a pickled function of a list of episodes, a pickled `Part`.
+        """
         assert self._player is not None
         fresh: Policy = unpacked(policy)
         try:
-            return self._player.play(fresh, ids, seed, keep_steps=keep_steps)
+            episodes = self._player.play(fresh, ids, seed, keep_steps=keep_steps)
+            return episodes if reduction is None else _reduced(reduction, episodes, ids, seed)
         except EpisodeError as error:
             failure = Failure.of(error.__cause__ or error)
             return Failed(error.what, error.ids, error.seeds, error.reason, failure)
+
+
+def _reduced(reduction: bytes, episodes: list[Episode], ids: range, seed: int) -> bytes:
+    """The `Part` that a pickled function makes of a batch, pickled.
+
+    Raises:
+        EpisodeError: The function cannot be unpickled or failed, or its result cannot be pickled.
+    """
+    try:
+        function: Reduce = unpacked(reduction)
+        length = sum(episode.length for episode in episodes)
+        return packed(Part(ids, function(episodes), length), "the result of the reduction")
+    except Exception as error:
+        seeds = [seed + number for number in ids]
+        raise EpisodeError("the reduction", ids, seeds, f"{type(error).__name__}: {error}") from error
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ from typing import Any
 
 import ray  # pyright: ignore[reportMissingImports]
 
-from carom.cluster.collection import Collection, Report
+from carom.cluster.collection import Collection, Part, Reduction, Report
 from carom.cluster.crew import Crew
+from carom.cluster.episode import Episode
 from carom.cluster.ledger import Ledger
-from carom.cluster.nodes import MakeEnv, packed
+from carom.cluster.nodes import MakeEnv, Reduce, packed
 from carom.cluster.policies import Policy
 
 
@@ -100,6 +101,61 @@ class Rollouts:
             ClusterError: No node is left, an environment cannot be made, or processes die repeatedly while
                 they play the same episodes.
         """
+        ledger, players = self._play(policy, None, episodes, steps, first, keep_steps)
+        found = tuple(entry for entry in ledger.counted if isinstance(entry, Episode))
+        self.next_id = ledger.first + len(found)
+        return Collection(found, self._report(ledger, [players[episode.id] for episode in found]))
+
+    def reduce(
+        self,
+        policy: Policy,
+        function: Reduce,
+        *,
+        episodes: int | None = None,
+        steps: int | None = None,
+        first: int | None = None,
+        keep_steps: bool = True,
+    ) -> Reduction:
+        """Play episodes, and let the nodes make something small of them, such as a sum or a gradient.
+
+        Only this is sent, and not the episodes. The batches are the same for any number of nodes, and so are
+        the values and their order.
+
+        Args:
+            policy: As for `collect`.
+            function: Called on the nodes with the list of the episodes of a batch, in the order of their ids;
+                what it returns is sent, so it must be possible to pickle it.
+            episodes: Number of episodes.
+            steps: Minimum total number of steps, instead of `episodes`; the batch that reaches it is the last
+                one.
+            first: Id of the first episode; None continues after the last collection.
+            keep_steps: Whether the episodes have observations and actions, besides the rewards.
+
+        Returns:
+            The values of the batches, in the order of the episodes.
+
+        Raises:
+            ValueError: Both or neither of `episodes` and `steps` are given, or a number is too small.
+            TypeError: The policy or the function refers to something that cannot be sent.
+            EpisodeError: The policy, the environment or the function failed; its exception is the cause.
+            ClusterError: As for `collect`.
+        """
+        ledger, players = self._play(policy, function, episodes, steps, first, keep_steps)
+        parts = tuple(entry for entry in ledger.counted if isinstance(entry, Part))
+        self.next_id = parts[-1].ids.stop
+        played = [players[number] for part in parts for number in part.ids]
+        return Reduction(parts, self._report(ledger, played))
+
+    def _play(
+        self,
+        policy: Policy,
+        function: Reduce | None,
+        episodes: int | None,
+        steps: int | None,
+        first: int | None,
+        keep_steps: bool,
+    ) -> tuple[Ledger, dict[int, str]]:
+        """Play; returns the books, and the node that played each episode, counted or not."""
         if (episodes is None) == (steps is None):
             raise ValueError("give either episodes or steps")
         _check(episodes=episodes, steps=steps)
@@ -108,12 +164,13 @@ class Rollouts:
         if not ray.is_initialized():
             ray.init()
         ledger = Ledger(first, self._batch_size, episodes=episodes, steps=steps, attempts=self._attempts)
-        # Node that played each episode, including episodes that are not counted in the end.
         players: dict[int, str] = {}
         self._crew.begin()
+        # They are sent once for a collection, and not with each batch.
         sent = ray.put(packed(policy, "the policy"))
+        reduction = None if function is None else ray.put(packed(function, "the reduction"))
         while not ledger.is_full:
-            self._hand_out(ledger, sent, keep_steps)
+            self._hand_out(ledger, sent, reduction, keep_steps)
             back = self._crew.wait()
             if back is None:
                 continue
@@ -121,17 +178,17 @@ class Rollouts:
                 ledger.lose(back.batch, back.lost)
             elif ledger.finish(back.batch, back.outcome):
                 players.update(dict.fromkeys(back.batch, str(back.node)))
-        self.next_id = first + len(ledger.counted)
-        shares = Counter(players[episode.id] for episode in ledger.counted)
-        report = Report(dict(shares), list(self._crew.lost), ledger.repeated)
-        return Collection(tuple(ledger.counted), report)
+        return ledger, players
 
-    def _hand_out(self, ledger: Ledger, policy: Any, keep_steps: bool) -> None:
+    def _report(self, ledger: Ledger, played: list[str]) -> Report:
+        return Report(dict(Counter(played)), list(self._crew.lost), ledger.repeated)
+
+    def _hand_out(self, ledger: Ledger, policy: Any, reduction: Any, keep_steps: bool) -> None:
         for member in list(self._crew.idle):
             batch = ledger.take()
             if batch is None:
                 return
-            self._crew.give(member, batch, policy, self._seed, keep_steps)
+            self._crew.give(member, batch, policy, reduction, self._seed, keep_steps)
 
     def close(self) -> None:
         """End the processes on the nodes; Ray keeps running."""

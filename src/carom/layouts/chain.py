@@ -134,3 +134,20 @@ class Search:
     square_matrix: Array[Matrix3]
     spectrum_matrix: Reals  # eigenvalue problem of the selective step, entry by entry
     spectrum_vectors: Reals
+
+
+@struct
+class SearchBatch:
+    """Searches for poses of a body in many worlds: the fields of `Search` that differ, and the results."""
+
+    base_pose: Reals  # by world, then number
+    end_position: Vectors3  # given targets, by world, then end
+    end_rotation: Quaternions
+    start: Reals  # by world, then coordinate
+    best: Reals
+    damping: Reals  # by world, then dof
+    lower: Reals
+    upper: Reals
+    range: Reals
+    rest: Reals
+    residual: Reals  # by world: the largest distance [m] and angle [rad] that are left

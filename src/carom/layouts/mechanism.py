@@ -11,7 +11,7 @@ linear acceleration minus gravity; for a Jacobian it begins with the point. Posi
 of the joints follow, as far as the kernel needs them.
 """
 
-from carom.layouts.types import Array, Int32, Matrix3, Reals, Vector3, real, struct
+from carom.layouts.types import Array, Int32, Matrix3, Reals, Vector3, Vectors3, real, struct
 
 BASE_MOTION = 9
 """Count of numbers in `input` before the positions."""
@@ -94,6 +94,21 @@ class MechanismTable:
     input: Reals
     output: Reals
     matrix: Reals  # mass matrix, row-major
+
+
+@struct
+class MechanismBatch:
+    """Questions about a mechanism in many worlds, one row for each world, and the answers.
+
+    The parameters of nodes and dofs are used only if they differ between worlds.
+    """
+
+    question: Reals
+    answer: Reals
+    mass: Reals  # by world, then node; as in `NodeModel`
+    moment: Vectors3
+    inertia: Array[Matrix3]
+    armature: Reals  # by world, then dof
 
 
 @struct

@@ -48,6 +48,7 @@ class Touching:
     world_distance: Reals  # of the deepest point
     world_deepest: Vectors3  # that point on the chosen link, in world axes
     place_touching: Array[Truth]  # by world, then chosen link: whether the link has a contact point
+    place_impulse: Vectors3  # likewise: total impulse on the link, in world axes
 
 
 @struct

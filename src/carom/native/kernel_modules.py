@@ -14,8 +14,8 @@ KERNEL_MODULES = _modules(
         "dynamics.step",
         "dynamics.step_ends",
     ),
-    *("images.draw", "inverse_kinematics.search"),
-    *("mechanism.dynamics", "mechanism.motion", "mechanism.stable_pd"),
+    *("images.draw", "inverse_kinematics.many_searches", "inverse_kinematics.search"),
+    *("mechanism.dynamics", "mechanism.many_bodies", "mechanism.motion", "mechanism.stable_pd"),
     *("queries.closest", "queries.contact_report", "queries.rays", "queries.touching"),
     *("soft.stages", "solver.sleeping", "solver.stages"),
 )
@@ -35,7 +35,9 @@ PARALLEL_MODULES = _modules(
 ARRAY_MODULES = _modules("arrays.arithmetic")
 # Kernels that take a world through a whole stage; on GPUs there are others for this.
 _WHOLE_WORLDS = _modules(
-    "contact.stages", "dynamics.step", "dynamics.step_ends", "soft.stages", "solver.stages"
+    *("contact.stages", "dynamics.step", "dynamics.step_ends", "soft.stages", "solver.stages"),
+    # Each thread has the workspace of one body.
+    *("inverse_kinematics.many_searches", "mechanism.many_bodies"),
 )
 CUDA_MODULES = (
     *PARALLEL_MODULES,

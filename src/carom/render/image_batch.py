@@ -7,11 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.engine.interpreter import Interpreter
-from carom.engine.program import Program
-from carom.engine.threads import Threads
+from carom.engine.world_calls import WorldCalls
 from carom.layouts.images import Picture
-from carom.layouts.status import STEPS_DONE
 from carom.native.kernels import shadow_map_kernel, whole_image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product
@@ -70,7 +67,7 @@ class ImageBatch:
     def __init__(self, scene: SceneArrays, width: int, height: int, threads: int) -> None:
         self._scene = scene
         self._size = (width, height)
-        self._threads = Threads(threads)
+        self._calls = WorldCalls(threads)
         self._workspaces = [_Thread(scene, width, height) for _ in range(threads)]
 
     def draw(self, link_to_world: Matrix, views: Matrix, projection: Matrix, light: Light) -> RawImages:
@@ -98,22 +95,15 @@ class ImageBatch:
             cameras = shadow_cameras(light, self._scene, link_to_world, projection, width, height)
             write_bias(lighting, cameras)
         world_to_clip = product(projection, views)
-        status = np.zeros((count, STEPS_DONE + 1), dtype=np.int32)
-        worlds, nothing_due = np.arange(count, dtype=np.int32), np.zeros(1, dtype=np.int32)
-        counter = np.zeros(1, dtype=np.int32)
         links = len(self._scene.link_rows)
-        interpreters: list[Interpreter] = []
         scene = self._scene.struct
+        launches: list[list[Launch]] = []
         for view, lamp in self._look(world_to_clip, link_to_world, cameras)[:count]:
-            launches = [Launch(whole_image_kernel, 1, [scene, view, lamp, picture, links, 0])]
+            own = [Launch(whole_image_kernel, 1, [scene, view, lamp, picture, links, 0])]
             if light.shadow:
-                launches.insert(0, Launch(shadow_map_kernel, 1, [scene, lamp, links, 0]))
-            interpreter = Interpreter(status, worlds, nothing_due, counter)
-            interpreter.load(Program([], launches, [], [], []))
-            interpreter.ask(chunk=1)
-            interpreters.append(interpreter)
-        if interpreters:
-            self._threads.run([interpreter.run for interpreter in interpreters])
+                own.insert(0, Launch(shadow_map_kernel, 1, [scene, lamp, links, 0]))
+            launches.append(own)
+        self._calls.run(count, launches, chunk=1)
         shape = (count, height, width)
         return RawImages(
             rgba.view(np.uint8).reshape(*shape, 4), distance.reshape(shape), label.reshape(shape)

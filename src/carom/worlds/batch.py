@@ -21,10 +21,11 @@ from carom.worlds.poses import PoseFinder
 class Batch:
     """Base class of `BodyBatch`: where the rows of a body are, by which names, and how to write to them."""
 
-    def __init__(self, body: Body, scene: World, engine: Engine) -> None:
+    def __init__(self, body: Body, scene: World, engine: Engine, threads: int) -> None:
         self._body = body
         self._scene = scene
         self._engine = engine
+        self._threads = threads
         self._state = engine.arrays.state.numpy
         self._take = engine.take
         self._count = engine.arrays.world_count

@@ -12,10 +12,11 @@ from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
 from carom.worlds.joints import JointBatch
+from carom.worlds.mechanics import AlgorithmBatch
 from carom.worlds.sensors import SensorBatch
 
 
-class BodyBatch(JointBatch, ActuatorBatch, SensorBatch):
+class BodyBatch(JointBatch, ActuatorBatch, AlgorithmBatch, SensorBatch):
     """The same body in all worlds; get it from `Worlds[body]`.
 
     The first axis of arrays is the world, the second joint coordinates or links. Coordinates leave out fixed

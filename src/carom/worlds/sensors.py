@@ -91,8 +91,8 @@ class BatchSource(Source):
 class SensorBatch(Batch):
     """The part of `BodyBatch` that is about sites and sensors."""
 
-    def __init__(self, body: Body, scene: World, engine: Engine, source: BatchSource) -> None:
-        super().__init__(body, scene, engine)
+    def __init__(self, body: Body, scene: World, engine: Engine, source: BatchSource, threads: int) -> None:
+        super().__init__(body, scene, engine, threads)
         self._source = source
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -15,7 +15,7 @@ from carom.closed import Closed
 from carom.engine.engine import MOST_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
-from carom.scene.body import Body
+from carom.native.cpu import core_count
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
@@ -23,7 +23,7 @@ from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.checks import Mask
 from carom.worlds.chosen import Chosen, world_numbers
-from carom.worlds.contacts import ContactFinder, ContactSummary
+from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, ImageTaker
 from carom.worlds.keyframes import reset_to
@@ -31,7 +31,6 @@ from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
 from carom.worlds.sensors import BatchSource
-from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -41,7 +40,7 @@ _MOST_NAMED = 8
 """Maximum number of worlds named in a warning when several halt."""
 
 
-class Worlds(Closed):
+class Worlds(ContactQueries, Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
@@ -86,9 +85,10 @@ class Worlds(Closed):
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
         self.halted: Mask = np.zeros(count, dtype=bool)
+        workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.times)
         self._bodies = {
-            number: BodyBatch(body, self._scene, self._engine, self._sensors)
+            number: BodyBatch(body, self._scene, self._engine, self._sensors, workers)
             for number, body in self._scene.bodies.items()
         }
 
@@ -107,20 +107,6 @@ class Worlds(Closed):
 
     def __len__(self) -> int:
         return self.count
-
-    def __getitem__(self, body: Body | int) -> BodyBatch:
-        """A body in all worlds.
-
-        Args:
-            body: The body in the original world, or its number.
-
-        Raises:
-            KeyError: That world had no such body.
-        """
-        number = body if isinstance(body, int) else body.id
-        if number not in self._bodies:
-            raise KeyError(f"there is no body {number}; there are {', '.join(map(str, self._bodies))}")
-        return self._bodies[number]
 
     @property
     def bodies(self) -> Named[BodyBatch]:
@@ -403,82 +389,6 @@ class Worlds(Closed):
         return Chosen(self._engine.take(where), self.count)
 
     # Queries
-
-    def contacts(
-        self,
-        body: Body | int,
-        other: Body | int | None = None,
-        *,
-        link: int | str | None = None,
-        other_link: int | str | None = None,
-    ) -> ContactSummary:
-        """Contacts of a body with another, or with anything, in each world, as of the last step.
-
-        Contacts of soft bodies with shapes are found for one world after the other; those of two soft bodies
-        are not included.
-
-        Args:
-            body: The body.
-            other: The other body; None for any.
-            link: Link of the body by index (-1 is the base) or name; None for any.
-            other_link: Link of the other body likewise.
-        """
-        first, second = self[body], None if other is None else self[other]
-        if second is None and other_link is not None:
-            raise ValueError("other_link needs other")
-        found = self._contact_finder.summary(
-            first.link_rows(link),
-            None if second is None else second.link_rows(other_link),
-            self._scene.parameters.substep_time,
-        )
-        if self._is_soft(body, other):
-            found.include(self._soft_touches(body, link, other, other_link))
-        return found
-
-    def links_in_contact(
-        self, body: Body | int, other: Body | int, other_link: int | str | None = None
-    ) -> Mask:
-        """Which links of a body have a contact point with another body, as of the last step.
-
-        Points that do not touch yet count as well, as in `ContactSummary.number`. For soft bodies, see
-        `contacts`.
-
-        Args:
-            body: The body.
-            other: The other body.
-            other_link: Link of the other body by index (-1 is the base) or name; None for any.
-
-        Returns:
-            (count, links + 1) booleans, the base first.
-        """
-        found = self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
-        if self._is_soft(body, other):
-            for world, touches in self._soft_touches(body, None, other, other_link):
-                found[world, np.unique(touches.links) + 1] = True
-        return found
-
-    def _is_soft(self, body: Body | int, other: Body | int | None) -> bool:
-        """Whether contacts of bodies, None for any, can be contacts of soft bodies."""
-        soft = {item.rows.first["link"] for item in self._scene.contact_arrays.soft.bodies}
-        asked = [body] if other is None else [body, other]
-        return bool(soft) and (other is None or any(self[one].rows.first["link"] in soft for one in asked))
-
-    def _soft_touches(
-        self, body: Body | int, link: int | str | None, other: Body | int | None, other_link: int | str | None
-    ) -> Sequence[tuple[int, SoftTouches]]:
-        first, second = self._side(body, link), self._side(other, other_link)
-        return soft_touches(self._scene, self._engine, first, second)
-
-    def _side(self, body: Body | int | None, link: int | str | None) -> Side:
-        if body is None:
-            return Side.of(None, None)
-        return Side.of(
-            body if isinstance(body, int) else body.id, None if link is None else self[body].link_index(link)
-        )
-
-    @cached_property
-    def _contact_finder(self) -> ContactFinder:
-        return ContactFinder(self._engine)
 
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """Results of rays in each world.

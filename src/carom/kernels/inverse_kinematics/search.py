@@ -171,8 +171,8 @@ def take_targets(sizes: ChainSizes, search: Search):
         search.end_target_rotation[end] = wp.quat_inverse(base) * wp.normalize(search.end_given_rotation[end])
 
 
-@kernel
-def inverse_kinematics_kernel(
+@func
+def find_coordinates(
     sizes: ChainSizes,
     chain: Chain,
     search: Search,
@@ -252,3 +252,22 @@ def inverse_kinematics_kernel(
         spread = wp.min(1.6 * spread, real(1.0))
         worth = _WORTH_A_JUMP
         seed += 1
+
+
+@kernel
+def inverse_kinematics_kernel(
+    sizes: ChainSizes,
+    chain: Chain,
+    search: Search,
+    oriented: Int32,
+    step_kind: Int32,
+    bounded: Int32,
+    iterations: Int32,
+    further: Int32,
+    threshold: real,
+    patience: real,
+):
+    """See `find_coordinates`."""
+    find_coordinates(
+        sizes, chain, search, oriented, step_kind, bounded, iterations, further, threshold, patience
+    )

@@ -368,8 +368,8 @@ def inverse_dynamics_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
     newton_euler_of_input(sizes, mechanism, first_rate(sizes) + sizes.dofs - sizes.base_dofs)
 
 
-@kernel
-def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
+@func
+def mass_matrix(sizes: MechanismSizes, mechanism: MechanismTable):
     """Compute the mass matrix in `matrix`, at the positions in `input`.
 
     Its first entry is NaN if any is not finite, so that only one number has to be checked.
@@ -387,7 +387,13 @@ def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
 
 
 @kernel
-def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32):
+def mass_matrix_kernel(sizes: MechanismSizes, mechanism: MechanismTable):
+    """See `mass_matrix`."""
+    mass_matrix(sizes, mechanism)
+
+
+@func
+def jacobian(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32):
     """Compute the Jacobian of a point in `output`: three rows of linear, then three of angular velocity.
 
     Its first entry is NaN if any is not finite, so that only one number has to be checked.
@@ -414,3 +420,9 @@ def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32
         node = mechanism.node[node].parent
     if wp.isnan(zero):
         mechanism.output[0] = zero
+
+
+@kernel
+def jacobian_kernel(sizes: MechanismSizes, mechanism: MechanismTable, end: Int32):
+    """See `jacobian`."""
+    jacobian(sizes, mechanism, end)

@@ -90,15 +90,45 @@ def take_positions(
 
 
 @func
-def gravity_in_base(question: Reals, opposite_order: Int32) -> Vector3:
+def gravity_in_base(question: Reals, first: Int32, opposite_order: Int32) -> Vector3:
     """Gravity in the axes of a free base; not finite if the length of its quaternion is 0 or NaN."""
-    gravity = vector_at(question, 0)
-    turn = quaternion_at(question, POSE + 3)
+    gravity = vector_at(question, first)
+    turn = quaternion_at(question, first + POSE + 3)
     if not wp.length_sq(turn) > 0.0:
         return Vector3(NOT_FINITE, NOT_FINITE, NOT_FINITE)
     if opposite_order == 1:
         return turned_back_in_opposite_order(turn, gravity)
     return turned_back(rotation_matrix(wp.normalize(turn)), gravity)
+
+
+@func
+def forces_of_motion(
+    sizes: MechanismSizes, mechanism: MechanismTable, question: Reals, first: Int32, as_pybullet: Int32
+):
+    """Compute in `output` what `motion_kernel` does, for a question that begins at `first`."""
+    positions = first + POSE
+    acceleration = -vector_at(question, first)
+    omega, alpha = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
+    unused = real(0.0)
+    if sizes.base_dofs > 0:
+        positions += BASE_POSITIONS
+    rates = positions + sizes.dofs - sizes.base_dofs if as_pybullet == 1 else positions + sizes.coordinates
+    if sizes.base_dofs > 0:
+        omega = vector_at(question, rates)
+        alpha = vector_at(question, rates + sizes.dofs)
+        own = vector_at(question, rates + sizes.dofs + 3)
+        acceleration = own - gravity_in_base(question, first, as_pybullet)
+        # Position and velocity of the base have no influence, but have to be finite, too.
+        idle = vector_at(question, first + POSE) + vector_at(question, rates + 3)
+        unused = 0.0 * (idle[0] + idle[1] + idle[2])
+    take_positions(sizes, mechanism, question, positions, as_pybullet)
+    newton_euler(sizes, mechanism, omega, alpha, acceleration, question, rates, rates + sizes.dofs)
+    if sizes.base_dofs > 0:
+        unused += 0.0 * mechanism.output[0]
+        for axis in range(3):
+            torque = mechanism.output[axis]
+            mechanism.output[axis] = mechanism.output[3 + axis] + unused
+            mechanism.output[3 + axis] = torque
 
 
 @kernel
@@ -111,26 +141,4 @@ def motion_kernel(sizes: MechanismSizes, mechanism: MechanismTable, question: Re
     `as_pybullet` is 1, gravity acts on a free base in the same direction as in PyBullet, and positions of
     spherical joints are roll, pitch and yaw.
     """
-    positions = POSE + 0
-    acceleration = -vector_at(question, 0)
-    omega, alpha = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
-    unused = real(0.0)
-    if sizes.base_dofs > 0:
-        positions += BASE_POSITIONS
-    rates = positions + sizes.dofs - sizes.base_dofs if as_pybullet == 1 else positions + sizes.coordinates
-    if sizes.base_dofs > 0:
-        omega = vector_at(question, rates)
-        alpha = vector_at(question, rates + sizes.dofs)
-        own = vector_at(question, rates + sizes.dofs + 3)
-        acceleration = own - gravity_in_base(question, as_pybullet)
-        # Position and velocity of the base have no influence, but have to be finite, too.
-        idle = vector_at(question, POSE) + vector_at(question, rates + 3)
-        unused = 0.0 * (idle[0] + idle[1] + idle[2])
-    take_positions(sizes, mechanism, question, positions, as_pybullet)
-    newton_euler(sizes, mechanism, omega, alpha, acceleration, question, rates, rates + sizes.dofs)
-    if sizes.base_dofs > 0:
-        unused += 0.0 * mechanism.output[0]
-        for axis in range(3):
-            torque = mechanism.output[axis]
-            mechanism.output[axis] = mechanism.output[3 + axis] + unused
-            mechanism.output[3 + axis] = torque
+    forces_of_motion(sizes, mechanism, question, 0, as_pybullet)

@@ -31,21 +31,27 @@ def touching_kernel(
     impulse = Vector3(0.0, 0.0, 0.0)
     for place in range(links * world, links * (world + 1)):
         touching.place_touching[place] = wp.uint8(0)
+        touching.place_impulse[place] = Vector3(0.0, 0.0, 0.0)
     for contact in range(contacts.count_contacts[world, THERE]):
         a = contacts.contact_shapes[world, contact][2]
         b = contacts.contact_shapes[world, contact][3]
         is_a, is_b = is_between(touching, a, b, anything), is_between(touching, b, a, anything)
-        if is_a:
-            touching.place_touching[links * world + touching.link_place[a]] = wp.uint8(1)
-        if is_b:
-            touching.place_touching[links * world + touching.link_place[b]] = wp.uint8(1)
         if is_a or is_b:
+            # Normals point from b to a, so the impulses along them push a away from b.
+            push = impulse_on_a(contacts, world, contact)
+            if is_a:
+                place = links * world + touching.link_place[a]
+                touching.place_touching[place] = wp.uint8(1)
+                touching.place_impulse[place] += push
+            if is_b:
+                place = links * world + touching.link_place[b]
+                touching.place_touching[place] = wp.uint8(1)
+                touching.place_impulse[place] -= push
             touching.world_number[world] += 1
             if contacts.contact_impulse[world, contact][0] > 0.0:
                 touching.world_touching[world] = wp.uint8(1)
-            # Normals point from b to a, so the impulses along them push a away from b. If both links of a
-            # contact are selected, as within a body, impulse and deepest point are those of link a.
-            push = impulse_on_a(contacts, world, contact)
+            # If both links of a contact are selected, as within a body, the impulse and the deepest point of
+            # the world are those of link a.
             nearer = contacts.contact_distance[world, contact] < touching.world_distance[world]
             if nearer:
                 touching.world_distance[world] = contacts.contact_distance[world, contact]

@@ -10,6 +10,7 @@ import gymnasium
 import numpy as np
 
 from carom.checks import Array
+from carom.vector.delays import DelayLine
 from carom.vector.managers.clock import Clock
 from carom.vector.managers.observing import Observer
 from carom.vector.managers.terms import Task, shaped
@@ -55,6 +56,7 @@ class ManagerEnv(WorldsEnv):
         """Duration of an environment step [s]."""
         self.actions: Array = np.zeros((num_envs, *action_space.shape))
         self.last_actions: Array = self.actions.copy()
+        self._late_actions = DelayLine(num_envs, action_space.shape, task.action_delay, name="action_delay")
         self.reward_sums: dict[str, Array] = {name: np.zeros(num_envs) for name in task.rewards}
         self.commands: dict[str, Array] = {}
         self._ended: dict[str, Mask] = {name: np.zeros(num_envs, dtype=bool) for name in task.terminations}
@@ -93,7 +95,7 @@ class ManagerEnv(WorldsEnv):
         """Apply the actions for the next step.
 
         Args:
-            actions: Finite doubles (num_envs, n), the same as `self.actions`.
+            actions: Finite doubles (num_envs, n): `self.actions`, or earlier ones with `Task.action_delay`.
         """
 
     # What `WorldsEnv` asks
@@ -126,7 +128,9 @@ class ManagerEnv(WorldsEnv):
             clock.start(worlds, self.random)
         for array in (self.actions, self.last_actions, *self.reward_sums.values()):
             array[worlds] = 0.0
-        self.observer.forget(worlds)
+        self.observer.forget(worlds, self.random)
+        self._late_actions.start(worlds, self.random)
+        self._late_actions.fill(worlds, 0.0)
 
     def act(self, actions: np.ndarray) -> None:
         """Call what is due, then apply the actions."""
@@ -138,7 +142,8 @@ class ManagerEnv(WorldsEnv):
             self._command(name, clock.due(self.duration, self.random))
         self.last_actions[...] = self.actions
         self.actions[...] = actions
-        self.apply(self.actions)
+        self._late_actions.push(self.actions)
+        self.apply(self._late_actions.value)
 
     def _command(self, name: str, worlds: np.ndarray) -> None:
         if len(worlds):

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.vector.checkpoints import Attributes
+from carom.vector.delays import DelayLine
 from carom.vector.managers.terms import Observation, shaped
+from carom.vector.random import RandomSources
 
 if TYPE_CHECKING:
     from carom.vector.managers.manager_env import ManagerEnv
@@ -34,12 +36,10 @@ class Observer(Attributes):
             raise ValueError("a task needs at least one observation")
         self._terms = dict(terms)
         self._widths: dict[str, int] = {}
-        self._remembered: dict[str, np.ndarray] = {}
+        self._lines: dict[str, DelayLine] = {}
         self.columns: dict[str, slice] = {}
         noises, first = [], 0
         for name, term in self._terms.items():
-            if term.history < 1:
-                raise ValueError(f"observation {name!r}: history must be at least 1, not {term.history}")
             value = np.asarray(term.function(env))
             if value.ndim not in (1, 2) or len(value) != env.num_envs:
                 raise ValueError(
@@ -54,8 +54,11 @@ class Observer(Attributes):
                 raise ValueError(
                     f"observation {name!r}: noise and scale must be one number or {width}"
                 ) from None
-            if term.history > 1:
-                self._remembered[name] = np.zeros((env.num_envs, term.history, width))
+            line = DelayLine(
+                env.num_envs, (width,), term.delay, history=term.history, name=f"observation {name!r}"
+            )
+            if term.history > 1 or term.delay != 0:
+                self._lines[name] = line
             self.columns[name] = slice(first, first + width * term.history)
             first += width * term.history
         self.size: int = first
@@ -63,9 +66,11 @@ class Observer(Attributes):
         # The step of its episode in which each world was remembered last.
         self._step = np.full(env.num_envs, -1, dtype=np.int64)
 
-    def forget(self, worlds: np.ndarray) -> None:
-        """Forget the history of worlds whose episodes begin."""
+    def forget(self, worlds: np.ndarray, random: RandomSources) -> None:
+        """Forget the history of worlds whose episodes begin, and choose their delays."""
         self._step[worlds] = -1
+        for line in self._lines.values():
+            line.start(worlds, random)
 
     def __call__(self, env: ManagerEnv) -> np.ndarray:
         """The observations, (num_envs, size)."""
@@ -81,12 +86,11 @@ class Observer(Attributes):
         for (name, term), value in zip(self._terms.items(), values, strict=True):
             limited = value if term.clip is None else np.clip(value, *term.clip)
             scaled = limited * term.scale
-            if term.history > 1:
-                past = self._remembered[name]
-                past[begins] = scaled[begins, None]
-                going_on = is_new & ~begins
-                past[going_on] = np.concatenate([past[going_on, 1:], scaled[going_on, None]], axis=1)
-                scaled = past.reshape(env.num_envs, -1)
+            if name in self._lines:
+                line, going_on = self._lines[name], is_new & ~begins
+                line.fill(begins, scaled[begins])
+                line.push(scaled[going_on], going_on)
+                scaled = line.history.reshape(env.num_envs, -1)
             found[:, self.columns[name]] = scaled
         self._step[:] = env.episode_steps
         return found

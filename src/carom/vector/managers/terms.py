@@ -12,6 +12,8 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom.vector.delays import Delay
+
 _Term = TypeVar("_Term")
 
 
@@ -26,6 +28,8 @@ class Observation:
         clip: Least and greatest value; None for no limits.
         history: Number of the latest values that are observed, the oldest first. At the start of an episode
             they all are the first one.
+        delay: Number of environment steps by which they are late; or the least and the greatest number,
+            between which each episode draws its own. At the start of an episode they are the first one.
     """
 
     function: Callable[[Any], ArrayLike]
@@ -33,6 +37,7 @@ class Observation:
     noise: ArrayLike = 0.0
     clip: tuple[float, float] | None = None
     history: int = 1
+    delay: Delay = 0
 
 
 @dataclass(frozen=True)
@@ -109,6 +114,17 @@ class Task:
     """What an environment is about: terms by name.
 
     Terms are used in the order in which they are listed; observations are put side by side in this order.
+
+    Attributes:
+        observations: What is observed.
+        rewards: What is rewarded.
+        terminations: When an episode is over.
+        events: What changes worlds.
+        commands: What the policy has to do.
+        curriculum: How the difficulty changes.
+        action_delay: Number of environment steps after which an action is applied; or the least and the
+            greatest number, between which each episode draws its own. Until then an episode begins with
+            actions of 0.
     """
 
     observations: Mapping[str, Observation]
@@ -117,6 +133,7 @@ class Task:
     events: Mapping[str, Event] = field(default_factory=dict)
     commands: Mapping[str, Command] = field(default_factory=dict)
     curriculum: Mapping[str, Curriculum] = field(default_factory=dict)
+    action_delay: Delay = 0
 
 
 def shaped(value: ArrayLike, shape: tuple[int, ...], kind: str, name: str) -> np.ndarray:

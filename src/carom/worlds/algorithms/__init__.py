@@ -1,0 +1,1 @@
+"""Kinematics and dynamics of a body in many worlds, for states of one's choice."""

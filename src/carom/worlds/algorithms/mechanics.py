@@ -1,0 +1,123 @@
+"""Inverse dynamics, mass matrices and Jacobians of a body in many worlds: a native call on each thread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from carom.algorithms.mechanism import Mechanism
+from carom.algorithms.nodes import body_nodes
+from carom.engine.engine import Engine
+from carom.engine.world_calls import WorldCalls
+from carom.layouts.mechanism import MechanismBatch
+from carom.native.kernels import (
+    Kernel,
+    forces_in_worlds_kernel,
+    jacobians_in_worlds_kernel,
+    mass_matrices_in_worlds_kernel,
+)
+from carom.native.launch import Launch
+from carom.native.tables import put_array, put_zeros
+from carom.scene.body import Body
+from carom.worlds.algorithms.varied import VariedParameters
+
+_POINT = 3
+_JACOBIAN_ROWS = 6
+
+
+class MechanicsBatch:
+    """The equations of motion of a body in the worlds of an engine.
+
+    Args:
+        body: The body in the scene that the worlds are copies of.
+        engine: The engine.
+        threads: Number of threads.
+
+    Raises:
+        DescriptionError: The file of a collision mesh cannot be used.
+    """
+
+    def __init__(self, body: Body, engine: Engine, threads: int) -> None:
+        nodes, ends = body_nodes(body)
+        self._varied = VariedParameters(engine, body, ends)
+        self._make: Callable[[], Mechanism] = lambda: Mechanism(nodes, ends, free=not body.fixed_base)
+        self._mechanisms = [self._make() for _ in range(threads)]
+        self._armed: list[Mechanism] = []
+        self._calls = WorldCalls(threads)
+        self.dofs: int = self._mechanisms[0].dofs
+        """Number of velocity coordinates, those of a free base included."""
+
+    def forces(self, questions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
+        """Generalized forces (n, dofs) for questions of `motion_kernel`, (n, numbers), in some worlds.
+
+        Raises:
+            ValueError: In a world they are not finite.
+        """
+        kernel, row = forces_in_worlds_kernel, questions.shape[1]
+        return self._ask(kernel, questions, worlds, (self.dofs,), "force", row, varied=True)
+
+    def mass_matrices(self, positions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
+        """Mass matrices (n, dofs, dofs) at joint positions (n, coordinates), in some worlds.
+
+        Raises:
+            ValueError: In a world one is not finite.
+        """
+        kernel, shape = mass_matrices_in_worlds_kernel, (self.dofs, self.dofs)
+        return self._ask(kernel, positions, worlds, shape, "mass matrix", varied=True)
+
+    def jacobians(self, link: int, points: np.ndarray, positions: np.ndarray) -> np.ndarray:
+        """Jacobians (n, 6, dofs), linear before angular, of points (n, 3) on a link, as `Mechanism.jacobian`.
+
+        Raises:
+            ValueError: In a world one is not finite.
+        """
+        kernel, questions = jacobians_in_worlds_kernel, np.concatenate([points, positions], axis=1)
+        shape = (_JACOBIAN_ROWS, self.dofs)
+        return self._ask(kernel, questions, np.arange(len(points)), shape, "Jacobian", 1 + link)
+
+    def _ask(
+        self,
+        kernel: Kernel,
+        questions: np.ndarray,
+        worlds: np.ndarray,
+        shape: tuple[int, ...],
+        name: str,
+        *numbers: int,
+        varied: bool = False,
+    ) -> np.ndarray:
+        """The answers of a kernel, which gets `numbers`, and for `varied` also whether worlds differ."""
+        count = len(worlds)
+        batch, mechanisms = MechanismBatch(), self._mechanisms
+        put_array(batch, "question", questions)
+        answer = put_zeros(batch, "answer", count * int(np.prod(shape))).reshape(count, *shape)
+        found = self._varied() if varied else None
+        if varied:
+            mechanisms = self._put_parameters(batch, found, worlds)
+            numbers = (*numbers, int(found is not None))
+        launches = [[Launch(kernel, 1, [*each.structs, batch, *numbers, 0])] for each in mechanisms]
+        self._calls.run(count, launches)
+        # The kernels make the first number NaN if any is not finite.
+        wrong = np.flatnonzero(np.isnan(answer.reshape(count, int(np.prod(shape)))[:, :1]))
+        if len(wrong):
+            raise ValueError(
+                f"in world {worlds[wrong[0]]} the {name} is not finite: look at the arguments there"
+            )
+        return answer
+
+    def _put_parameters(self, batch: Any, found: Any, worlds: np.ndarray) -> list[Mechanism]:
+        """Give the kernels the parameters of some worlds; returns the mechanisms to use."""
+        for name in ("mass", "moment", "inertia", "armature"):
+            if found is None:
+                put_zeros(batch, name, 0)
+            else:
+                put_array(batch, name, getattr(found, name)[worlds])
+        if found is None:
+            return self._mechanisms
+        if not self._armed:
+            # Kernels write the parameters of worlds into these.
+            self._armed = [self._make() for _ in self._mechanisms]
+            for each in self._armed:
+                each.structs[0].has_armature = 1
+        return self._armed

@@ -1,0 +1,166 @@
+"""Contacts of bodies in many worlds: the part of `Worlds` that answers questions about them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from carom.checks import Array
+from carom.engine.engine import Engine
+from carom.scene.body import Body
+from carom.world.world import World
+from carom.worlds.body import BodyBatch
+from carom.worlds.checks import Mask
+from carom.worlds.contacts import ContactFinder, ContactList, ContactSummary, contact_list
+from carom.worlds.soft_contacts import Side, SoftTouches, soft_touches
+
+
+class ContactQueries:
+    """Base class of `Worlds`: its bodies, what they touch, and with which forces."""
+
+    _scene: World
+    _engine: Engine
+    _bodies: dict[int, BodyBatch]
+
+    def __getitem__(self, body: Body | int) -> BodyBatch:
+        """A body in all worlds.
+
+        Args:
+            body: The body in the original world, or its number.
+
+        Raises:
+            KeyError: That world had no such body.
+        """
+        number = body if isinstance(body, int) else body.id
+        if number not in self._bodies:
+            raise KeyError(f"there is no body {number}; there are {', '.join(map(str, self._bodies))}")
+        return self._bodies[number]
+
+    def contacts(
+        self,
+        body: Body | int,
+        other: Body | int | None = None,
+        *,
+        link: int | str | None = None,
+        other_link: int | str | None = None,
+    ) -> ContactSummary:
+        """Contacts of a body with another, or with anything, in each world, as of the last step.
+
+        Contacts of soft bodies with shapes are found for one world after the other; those of two soft bodies
+        are not included.
+
+        Args:
+            body: The body.
+            other: The other body; None for any.
+            link: Link of the body by index (-1 is the base) or name; None for any.
+            other_link: Link of the other body likewise.
+        """
+        first, second = self[body], None if other is None else self[other]
+        if second is None and other_link is not None:
+            raise ValueError("other_link needs other")
+        found = self._contact_finder.summary(
+            first.link_rows(link),
+            None if second is None else second.link_rows(other_link),
+            self._scene.parameters.substep_time,
+        )
+        if self._is_soft(body, other):
+            found.include(self._soft_touches(body, link, other, other_link))
+        return found
+
+    def links_in_contact(
+        self, body: Body | int, other: Body | int, other_link: int | str | None = None
+    ) -> Mask:
+        """Which links of a body have a contact point with another body, as of the last step.
+
+        Points that do not touch yet count as well, as in `ContactSummary.number`. For soft bodies, see
+        `contacts`.
+
+        Args:
+            body: The body.
+            other: The other body.
+            other_link: Link of the other body by index (-1 is the base) or name; None for any.
+
+        Returns:
+            (count, links + 1) booleans, the base first.
+        """
+        found = self._contact_finder.links(self[body].link_rows(None), self[other].link_rows(other_link))
+        if self._is_soft(body, other):
+            for world, touches in self._soft_touches(body, None, other, other_link):
+                found[world, np.unique(touches.links) + 1] = True
+        return found
+
+    def contact_forces(
+        self,
+        body: Body | int,
+        links: Sequence[int | str] | None = None,
+        other: Body | int | None = None,
+        *,
+        other_link: int | str | None = None,
+    ) -> Array:
+        """Forces on links of a body by its contacts with another, or with anything, as of the last step.
+
+        Friction is included. For soft bodies, see `contacts`.
+
+        Args:
+            body: The body.
+            links: Its links by index (-1 is the base) or name; None for all but the base.
+            other: The other body; None for any.
+            other_link: Link of the other body by index (-1 is the base) or name; None for any.
+
+        Returns:
+            The force on each link in world axes [N], (count, links, 3).
+        """
+        own, second = self[body], None if other is None else self[other]
+        if second is None and other_link is not None:
+            raise ValueError("other_link needs other")
+        numbers = range(len(own.link_names)) if links is None else [own.link_index(link) for link in links]
+        rows = np.array([own.link_rows(link)[0] for link in numbers], dtype=np.int64)
+        others = None if second is None else second.link_rows(other_link)
+        found = self._contact_finder.forces(rows, others, self._scene.parameters.substep_time)
+        if self._is_soft(body, other):
+            for world, touches in self._soft_touches(body, None, other, other_link):
+                for place, link in enumerate(numbers):
+                    found[world, place] += touches.forces[touches.links == link].sum(axis=0)
+        return found
+
+    def contact_list(self, body: Body | int, other: Body | int | None = None) -> ContactList:
+        """All contact points of a body with another, or with anything, as of the last step.
+
+        Those of soft bodies are not included.
+
+        Args:
+            body: The body; a point between two of its links is listed once for each of them.
+            other: The other body; None for any.
+
+        Returns:
+            The points of all worlds, one after the other, sorted by world.
+        """
+        rows = self[body].link_rows(None)
+        others = None if other is None else self[other].link_rows(None)
+        time = self._scene.parameters.substep_time
+        return contact_list(self._engine, rows, others, self._scene.link_places, time)
+
+    def _is_soft(self, body: Body | int, other: Body | int | None) -> bool:
+        """Whether contacts of bodies, None for any, can be contacts of soft bodies."""
+        soft = {item.rows.first["link"] for item in self._scene.contact_arrays.soft.bodies}
+        asked = [body] if other is None else [body, other]
+        return bool(soft) and (other is None or any(self[one].rows.first["link"] in soft for one in asked))
+
+    def _soft_touches(
+        self, body: Body | int, link: int | str | None, other: Body | int | None, other_link: int | str | None
+    ) -> Sequence[tuple[int, SoftTouches]]:
+        first, second = self._side(body, link), self._side(other, other_link)
+        return soft_touches(self._scene, self._engine, first, second)
+
+    def _side(self, body: Body | int | None, link: int | str | None) -> Side:
+        if body is None:
+            return Side.of(None, None)
+        return Side.of(
+            body if isinstance(body, int) else body.id, None if link is None else self[body].link_index(link)
+        )
+
+    @cached_property
+    def _contact_finder(self) -> ContactFinder:
+        return ContactFinder(self._engine)
