@@ -22,7 +22,7 @@ def maximum(a: real, b: real) -> real:
 
 @func
 def later_maximum(before: real, value: real) -> real:
-    """Maximum of two numbers; `value` if one is NaN, as in Bullet's loops: what was before NaN is forgotten."""
+    """Maximum of two numbers; `value` if one is NaN: in Bullet's loops what was before NaN is forgotten."""
     return wp.where(before > value, before, value)
 
 
