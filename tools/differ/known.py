@@ -358,7 +358,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "Where PyBullet finds no answer at all for a body, it raises; here there is one.",
-        lambda seen: seen.call["f"] in _MASSES and _pybullet_raises(seen),
+        lambda seen: seen.call["f"] in (*_MASSES, "calculateInverseKinematics2") and _pybullet_raises(seen),
     ),
     Known(
         "`URDF_GLOBAL_VELOCITIES_MB` has no effect.",
