@@ -153,12 +153,60 @@ def test_programs_are_made_short():
 
 
 def test_a_difference_is_known_only_where_the_program_has_its_cause():
-    calls = [call(0, "changeDynamics", 0, -1, collisionMargin=0.1), call(1, "getAABB", 0, -1)]
+    calls = [call(0, "changeDynamics", {"$": 0}, -1, mass=2), call(1, "calculateMassMatrix", {"$": 0}, [0.0])]
     found = compare(calls, outcome(["ok", None], ["ok", [1.0]]), outcome(["ok", None], ["ok", [2.0]]))
     says = statement(calls, found[0])
-    assert says and "collisionMargin" in says
-    calls[0]["k"] = {"mass": 1}
+    assert says and "remembers masses" in says
+    calls[0] = call(0, "resetJointState", {"$": 0}, 0, 0.5)
     assert statement(calls, found[0]) is None
+
+
+def limited(joint: int, **limits: float) -> list[Call]:
+    """A program that gives limits to a joint, spherical if it is the first, else revolute, and steps."""
+    body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0])
+    return [body, call(1, "changeDynamics", {"$": 0}, joint, **limits), call(2, "@probe")]
+
+
+@pytest.mark.parametrize(
+    ("calls", "is_known"),
+    [
+        (limited(0, jointLowerLimit=-1.0, jointUpperLimit=1.0), True),
+        (limited(1, jointLowerLimit=-1.0, jointUpperLimit=1.0), False),
+        (limited(0, jointLowerLimit=1.0, jointUpperLimit=-1.0), False),
+        (limited(0, jointLowerLimit=-1.0), False),
+    ],
+)
+def test_only_limits_of_joints_that_have_none_are_known_to_stop_the_solver(calls: list[Call], is_known: bool):
+    results = [["ok", 0], ["ok", None]]
+    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
+    assert bool(statement(calls, found[0])) == is_known
+
+
+def tied(mass: float, parent_link: int) -> list[Call]:
+    """A program that ties a body of a mass to the world."""
+    tie = call(1, "createConstraint", {"$": 0}, parent_link, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
+    return [call(0, "createMultiBody", mass), tie, call(2, "@probe")]
+
+
+@pytest.mark.parametrize(("mass", "link", "is_known"), [(0, -1, True), (1, -1, False), (0, 0, False)])
+def test_only_constraints_of_what_cannot_move_are_known_to_stop_the_solver(
+    mass: float, link: int, is_known: bool
+):
+    calls = tied(mass, link)
+    results = [["ok", 0], ["ok", 1]]
+    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
+    assert bool(statement(calls, found[0])) == is_known
+
+
+def test_of_deep_contacts_only_the_links_are_compared():
+    deep = [0, 0, 1, -1, 2, [0.0] * 3, [0.0] * 3, [0.0, 0.0, 1.0], -0.1]
+    turned = [0, 1, 0, 2, -1, [0.0] * 3, [0.0] * 3, [0.0, 1.0, 0.0], -0.2]
+    assert difference("getContactPoints", ["ok", [deep, deep]], ["ok", [turned]], 1e-9) is None
+    other = [0, 0, 1, -1, 3, *deep[5:]]
+    place = difference("getContactPoints", ["ok", [deep]], ["ok", [other]], 1e-9)
+    assert place and place.field == "links"
+    near = [*deep[:8], -0.001]
+    assert difference("getContactPoints", ["ok", [near]], ["ok", [[*turned[:8], -0.001]]], 1e-9)
 
 
 def test_known_differences_are_stated():

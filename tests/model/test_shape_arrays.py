@@ -212,8 +212,8 @@ def test_how_a_link_touches_can_change() -> None:
     for name, value in expected.items():
         assert scene.column(f"link_{name}").tolist() == [value, value], name
     assert scene.column("shape_ccd_radius").tolist() == [0.2, 0.2]
-    # The second shape is part of a compound, whose margin it does not share.
-    assert scene.column("shape_margin").tolist() == [0.02, 0.001]
+    # The second shape is part of a compound, whose margin it gets, too.
+    assert scene.column("shape_margin").tolist() == [0.02, 0.02]
 
 
 def test_breaking_distances_follow_the_engines_parameter() -> None:

@@ -137,3 +137,17 @@ def _flat(value: Any) -> list[float]:
 
 def _shape(value: Any) -> Any:
     return None if isinstance(value, (int, float)) else [_shape(item) for item in value]
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "angles"),
+    [
+        ([0.707, 0, 0, 0.707], [0, 0, 0.707, 0.707], [-0.0, -1.5703080892562866, -0.0]),
+        ([sqrt(0.5), 0, 0, sqrt(0.5)], [0, 0, sqrt(0.5), sqrt(0.5)], [-0.0, -1.570451021194458, -0.0]),
+        ([0.71, 0, 0, 0.71], [0, 0, 0.71, 0.71], [1.5707963705062866, -1.5707963705062866, 0.0]),
+    ],
+)
+def test_angles_near_a_pitch_of_90_degrees_are_those_of_single_precision(
+    start: list[float], end: list[float], angles: list[float]
+) -> None:
+    assert p.getAxisDifferenceQuaternion(start, end) == pytest.approx(angles, abs=2e-7)

@@ -4,7 +4,8 @@ Up to the first contact everything has to agree to `STRICT` of the largest numbe
 first steps to `AFTER_CONTACT`, and what follows not at all, since contacts make rounding grow. After the
 first step whose `@probe` differs nothing is compared, as everything else would follow from it; nor is
 anything after a step in which bodies are in each other deeper than `DEEP`, which docs/differences has a
-paragraph about, or where PyBullet's own state is NaN.
+paragraph about, or where PyBullet's own state is NaN. Of contacts that are so deep only the links are
+compared, whichever comes first.
 """
 
 from __future__ import annotations
@@ -120,9 +121,29 @@ def difference(function: str, theirs: Any, ours: Any, bound: float) -> Place | N
         return None
     if function == "@probe":
         return _of_probes(theirs[1], ours[1], bound)
+    if function == "getContactPoints" and _deepest(theirs[1], ours[1]) < DEEP:
+        return _of_touching(theirs[1], ours[1])
     if function in COMPARED:
         return COMPARED[function](theirs[1], ours[1])
     return first_difference(theirs[1], ours[1], max(bound, _SINGLE.get(function, 0)))
+
+
+def _deepest(*lists: Any) -> float:
+    """The least distance of any contact in lists of contacts."""
+    return min((point[8] for points in lists for point in points or []), default=0.0)
+
+
+def _of_touching(theirs: Any, ours: Any) -> Place | None:
+    """Which links touch."""
+    a, b = (
+        sorted({tuple(sorted(((point[1], point[3]), (point[2], point[4])))) for point in points or []})
+        for points in (theirs, ours)
+    )
+    return (
+        None
+        if a == b
+        else Place("links", [one for one in a if one not in b], [one for one in b if one not in a])
+    )
 
 
 def _of_probes(theirs: Any, ours: Any, bound: float) -> Place | None:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tools.differ.assets import FILES, FIXED, GEAR, PRISMATIC, SPHERICAL
+from tools.differ.assets import AT_LIMITS, FILES, FIXED, GEAR, PRISMATIC, SPHERICAL
 from tools.differ.compare import Difference
 from tools.differ.programs import Call
 
@@ -65,6 +65,8 @@ _MASSES = (
 _SHAPE_OF_HEIGHTS = 9
 _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
+_NO_ROTATION = 1e-6
+_LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _GEAR, _NO_SUCH_LINK = "of a gear has to be", "has no link"
 _GLOBAL_VELOCITIES = 256
@@ -81,15 +83,20 @@ def _pybullet_raises(seen: Seen) -> bool:
     return seen.difference.place.field == "error/ok"
 
 
-def _balls(seen: Seen) -> set[tuple[int, int]]:
-    """The spherical joints of bodies: the call that made the body, and the joint."""
-    types = {call["id"]: call["k"].get("linkJointTypes", ()) for call in seen.before}
+def _joint_types(seen: Seen) -> dict[int, list[int]]:
+    """The types of the joints of bodies, by the call that made the body."""
+    types = {call["id"]: list(call["k"].get("linkJointTypes", ())) for call in seen.before}
     for call in seen.before:
         if call["f"] == "loadURDF":
             types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
+    return types
+
+
+def _balls(seen: Seen) -> set[tuple[int, int]]:
+    """The spherical joints of bodies: the call that made the body, and the joint."""
     return {
         (body, joint)
-        for body, joints in types.items()
+        for body, joints in _joint_types(seen).items()
         for joint, kind in enumerate(joints)
         if kind == SPHERICAL
     }
@@ -119,14 +126,64 @@ def _poses(seen: Seen) -> Iterator[Call]:
             yield call
 
 
-def _holds_links(seen: Seen) -> bool:
-    """Whether a constraint holds a link, by rows along some of which it may have no freedom."""
+def _holds_what_cannot_move(seen: Seen) -> bool:
+    """Whether both ends of a constraint are bases that may be fixed, or the world."""
+    made = {call["id"]: call for call in seen.before}
     return any(
         call["f"] == "createConstraint"
         and call["a"][4] != GEAR
-        and (call["a"][1] >= 0 or (call["a"][2] != -1 and call["a"][3] >= 0))
+        and call["a"][1] == -1
+        and _may_be_fixed(made, call["a"][0])
+        and (call["a"][2] == -1 or (call["a"][3] == -1 and _may_be_fixed(made, call["a"][2])))
         for call in seen.before
     )
+
+
+def _may_be_fixed(made: dict[int, Call], body: Any) -> bool:
+    """Whether a body was made without mass, with a fixed base, or from a file that may say so."""
+    call = made[body["$"]] if isinstance(body, dict) and body["$"] in made else None
+    if call is None:
+        return False
+    if call["f"] == "createMultiBody":
+        return not (call["a"][:1] or [call["k"].get("baseMass", 0)])[0]
+    return True
+
+
+def _limits_what_has_none(seen: Seen) -> bool:
+    """Whether `changeDynamics` gave limits to a fixed or spherical joint."""
+    types = _joint_types(seen)
+    return any(
+        call["f"] == "changeDynamics"
+        and {"jointLowerLimit", "jointUpperLimit"} <= call["k"].keys()
+        and call["k"]["jointLowerLimit"] <= call["k"]["jointUpperLimit"]
+        and _type_of(types, call["a"]) in (FIXED, SPHERICAL)
+        for call in seen.before
+    )
+
+
+def _type_of(types: dict[int, list[int]], arguments: list[Any]) -> int | None:
+    """The type of the joint that the first two arguments name."""
+    joints = types.get(arguments[0]["$"], []) if isinstance(arguments[0], dict) else []
+    return joints[arguments[1]] if 0 <= arguments[1] < len(joints) else None
+
+
+def _starts_at_a_limit(seen: Seen) -> bool:
+    """Whether a body has a joint that was loaded exactly at its limit, and states hardly differ."""
+    return seen.difference.place.error < _LEFT_OVER and any(
+        call["f"].startswith("load") and str(call["a"][0]) in AT_LIMITS for call in seen.before if call["a"]
+    )
+
+
+def _turns_by_no_rotation(seen: Seen) -> bool:
+    """Whether a base was reset to a quaternion whose length is not 1, and no step came after it."""
+    for call in reversed(seen.before):
+        if call["f"] == "stepSimulation":
+            return False
+        if call["f"] == "resetBasePositionAndOrientation":
+            turn = call["a"][2]
+            if isinstance(turn, list) and abs(sum(part * part for part in turn) - 1.0) > _NO_ROTATION:
+                return True
+    return False
 
 
 def _half_turned(value: Any) -> bool:
@@ -241,10 +298,6 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known("PyBullet does not hit what a ray passes outside", _nothing_hit_before_the_first_step),
     Known(
-        "Boxes, cylinders and planes from MJCF files have a margin of 1 mm",
-        lambda seen: seen.differs("getDynamicsInfo .11") and seen.loads(".xml"),
-    ),
-    Known(
         "**Round shapes are round.**",
         lambda seen: seen.differs("getCameraImage depth") and _rounder(seen),
     ),
@@ -257,8 +310,31 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getCameraImage colour") and _casts_shadows(seen),
     ),
     Known(
-        "Rows of constraints along which nothing can move",
-        lambda seen: seen.differs("@probe") and seen.difference.phase == "free" and _holds_links(seen),
+        "Constraints between bodies that cannot move",
+        lambda seen: seen.differs("@probe") and _holds_what_cannot_move(seen),
+    ),
+    Known(
+        "So do limits that `changeDynamics` gives to fixed and spherical joints",
+        lambda seen: seen.differs("@probe") and _limits_what_has_none(seen),
+    ),
+    Known(
+        "Whether a joint that stands exactly at its limit is beyond it",
+        lambda seen: seen.differs("@probe") and _starts_at_a_limit(seen),
+    ),
+    Known(
+        "places links as if the base were larger by the square of that length",
+        lambda seen: seen.differs("getLinkState") and _turns_by_no_rotation(seen),
+    ),
+    Known(
+        "In PyBullet motors keep the targets they have",
+        lambda seen: (
+            seen.has("restoreState")
+            and seen.differs("getJointState .3", "getJointState .2", "getJointStates .", "@probe reactions")
+        ),
+    ),
+    Known(
+        "PyBullet matches bodies by their order",
+        lambda seen: seen.call["f"] == "restoreState" and _pybullet_raises(seen) and seen.has("removeBody"),
     ),
     Known(
         "Which way a constraint turns back what is turned by exactly 180 degrees",
@@ -282,13 +358,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "Where PyBullet finds no answer at all for a body, it raises; here there is one.",
-        lambda seen: seen.call["f"] in _MASSES and _pybullet_raises(seen),
-    ),
-    Known(
-        "`collisionMargin` of `changeDynamics` widens the bounds (`getAABB`) of a body of several shapes",
-        lambda seen: (
-            seen.has("changeDynamics", "collisionMargin") and not seen.differs("getDynamicsInfo .11")
-        ),
+        lambda seen: seen.call["f"] in (*_MASSES, "calculateInverseKinematics2") and _pybullet_raises(seen),
     ),
     Known(
         "`URDF_GLOBAL_VELOCITIES_MB` has no effect.",

@@ -1,5 +1,7 @@
 """Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
 
+`at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded.
+
 Run by the interpreter with PyBullet; it needs nothing else.
 """
 
@@ -39,15 +41,24 @@ def loads(name):
     return os.waitpid(child, 0)[1] == 0
 
 
+def at_limit(body):
+    """Whether a joint of a body has a limit of 0, where it is."""
+    for j in range(p.getNumJoints(body)):
+        info = p.getJointInfo(body, j)
+        if info[2] in (p.JOINT_REVOLUTE, p.JOINT_PRISMATIC) and info[8] <= info[9] and 0 in info[8:10]:
+            return True
+    return False
+
+
 def main():
-    """Write the table."""
-    into = os.path.join(os.path.dirname(os.path.abspath(__file__)), "assets.json")
+    """Write the tables."""
+    folder = os.path.dirname(os.path.abspath(__file__))
     os.chdir(pybullet_data.getDataPath())
     names = sorted(name for name in glob.glob("**/*.urdf", recursive=True) if "random_urdfs" not in name)
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines = []
+    lines, limits = [], []
     for name in names:
         if any(word in name for word in LEFT_OUT) or not loads(name):
             continue
@@ -56,8 +67,12 @@ def main():
         if time.time() - start > SLOW or len(bodies) > MANY_BODIES:
             continue
         types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
+        if any(map(at_limit, bodies)):
+            limits.append(name)
         lines.append(f"{json.dumps(name)}: {json.dumps(types, separators=(',', ':'))}")
-    with open(into, "w") as file:
+    with open(os.path.join(folder, "at_limits.json"), "w") as file:
+        file.write(json.dumps(limits, indent=1) + "\n")
+    with open(os.path.join(folder, "assets.json"), "w") as file:
         file.write("{\n" + ",\n".join(lines) + "\n}\n")
 
 

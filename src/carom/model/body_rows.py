@@ -25,7 +25,8 @@ class BodyRows:
         rows: Its rows in all arrays of model and state, as `RowChanges.first_rows` returns them.
         shape_rows: Its rows in all arrays of shapes.
         bounds: Bounds of each link; see `BodyShapes`.
-        own_margin: See `BodyShapes`.
+        margins: See `BodyShapes`.
+        widening: See `BodyShapes`.
         breaking_fraction: See `ShapeArrays`; breaking distances are for this one.
     """
 
@@ -36,7 +37,8 @@ class BodyRows:
     rows: bytes
     shape_rows: bytes
     bounds: tuple[Bounds, ...]
-    own_margin: tuple[bool, ...]
+    margins: tuple[float, ...]
+    widening: tuple[bool, ...]
     breaking_fraction: float
 
 
@@ -60,7 +62,8 @@ def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
         arrays.row_changes.first_rows(rows.count),
         shapes.table.row_changes.first_rows(shapes.used),
         tuple(body.bounds),
-        tuple(body.own_margin),
+        tuple(body.margins),
+        tuple(body.widening),
         shapes.breaking_fraction,
     )
     return written if len(written.rows) + len(written.shape_rows) <= MOST_BYTES else None

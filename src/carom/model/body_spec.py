@@ -61,6 +61,8 @@ class LinkSpec:
         visuals: Visual shapes, with poses in the link frame.
         compound_margin: Distance by which the bounds of several shapes, or of one that is not in the
             inertial frame, are widened [m].
+        default_margins: Boxes, cylinders and planes have Bullet's own collision margins
+            (`carom.model.inertia`), as those from MJCF files do in PyBullet, instead of `MARGIN`.
         contact: Contact parameters of the link.
         mimic: The joint this one follows, as the file states it; not simulated in a body with `is_held`.
         gravity_compensation: Share of its weight that a force at its centre of mass carries.
@@ -91,6 +93,7 @@ class LinkSpec:
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     compound_margin: float = MARGIN
+    default_margins: bool = False
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     gravity_compensation: float = 0.0

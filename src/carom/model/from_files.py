@@ -86,6 +86,8 @@ def mjcf_bodies(
     bodies = []
     for placed in robots:
         spec = assemble(placed.robot, flags=loading, compound_margin=0.0)
+        for link in (spec.base, *spec.links):
+            link.default_margins = True
         set_mjcf_inertias(spec)
         bodies.append((spec, placed.pose))
     return bodies

@@ -1,9 +1,10 @@
-"""Rotational inertia of a link, from its collision shapes or from the tensor in its file."""
+"""Rotational inertia and collision margin of a link: from its shapes; inertia also from its file."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import reduce
+from struct import pack, unpack
 from typing import NamedTuple
 
 from carom.description import (
@@ -32,6 +33,7 @@ from carom.description.transform import (
     rotation_matrix,
     transposed,
 )
+from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
@@ -43,6 +45,15 @@ _log = Logger(__name__)
 TWELFTH = 0.08333333
 """1/12 as PyBullet writes it for capsules and hulls, so that results agree to the last digit."""
 
+# Bullet's default margin, as a share of the least half extent; a float32 in its source.
+_MARGIN_SHARE = unpack("f", pack("f", 0.1))[0]
+_WITH_MARGIN_INSIDE = (
+    ShapeKind.SPHERE,
+    ShapeKind.CAPSULE,
+    ShapeKind.BOX,
+    ShapeKind.CYLINDER,
+    ShapeKind.PLANE,
+)
 _IN_PLACE = (NO_ROTATION, (0.0, 0.0, 0.0))
 
 
@@ -130,16 +141,42 @@ def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
     return placement(inertial_frame, only.frame) == _IN_PLACE
 
 
+def shape_margin(link: LinkSpec, collision: Collision) -> float | None:
+    """Margin of a box, cylinder or plane whose link has `default_margins` [m]; None for all other shapes."""
+    if not link.default_margins:
+        return None
+    match collision.geometry:
+        case Box(half_extents):
+            return min(FIRST_MARGIN, _MARGIN_SHARE * min(half_extents))
+        case Cylinder(radius, length):
+            return min(FIRST_MARGIN, _MARGIN_SHARE * min(radius, 0.5 * length))
+        case Plane():
+            return 0.0
+    return None
+
+
+def is_compound(link: LinkSpec) -> bool:
+    """Whether the shapes of a link are a compound in Bullet, as a cylinder given by its ends is, too."""
+    if not is_in_place(link.collisions, link.inertial_frame):
+        return True
+    only = link.collisions[0]
+    return only.ends_frame is not None and isinstance(only.geometry, Cylinder)
+
+
 def collision_margin(link: LinkSpec) -> float:
     """Collision margin of a link's shapes [m].
 
     That of a single sphere or capsule exactly in the inertial frame is its radius.
     """
-    if not is_in_place(link.collisions, link.inertial_frame):
+    if is_compound(link):
         return link.compound_margin
-    if is_swept(link.collisions[0]):
+    only = link.collisions[0]
+    if is_swept(only):
         return FIRST_MARGIN
-    match link.collisions[0].geometry:
+    default = shape_margin(link, only)
+    if default is not None:
+        return default
+    match only.geometry:
         case Sphere(radius) | Capsule(radius, _):
             return radius
         case TriangleMesh(margin=margin):
@@ -151,9 +188,16 @@ def collision_margin(link: LinkSpec) -> float:
 
 def margin_is_radius(link: LinkSpec) -> bool:
     """Whether a link's margin is the radius of its only shape, a ball or capsule; it never changes then."""
-    if not is_in_place(link.collisions, link.inertial_frame):
+    if is_compound(link) or is_swept(link.collisions[0]):
         return False
     return isinstance(link.collisions[0].geometry, (Sphere, Capsule))
+
+
+def widens_bounds(link: LinkSpec, kinds: list[ShapeKind]) -> bool:
+    """Whether the margin of a link, with pieces of these kinds, is around its shapes and not within them."""
+    if not kinds:
+        return False
+    return is_compound(link) or is_swept(link.collisions[0]) or kinds[0] not in _WITH_MARGIN_INSIDE
 
 
 def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import sqrt
 
-from carom.description import Mesh, SignedDistanceField
+from carom.description import SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds
-from carom.model.inertia import is_in_place, placement
+from carom.model.inertia import placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, is_swept
 from carom.record import record
@@ -48,6 +48,9 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
         pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
         if is_swept(collision):
             pieces = [replace(piece, size=(*piece.size[:2], FIRST_MARGIN)) for piece in pieces]
+        margin = shape_margin(link, collision)
+        if margin is not None:
+            pieces = [replace(piece, margin=margin) for piece in pieces]
         placed.extend(PlacedPiece(piece, pose, index) for piece in pieces)
     return placed
 
@@ -63,16 +66,6 @@ def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
         "corner": sum(len(solid.corners) for solid in solids),
         "node": sum(len(hierarchy.lower) for hierarchy in hierarchies),
     }
-
-
-def has_own_margin(link: LinkSpec) -> bool:
-    """Whether the margin of a link is that of its only shape, and not that of a compound."""
-    if not is_in_place(link.collisions, link.inertial_frame) or is_swept(link.collisions[0]):
-        return False
-    match link.collisions[0].geometry:
-        case Mesh(path, _, concave):
-            return concave or path.suffix.lower() != ".obj"
-    return True
 
 
 def reach(bounds: Bounds) -> float:

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from carom.layouts.codes import Part
+from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.builder import TreeRows
-from carom.model.inertia import link_bounds
+from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.pair_filters import PairFilters
-from carom.model.placed_pieces import AXES, PlacedPiece, has_own_margin, placed_pieces, reach, row_counts
+from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
 from carom.native.tables import ArrayTable
 from carom.record import record
@@ -90,14 +90,16 @@ class BodyShapes:
         first: First row on each axis of shapes.
         count: Rows on each axis of shapes.
         bounds: Bounds of each link, the base first, along the axes of its inertial frame.
-        own_margin: For each link, whether its margin is that of its only shape, not that of a compound.
+        margins: The margin of each link [m].
+        widening: For each link, whether its margin widens its bounds.
     """
 
     rows: TreeRows
     first: dict[str, int] = field(default_factory=dict)
     count: dict[str, int] = field(default_factory=dict)
     bounds: list[Bounds] = field(default_factory=list)
-    own_margin: list[bool] = field(default_factory=list)
+    margins: list[float] = field(default_factory=list)
+    widening: list[bool] = field(default_factory=list)
 
 
 class ShapeArrays:
@@ -160,7 +162,11 @@ class ShapeArrays:
             rows, {axis: self.used[axis] for axis in AXES}, row_counts([placed.piece for placed in pieces])
         )
         body.bounds = [link_bounds(link, implicit_cylinder=implicit) for link in links]
-        body.own_margin = [has_own_margin(link) for link in links]
+        body.margins = [collision_margin(link) for link in links]
+        body.widening = [
+            widens_bounds(link, [placed.piece.kind for placed in pieces if placed.link == j])
+            for j, link in enumerate(links)
+        ]
         needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
         self.table.reserve(needed)
@@ -178,7 +184,12 @@ class ShapeArrays:
         self.table.reserve(needed)
         first = {axis: used[axis] for axis in AXES}
         body = BodyShapes(
-            rows, first, {axis: count[axis] for axis in AXES}, [*known.bounds], [*known.own_margin]
+            rows,
+            first,
+            {axis: count[axis] for axis in AXES},
+            [*known.bounds],
+            [*known.margins],
+            [*known.widening],
         )
         self._bodies[rows.first["link"]] = body
         first_row = {**first, "link": used["link"], "tree": rows.tree}
@@ -316,13 +327,37 @@ class ShapeArrays:
                 numpy[field][:, link_row] = getattr(surface, name)
                 continue
             if field == "shape_margin":
-                body, link = self._body_of(link_row)
-                if not body.own_margin[link]:
-                    continue
-                self.changes += 1
-            elif field == "shape_ccd_radius" and surface.ccd_swept_sphere_radius > 0.0:
+                if names is not None or surface.collision_margin != self._margin(link_row):
+                    self._set_margin(link_row, surface.collision_margin)
+                continue
+            if field == "shape_ccd_radius" and surface.ccd_swept_sphere_radius > 0.0:
                 self.looks_ahead = True
             numpy[field][self._shapes_of(link_row)] = getattr(surface, name)
+
+    def _margin(self, link_row: int) -> float:
+        body, link = self._body_of(link_row)
+        return body.margins[link]
+
+    def _set_margin(self, link_row: int, margin: float) -> None:
+        """Set the margin of a link [m]: that of its compound, and of all shapes in it whose radius it is not.
+
+        As in Bullet the bounds grow by as much as the margin, whatever those of the shapes within were.
+        """
+        numpy = self.table.numpy
+        body, link = self._body_of(link_row)
+        shapes = self._shapes_of(link_row)
+        kinds = numpy["shape_kind"][shapes]
+        numpy["shape_margin"][shapes][~np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))] = margin
+        swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
+        if swept.all() and len(kinds) == 1:
+            numpy["shape_size"][shapes, 2] = margin
+        if body.widening[link]:
+            grown = body.bounds[link].grown(margin - body.margins[link])
+            body.bounds[link], body.margins[link] = grown, margin
+            self._write_link_bounds(body, link)
+            numpy["shape_breaking"][shapes] = self.breaking_fraction * reach(grown)
+        body.margins[link] = margin
+        self.changes += 1
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
         """Put a link in the group of fixed bases, which do not collide with each other, or of the rest."""
@@ -371,6 +406,7 @@ class ShapeArrays:
             )
         self.changes += 1
         body.bounds[link] = link_bounds(spec, implicit_cylinder=implicit_cylinder)
+        body.margins[link] = collision_margin(spec)
         numpy = self.table.numpy
         for row, placed in enumerate(pieces, start=shapes.start):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}

@@ -125,18 +125,25 @@ class Appearance:
     def number_textures(self, world: World) -> None:
         """Number the textures of all bodies, in the order the bodies were loaded."""
         for body in world.bodies.values():
-            self._of(body)
+            if body not in self._looks:
+                self._looks[body] = self._first_of(body)
 
     def _of(self, body: Body) -> list[list[ShapeLook]]:
-        looks = self._looks.get(body)
-        if looks is None:
-            flags = LoadFlags(body.spec.flags)
-            looks = [
-                self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
-            ]
-            if body.spec.soft is not None:
-                looks[0] = self._soft_looks(body.spec.base, looks[0], body.spec.soft.checkered)
-            self._looks[body] = looks
+        if body not in self._looks:
+            # The textures of bodies that were loaded before come first.
+            self.number_textures(body.world)
+        if body not in self._looks:
+            self._looks[body] = self._first_of(body)
+        return self._looks[body]
+
+    def _first_of(self, body: Body) -> list[list[ShapeLook]]:
+        """The looks of a body as it was loaded; numbers its textures."""
+        flags = LoadFlags(body.spec.flags)
+        looks = [
+            self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
+        ]
+        if body.spec.soft is not None:
+            looks[0] = self._soft_looks(body.spec.base, looks[0], body.spec.soft.checkered)
         return looks
 
     def _soft_looks(self, base: LinkSpec, looks: list[ShapeLook], checkered: bool) -> list[ShapeLook]:

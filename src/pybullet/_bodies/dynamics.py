@@ -232,8 +232,10 @@ def changeDynamics(
         if "collision_margin" in changes.values:
             from carom.scene.dynamics_changes import has_margin
 
-            client.bodies[body.id].forget_moments(link)
-            if not has_margin(body, link):
+            if has_margin(body, link):
+                # Bounds and moments depend on it.
+                client.bodies.forget(body.id)
+            else:
                 del changes.values["collision_margin"]
         body.change_dynamics(link, **changes.values)
         # Let the native library handle the next change.

@@ -227,6 +227,16 @@ def test_texture_ids_count_on_from_those_of_the_meshes(cube):
     assert p.loadTexture(file) == 3
 
 
+def test_textures_are_numbered_as_bodies_are_loaded_whichever_is_changed_first(cube):
+    other = p.loadURDF(str(ASSETS / "cube.urdf"))
+    p.changeVisualShape(other, -1, rgbaColor=[1, 0, 0, 1])
+    numbers = [
+        p.getVisualShapeData(body, flags=p.VISUAL_SHAPE_DATA_TEXTURE_UNIQUE_IDS)[0][8]
+        for body in (cube, other)
+    ]
+    assert numbers == [0, 1]
+
+
 def test_textures_are_searched_for_like_robots(client, tmp_path):
     # Under a name of its own: the process goes on searching where other tests told it to.
     (tmp_path / "found_here_only.png").write_bytes((ASSETS / "uvmap.png").read_bytes())

@@ -7,10 +7,13 @@ from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
-from carom.layouts.codes import BOX, CAPSULE, CYLINDER, FIRST_PART, PLANE, SPHERE
+from carom.layouts.codes import BOX, CAPSULE, CYLINDER, FIRST_PART, HULL, PLANE, SPHERE
+from carom.layouts.contacts import MARGIN
 
 # Half extent of a shape without bounds, such as a plane [m]; its square is still finite.
 UNBOUNDED = real(1.0e18)
+FIRST_WIDENING = real(MARGIN)
+"""Margin that hulls have when they are made [m]."""
 
 
 @func
@@ -41,8 +44,8 @@ def local_extents(shapes: Shapes, shape: Int32) -> Vector3:
         return Vector3(across, across, across + size[1])
     if kind == CYLINDER:
         return Vector3(size[0], size[0], size[1])
-    # Bullet adds the margin of polyhedra once to the vertices and once to their box.
-    margin = 2.0 * shapes.shape_margin[shape]
+    # Bullet widens hulls twice: their vertices when they are made, and their box by the present margin.
+    margin = shapes.shape_margin[shape] + wp.where(kind == HULL, FIRST_WIDENING, real(0.0))
     return size + Vector3(margin, margin, margin)
 
 

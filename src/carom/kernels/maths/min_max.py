@@ -21,6 +21,12 @@ def maximum(a: real, b: real) -> real:
 
 
 @func
+def later_maximum(before: real, value: real) -> real:
+    """Maximum of two numbers; `value` if one is NaN: in Bullet's loops what was before NaN is forgotten."""
+    return wp.where(before > value, before, value)
+
+
+@func
 def within_bounds(value: real, lower: real, upper: real) -> real:
     """Clamp `value` to [lower, upper]; NaN stays NaN.
 

@@ -6,7 +6,7 @@ and user constraints.
 
 import warp as wp
 
-from carom.kernels.maths.min_max import maximum
+from carom.kernels.maths.min_max import later_maximum
 from carom.kernels.solver.conjugate import go_on, remember_impulses
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.kernels.solver.pair_rows import has_room
@@ -121,9 +121,11 @@ def sweep_island(
             remember_impulses(pair_rows, world, manifold_blocks)
         residual = visit_sweep(settings, scratch, pair_rows, world, rows, visits, sweep)
         if resting == 1:
-            residual = maximum(residual, resting_sweep(settings, scratch, pair_rows, world, manifold_blocks))
+            change = resting_sweep(settings, scratch, pair_rows, world, manifold_blocks)
+            residual = later_maximum(residual, change)
         elif units > 0:
-            residual = maximum(residual, contact_sweep(settings, scratch, pair_rows, world, units, torsion))
+            change = contact_sweep(settings, scratch, pair_rows, world, units, torsion)
+            residual = later_maximum(residual, change)
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.min_max import maximum
+from carom.kernels.maths.min_max import later_maximum, maximum
 from carom.kernels.solver.articulated_manifolds import relax_articulated_friction, relax_articulated_normals
 from carom.kernels.solver.joint_solver import relax_rows, row_sweep
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
@@ -11,6 +11,9 @@ from carom.kernels.solver.single_contacts import SINGLES, relax_single_friction,
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
+
+INDEFINITE = real(float("nan"))
+"""Change of a row along which nothing can move: 0/0."""
 
 
 @func
@@ -25,7 +28,9 @@ def visit_sweep(
 ) -> real:
     """Relax motors, limits and user constraints once; returns the maximum change squared.
 
-    `rows` and `visits` are the numbers of rows without and with those of user constraints.
+    `rows` and `visits` are the numbers of rows without and with those of user constraints. As in Bullet, the
+    change of a user row along which nothing can move is 0/0, so the maximum is that of the rows after it, and
+    NaN if none follows.
     """
     residual = real(0.0)
     if visits == 0:
@@ -49,10 +54,12 @@ def visit_sweep(
                     scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
                     scratch.block_response, world, row, 1, stride,
                 )  # fmt: skip
-                residual = maximum(residual, square)
+                residual = later_maximum(residual, square)
+            elif pair_rows.row_terms[world, -1 - row].effective_mass == 0.0:
+                residual = INDEFINITE
             else:
                 change = relax_pair_row(scratch, pair_rows, world, -1 - row)
-                residual = maximum(residual, change * change)
+                residual = later_maximum(residual, change * change)
         if residual == 0.0:
             # No row has changed, so further inner sweeps would not change any.
             inner = settings.inner_iterations

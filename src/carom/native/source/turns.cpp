@@ -135,15 +135,27 @@ CAROM_TURNS(difference_quaternion) {
     return only(out, difference(quaternion_at(in), quaternion_at(in + 4)));
 }
 
+// In single precision and the order of operations of PyBullet: near a pitch of 90 degrees rounding decides.
 CAROM_TURNS(axis_difference_quaternion) {
-    const Matrix turn = matrix_of(conjugate(quaternion_at(in)) * quaternion_at(in + 4));
-    const Vector &x = turn.rows[0], &y = turn.rows[1], &z = turn.rows[2];
-    const double sine = z.x;
-    if (sine >= 1.0)
-        return only(out, Vector{atan2(x.y, y.y), HALF_PI, 0.0});
-    if (sine <= -1.0)
-        return only(out, Vector{-atan2(x.y, y.y), -HALF_PI, 0.0});
-    return only(out, Vector{atan2(-z.y, z.z), asin(sine), atan2(-y.x, x.x)});
+    float values[8];
+    for (int i = 0; i < 8; ++i)
+        values[i] = static_cast<float>(in[i]);
+    const float a = -values[0], b = -values[1], c = -values[2], d = values[3];
+    const float e = values[4], f = values[5], g = values[6], h = values[7];
+    const float x = d * e + a * h + b * g - c * f, y = d * f + b * h + c * e - a * g;
+    const float z = d * g + c * h + a * f - b * e, w = d * h - a * e - b * f - c * g;
+    const float s = 2.0f / (x * x + y * y + z * z + w * w);
+    const float xs = x * s, ys = y * s, zs = z * s;
+    const float wx = w * xs, wy = w * ys, wz = w * zs;
+    const float xx = x * xs, xy = x * ys, xz = x * zs, yy = y * ys, yz = y * zs, zz = z * zs;
+    const float sine = xz - wy;
+    if (sine >= 1.0f)
+        return only(out, Vector{atan2(xy - wz, 1.0f - (xx + zz)), HALF_PI, 0.0});
+    if (sine <= -1.0f)
+        return only(out, Vector{-atan2(xy - wz, 1.0f - (xx + zz)), -HALF_PI, 0.0});
+    return only(out, Vector{
+        atan2(-(yz + wx), 1.0f - (xx + yy)), asin(sine), atan2(-(xy + wz), 1.0f - (yy + zz)),
+    });
 }
 
 // Declines if the duration is too short for a finite velocity.
