@@ -34,6 +34,27 @@ _ACTUATORS = {
 _EQUALITY = "active body1 body2 class name site1 site2"
 _NOT_OF_JOINTS = "cranklength cranksite refsite site slidersite tendon body"
 
+_SENSOR = "cutoff delay interp interval name nsample"
+_FRAME = f"{_SENSOR} objname objtype"
+_RELATIVE = f"{_FRAME} refname reftype"
+_SENSORS = {
+    **dict.fromkeys(
+        ("touch", "accelerometer", "velocimeter", "gyro", "force", "torque", "magnetometer"),
+        f"{_SENSOR} site",
+    ),
+    "rangefinder": f"{_SENSOR} camera data site",
+    **{
+        f"joint{what}": f"{_SENSOR} joint"
+        for what in ("pos", "vel", "actuatorfrc", "limitpos", "limitvel", "limitfrc")
+    },
+    **dict.fromkeys(("ballquat", "ballangvel"), f"{_SENSOR} joint"),
+    **{f"actuator{what}": f"{_SENSOR} actuator" for what in ("pos", "vel", "frc")},
+    **{f"frame{what}": _RELATIVE for what in ("pos", "quat", "xaxis", "yaxis", "zaxis", "linvel", "angvel")},
+    **{f"frame{what}": _FRAME for what in ("linacc", "angacc")},
+    **{f"subtree{what}": f"{_SENSOR} body" for what in ("com", "linvel", "angmom")},
+    "clock": _SENSOR,
+}
+
 _UNBUILT = ("orientation", "pid", "muscle", "adhesion", "dcmotor", "plugin")
 
 _READ = {
@@ -157,6 +178,11 @@ def _rules() -> Iterator[Rule]:
         for name in names.split():
             yield Rule(f"{element}@{name}", "none: it has no meaning here", "another attribute counts")
             yield Rule(f"default/{element}@{name}", "none: no element uses it", "it is not needed")
+    for tag, names in _SENSORS.items():
+        for name in names.split():
+            yield Rule(f"sensor/{tag}@{name}", "none: it has no meaning here", "another attribute counts")
+        yield Rule(f"sensor/{tag}@noise", "none: readings of MuJoCo have no noise either", "as in MuJoCo")
+        yield Rule(f"sensor/{tag}@user", _NO_LOSS, "it has no other use")
     for element, names, consequence, reason in _NOT_SIMULATED:
         for name in names.split():
             yield Rule(f"{element}@{name}", consequence, reason, even_if_taken=True)

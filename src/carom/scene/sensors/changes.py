@@ -47,10 +47,15 @@ def add_site(
 
 def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
     """Add a sensor to a body, as `Body.add_sensor` does."""
-    world, spec = world_of(body), sensor.spec(name)
+    put_sensor(body, sensor.spec(name))
+
+
+def put_sensor(body: Body, spec: SensorSpec) -> None:
+    """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
+    world = world_of(body)
     check_sensor(world, body, spec)
-    if not name or any(other.name == name for other in body.spec.sensors):
-        raise DescriptionError(f"sensor {name!r}: each one of a body needs a name of its own")
+    if not spec.name or any(other.name == spec.name for other in body.spec.sensors):
+        raise DescriptionError(f"sensor {spec.name!r}: each one of a body needs a name of its own")
     if spec.memory:
         others = [other.rows for other in world.bodies.values()]
         insert_memory(world.arrays, body.rows, others, spec.memory)

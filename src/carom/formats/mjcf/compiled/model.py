@@ -16,6 +16,7 @@ from carom.record import record
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
+    from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
 
 
@@ -210,6 +211,7 @@ class CompiledModel:
         couplings: Of joints, by `<equality>`.
         ties: Of bodies, by `<equality>`.
         equality_count: Number of all constraints in `<equality>`.
+        sensors: Those that are built, in order; what they refer to has a name of its own in the whole file.
     """
 
     name: str = ""
@@ -226,3 +228,4 @@ class CompiledModel:
     couplings: list[FileCoupling] = field(default_factory=list)
     ties: list[FileTie] = field(default_factory=list)
     equality_count: int = 0
+    sensors: list[SensorSpec] = field(default_factory=list)

@@ -20,6 +20,7 @@ from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.pairs import paired_geoms, read_pairs
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
+from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, read_root
@@ -48,8 +49,7 @@ def compile_mjcf(
     """Reads and checks an MJCF file as MuJoCo understands it, in double precision.
 
     Inertia comes from geoms and meshes by the rules of `<compiler>`; bodies without joints are fixed to what
-    is around them; the geoms of the world are one robot, `world`. Sensors, tendons and soft bodies are
-    not read.
+    is around them; the geoms of the world are one robot, `world`. Tendons and soft bodies are not read.
 
     Args:
         path: The file, looked up with `AssetSearch.find`.
@@ -94,6 +94,7 @@ def compile_mjcf(
     ActuatorReader(model, names).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
     EqualityReader(model, names, whole).read(scope)
+    SensorReader(model, names).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
