@@ -108,9 +108,9 @@ class ActuatorSpec:
 
 @record
 class GeneralActuator:
-    """An actuator with any affine gain and bias; attributes as of `ActuatorSpec`."""
+    """An actuator of a joint, a tendon or a site, affine or a muscle; attributes as of `ActuatorSpec`."""
 
-    joint: str
+    joint: str = ""
     gain: Vector3 = (1.0, 0.0, 0.0)
     bias: Vector3 = (0.0, 0.0, 0.0)
     gear: float = 1.0
@@ -119,6 +119,11 @@ class GeneralActuator:
     dynamics: ActivationDynamics = ActivationDynamics.NONE
     time_constant: float = 1.0
     activation_range: Range = UNBOUNDED
+    tendon: str = ""
+    site: str = ""
+    reference_site: str = ""
+    wrench: Wrench = NO_WRENCH
+    muscle: MuscleSpec | None = None
 
     def spec(self, name: str) -> ActuatorSpec:
         """The same with a name."""
@@ -133,6 +138,11 @@ class GeneralActuator:
             self.dynamics,
             self.time_constant,
             self.activation_range,
+            self.tendon,
+            self.site,
+            self.reference_site,
+            self.wrench,
+            self.muscle,
         )
 
 

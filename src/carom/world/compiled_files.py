@@ -61,6 +61,7 @@ def _give_sensors(
     owners = {
         **{(SensorObject.JOINT, link.joint_name): body for body in bodies for link in body.spec.links},
         **{(SensorObject.ACTUATOR, it.name): body for body in bodies for it in body.spec.actuators},
+        **{(SensorObject.TENDON, it.name): body for body in bodies for it in body.tendons},
         **{(SensorObject.SITE, site.name): body for body in bodies for site in body.spec.sites},
         **{
             (kind, name): body

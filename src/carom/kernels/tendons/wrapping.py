@@ -53,10 +53,20 @@ def are_crossing(a: Vector2, b: Vector2, c: Vector2, d: Vector2) -> bool:
 
 
 @func
+def is_between(a: Vector2, b: Vector2, direction: Vector2) -> bool:
+    """Whether a ray from the origin crosses the segment from a to b."""
+    whole = a[0] * b[1] - a[1] * b[0]
+    before = a[0] * direction[1] - a[1] * direction[0]
+    after = direction[0] * b[1] - direction[1] * b[0]
+    return whole * before > 0.0 and whole * after > 0.0
+
+
+@func
 def wrapped_outside(a: Vector2, b: Vector2, radius: real, side: Vector2, has_side: Int32):
     """Length of the arc on a circle that a path from a to b follows, and where it begins and ends.
 
-    The arc is negative if the path does not touch the circle.
+    The arc is negative if the path does not touch the circle: the segment does not meet it, and does not lie
+    between it and the side opposite to `side`.
     """
     nothing = real(-1.0)
     first, last = a * real(1.0), b * real(1.0)
@@ -64,7 +74,7 @@ def wrapped_outside(a: Vector2, b: Vector2, radius: real, side: Vector2, has_sid
     if wp.dot(a, a) < square or wp.dot(b, b) < square:
         return nothing, first, last
     near = nearest_to_origin(a, b)
-    if wp.dot(near, near) > square and (has_side == 0 or wp.dot(side, near) >= 0.0):
+    if wp.dot(near, near) > square and (has_side == 0 or not is_between(a, b, -side)):
         return nothing, first, last
     best = real(-1e30)
     way = real(1.0)

@@ -17,6 +17,7 @@ from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
 from carom.scene.sensors.observer import SensorObserver
 from carom.scene.sensors.rows import insert_memory
+from carom.scene.tendons.making import tendon_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -73,6 +74,8 @@ def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
         joint_of(body, spec)
     elif kind.startswith("actuator"):
         actuator_of(body, spec)
+    elif kind.startswith("tendon"):
+        tendon_of(body, spec.object)
     elif spec.kind in _OF_LOADS:
         loaded_frame(body, spec)
     elif spec.object:

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.checks import Array
+from carom.description.actuator import Wrench
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.tendon import WORLD, PathPart
-from carom.description.transform import compose
+from carom.description.transform import compose, inverse, rotate
 from carom.layouts.codes import PathKind
+from carom.native.trigonometry import atan2
 from carom.scene.sensors.source import Source
 from carom.scene.tendons.wrapping import wrapped
 
@@ -52,6 +54,13 @@ class _Walk:
             + along[1] * (vy + wz * x - wx * z)
             + along[2] * (vz + wx * y - wy * x)
         )
+
+    def power(self, link: int, point: Vector3, force: Vector3, torque: Vector3) -> float:
+        """Power of a force at a point of a link, and a torque, by the motion of the link."""
+        if link == WORLD:
+            return 0.0
+        wx, wy, wz = self._twists[self._body.first_link + 1 + link, 3:].tolist()
+        return self._speed(link, point, force) + torque[0] * wx + torque[1] * wy + torque[2] * wz
 
     def _add(self, a: tuple[int, Vector3], b: tuple[int, Vector3], divisor: float) -> None:
         x, y, z = (q - p for p, q in zip(a[1], b[1], strict=True))
@@ -105,3 +114,49 @@ def measured(source: Source, body: Body, path: Sequence[PathPart]) -> tuple[Arra
     for walk in walks:
         walk.follow(path)
     return np.array([it.length for it in walks]), np.array([it.velocity for it in walks])
+
+
+def measured_wrench(
+    source: Source, body: Body, site: PathPart, origin: PathPart | None, wrench: Wrench
+) -> tuple[Array, Array]:
+    """Length and velocity of an actuator of a site in each world, (count,) each.
+
+    The length is the pose of the site relative to the origin, along a wrench in the axes of the origin; 0 if
+    there is none. Then the velocity is that along the axes of the site.
+    """
+    lengths, velocities = [], []
+    for world in range(source.count):
+        walk = _Walk(source, body, world)
+        own = compose(walk.pose(site.link), site.pose)
+        around = own if origin is None else compose(walk.pose(origin.link), origin.pose)
+        force = rotate(around.orientation, wrench[:3])
+        torque = rotate(around.orientation, wrench[3:])
+        length = 0.0
+        velocity = walk.power(site.link, own.position, force, torque)
+        if origin is not None:
+            shared = _shared_link(body, site.link, origin.link)
+            velocity -= walk.power(shared, own.position, force, torque)
+            velocity -= walk.power(origin.link, around.position, force, torque)
+            velocity += walk.power(shared, around.position, force, torque)
+            apart = compose(inverse(around), own)
+            x, y, z, w = apart.orientation
+            size = hypot(x, y, z)
+            angle = 2.0 * atan2(size, abs(w)) * (1.0 if w >= 0.0 else -1.0)
+            turn = (x, y, z) if size == 0.0 else tuple(it * angle / size for it in (x, y, z))
+            length = sum(a * b for a, b in zip((*apart.position, *turn), wrench, strict=True))
+        lengths.append(length)
+        velocities.append(velocity)
+    return np.array(lengths), np.array(velocities)
+
+
+def _shared_link(body: Body, a: int, b: int) -> int:
+    """The last link on the ways from the base to two links; the world if one is in it."""
+    if WORLD in (a, b):
+        return WORLD
+    ways = []
+    for link in (a, b):
+        way = [link]
+        while way[-1] >= 0:
+            way.append(body.spec.links[way[-1]].parent)
+        ways.append(way)
+    return next(link for link in ways[0] if link in ways[1])

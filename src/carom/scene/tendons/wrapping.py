@@ -68,7 +68,7 @@ def _outside(a: Point, b: Point, radius: float, side: Point | None) -> tuple[flo
         return None
     near = _nearest(a, b)
     if near[0] * near[0] + near[1] * near[1] > square and (
-        side is None or side[0] * near[0] + side[1] * near[1] >= 0.0
+        side is None or not _is_between(a, b, (-side[0], -side[1]))
     ):
         return None
     choices: list[tuple[float, float, Point, Point]] = []
@@ -116,6 +116,13 @@ def _nearest(a: Point, b: Point) -> Point:
     square = x * x + y * y
     share = min(max(-(x * a[0] + y * a[1]) / square, 0.0), 1.0) if square > 0.0 else 0.0
     return a[0] + x * share, a[1] + y * share
+
+
+def _is_between(a: Point, b: Point, direction: Point) -> bool:
+    """Whether a ray from the origin crosses the segment from a to b."""
+    origin = (0.0, 0.0)
+    whole = _turn(origin, a, b)
+    return whole * _turn(origin, a, direction) > 0.0 and whole * _turn(origin, direction, b) > 0.0
 
 
 def _tangent(a: Point, radius: float, way: float) -> Point:

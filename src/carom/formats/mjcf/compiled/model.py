@@ -279,6 +279,7 @@ class CompiledModel:
         equality_count: Number of all constraints in `<equality>`.
         tendons: By name; those that are not simulated have no robot.
         tendon_couplings: Of tendons, by `<equality>`.
+        still: World poses of bodies that do not move, and of the world.
         sensors: Those that are built, in order; what they refer to has a name of its own in the whole file.
     """
 
@@ -299,3 +300,4 @@ class CompiledModel:
     sensors: list[SensorSpec] = field(default_factory=list)
     tendons: dict[str, FileTendon] = field(default_factory=dict)
     tendon_couplings: list[FileTendonCoupling] = field(default_factory=list)
+    still: dict[str, Pose] = field(default_factory=dict)

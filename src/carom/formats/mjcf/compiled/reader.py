@@ -95,6 +95,7 @@ def compile_mjcf(
                 element.note()
     tendons = TendonReader(model, names, reader, whole)
     tendons.read(scope)
+    model.still = tendons.still
     ActuatorReader(model, names, tendons.moving).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
     EqualityReader(model, names, whole).read(scope)

@@ -96,6 +96,8 @@ class SensorReader:
             attribute, known = "joint", self._kinds
         elif what is SensorObject.ACTUATOR:
             attribute, known = "actuator", (actuator.name for actuator in self.model.actuators)
+        elif what is SensorObject.TENDON:
+            attribute, known = "tendon", self.model.tendons
         elif kind in SUBTREE_KINDS:
             attribute, known = "body", (*self._names.bodies, _WORLD)
         if not attribute:
@@ -157,6 +159,8 @@ class SensorReader:
         if spec.object_type is SensorObject.ACTUATOR:
             specs = {actuator.name: actuator.spec for actuator in self.model.actuators}
             return "" if specs[spec.object] is not None else "its actuator is not simulated"
+        if spec.object_type is SensorObject.TENDON and not self.model.tendons[spec.object].robot:
+            return "its tendon is not simulated"
         for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference)):
             if kind in _FRAMES.values():
                 body = self.model.sites[name].body if kind is SensorObject.SITE else name
