@@ -69,6 +69,10 @@ TENDONS: dict[str, str] = {
         '<muscle tendon="t" force="60" lengthrange=".3 .6" timeconst=".02 .06"/><muscle joint="k" force="5" '
         'lengthrange="-1 1" range=".6 1.2" lmax="1.4" vmax="3" fpmax="1" fvmax="1.5" tausmooth=".5"/>',
     ),
+    "muscles without a force": file(
+        path("fix", "one", "end", name="t"),
+        '<muscle tendon="t" lengthrange=".3 .6"/><muscle joint="k" lengthrange="-1 1" scale="20" gear="2"/>',
+    ),
 }
 """Those of which lengths, velocities and accelerations are compared."""
 SENSED = file(

@@ -84,7 +84,7 @@ def test_actuators_have_the_names_and_the_order_of_the_file(tmp_path):
 
 def test_a_keyframe_sets_controls_and_activations(tmp_path):
     actuators = (
-        '<motor name="m" joint="j"/><muscle name="x" joint="j" lengthrange="0 1"/>'
+        '<motor name="m" joint="j"/><muscle name="x" joint="j"/>'
         '<intvelocity name="i" joint="k" kp="2" actrange="-1 1"/>'
     )
     key = '<keyframe><key name="home" ctrl=".1 .2 .3" act=".5 .6"/><key name="rest"/></keyframe></mujoco>'

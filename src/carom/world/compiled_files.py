@@ -10,6 +10,7 @@ from carom.description.sensor import SensorObject
 from carom.model.body_spec import BASE
 from carom.scene.sensors.changes import put_sensor
 from carom.world.file_keyframes import give_keyframes
+from carom.world.file_muscles import find_forces
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
@@ -42,6 +43,7 @@ def describe(scene: Scene, model: CompiledModel) -> None:
         for index in range(BASE, len(body.spec.links))
     }
     _give_sites(places, model)
+    find_forces(scene.bodies)
     _give_sensors(scene.bodies, places, model)
     give_keyframes(scene.bodies, model)
 

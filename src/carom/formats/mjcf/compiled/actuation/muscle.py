@@ -25,6 +25,8 @@ def read_muscle(
 ) -> tuple[MuscleSpec | None, str]:
     """The muscle of an element, and what of it is not built.
 
+    A negative force stands for the acceleration that it causes.
+
     Args:
         scope: The scope of the element.
         element: The element.
@@ -56,7 +58,8 @@ def read_muscle(
     fibre = (longest - shortest) / (upper - lower)
     force = number("force", -1.0)
     if force < 0.0:
-        return None, "its force is not found from the acceleration that it causes; state its force"
+        # Its force causes this acceleration where the model is at its reference; see `world.file_muscles`.
+        force = -number("scale", 200.0)
     falling = times_of(scope, element)[1]
     return MuscleSpec(
         force,

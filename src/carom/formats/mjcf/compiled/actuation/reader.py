@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
 
-from carom.description.actuator import ActuatorSpec
+from carom.description.actuator import ActuatorSpec, MuscleSpec
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.actuation.law import (
     FILTER,
@@ -129,6 +129,7 @@ class ActuatorReader:
         if not problem and element.tag == MUSCLE:
             length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds else None
             muscle, problem = read_muscle(scope, element, attributes, length)
+            problem = problem or self._unknown_force(muscle, self._robot_of(spec))
         if problem:
             scope.context.leave_out(element, _LOST, problem)
             self._note(FileActuator(name, None, has_activation))
@@ -151,6 +152,18 @@ class ActuatorReader:
             muscle=muscle,
         )
         self._finish(scope, element, whole, has_activation)
+
+    def _robot_of(self, spec: ActuatorSpec) -> str:
+        if spec.tendon:
+            return self.model.tendons[spec.tendon].robot
+        return self.moving[self.model.sites[spec.site].body]
+
+    def _unknown_force(self, muscle: MuscleSpec | None, robot: str) -> str:
+        """Why the force of a muscle is not known; empty if it is."""
+        if muscle is None or muscle.force >= 0.0:
+            return ""
+        free = any(it.robot.name == robot and not it.fixed_base for it in self.model.robots)
+        return "on a free body its force is not found; state its force" if free else ""
 
     def _ranges(
         self, scope: Scope, element: Element, attributes: Attributes, law: Law
@@ -193,6 +206,7 @@ class ActuatorReader:
             limit = self.names.joints[joint][1].joint.limit
             length = (limit.lower * gear, limit.upper * gear) if limit.lower < limit.upper else None
             muscle, reason = read_muscle(scope, element, attributes, length)
+            reason = reason or self._unknown_force(muscle, self.moving[self.names.joints[joint][0].name])
         if reason:
             scope.context.leave_out(element, _LOST, reason)
             self._note(FileActuator(name, None, has_activation))
