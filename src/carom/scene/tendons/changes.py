@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from carom.description.tendon import TendonSpec
 from carom.errors import DescriptionError
-from carom.scene.changes import tie
 from carom.scene.handles import world_of
 from carom.scene.tendons.making import new_tendon, tendons_of
 
@@ -19,4 +18,4 @@ def add_tendon(body: Body, spec: TendonSpec) -> None:
     world = world_of(body)
     if not spec.name or any(other.name == spec.name for other in tendons_of(body)):
         raise DescriptionError(f"tendon {spec.name!r}: each one of a body needs a name of its own")
-    tie(world, new_tendon(body, spec))
+    world.add_constraint(new_tendon(body, spec))
