@@ -8,7 +8,8 @@ _BODIES = """<mujoco><option timestep="1e-7" magnetic=".1 .2 -.4"><flag contact=
  pos=".4 0 0" euler="0 0 20"><joint name="k" type="slide" axis="1 0 0" range="-.1 .05" limited="true"/>
 <geom type="box" size=".05 .1 .15" pos=".1 0 0"/><site name="tip" pos=".2 .1 0" euler="180 10 0"/>
 <body name="c" pos="0 0 .3"><joint name="ball" type="ball"/>
-<geom type="capsule" size=".04 .1" pos=".1 0 0"/></body></body></body><body name="f" pos="1 2 1.5"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 0 0"/>
+<geom type="capsule" size=".04 .1" pos=".1 0 0"/></body></body></body>
+<body name="f" pos="1 2 1.5"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 0 0"/>
 <site name="free" pos="0 .1 .2"/></body></worldbody><actuator><motor name="m" joint="j" gear="3"/>
 <position name="p" joint="k" kp="50"/></actuator><sensor>"""
 _PARTS = [

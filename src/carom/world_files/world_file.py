@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
@@ -448,6 +449,13 @@ def _check_path(body: Body, record: SavedTie) -> None:
     """Raise `ValueError` unless the path of a constraint is one, and its actuator exists."""
     if record.kind < UserConstraintKind.TENDON:
         return
+    if record.kind is UserConstraintKind.TENDON:
+        stiffness, damping, *rest = record.spring
+        lower, upper, friction, _ = record.range
+        bounds = (rest[0], rest[1]), (lower, upper)
+        TendonSpec(record.name, record.path, stiffness, damping, *bounds, friction).check()
+    elif any(abs(number) == inf for number in record.range):
+        raise ValueError("only tendons have bounds that may be infinite")
     for path in (record.path, *((record.second_path,) if record.second_path else ())):
         if not record.is_wrench:
             TendonSpec(record.name, path).check()
