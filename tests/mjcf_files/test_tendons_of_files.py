@@ -95,6 +95,15 @@ def test_sensors_show_tendons(tmp_path):
             assert_allclose(sensors[name].read(), [tendon.velocity])
 
 
+def test_force_sensors_say_that_they_do_not_feel_tendons(tmp_path):
+    text = SENSED.replace("<sensor>", '<sensor><force name="f" site="two"/>')
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        (lost,) = scene.ignored.that_matter
+        assert (lost.element, "tendons" in lost.consequence) == ("sensor/force", True)
+        assert scene.sensors["f"].read().shape == (3,)
+
+
 def test_a_limit_stops_a_tendon(tmp_path):
     text = file(path("fix", "end", name="t", range=".1 .62"), '<motor tendon="t"/>')
     with World() as world:

@@ -143,11 +143,23 @@ class SensorReader:
         if problem:
             scope.context.leave_out(element, _LOST, problem)
             return
+        if spec.kind in _LOADS and self._is_pulled(spec.object):
+            scope.context.leave_out(
+                element, "it does not feel forces along tendons and at sites", "they are not gathered"
+            )
         try:
             spec.check()
         except DescriptionError as error:
             raise scope.context.error(element, error.reason) from None
         self.model.sensors.append(spec)
+
+    def _is_pulled(self, site: str) -> bool:
+        """Whether tendons, or actuators at sites, act on the robot of a site."""
+        robot = self._robots[self.model.sites[site].body]
+        acting = [it.spec.site for it in self.model.actuators if it.spec is not None and it.spec.site]
+        return any(it.robot == robot for it in self.model.tendons.values()) or any(
+            self._robots.get(self.model.sites[name].body) == robot for name in acting
+        )
 
     def _unbuilt(self, spec: SensorSpec) -> str:
         """What of a sensor is not built; empty if nothing is."""
