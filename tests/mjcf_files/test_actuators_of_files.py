@@ -84,7 +84,7 @@ def test_actuators_have_the_names_and_the_order_of_the_file(tmp_path):
 
 def test_a_keyframe_sets_controls_and_activations(tmp_path):
     actuators = (
-        '<motor name="m" joint="j"/><muscle name="x" joint="j" lengthrange="0 1"/>'
+        '<motor name="m" joint="j"/><general name="x" joint="j" dyntype="muscle"/>'
         '<intvelocity name="i" joint="k" kp="2" actrange="-1 1"/>'
     )
     key = '<keyframe><key name="home" ctrl=".1 .2 .3" act=".5 .6"/><key name="rest"/></keyframe></mujoco>'
@@ -97,7 +97,7 @@ def test_a_keyframe_sets_controls_and_activations(tmp_path):
         scene.reset("rest")
         assert [it.control for it in scene.actuators.values()] == [0.0, 0.0]
         assert scene.actuators["i"].activation == 0.0
-        (lost,) = [it for it in scene.ignored.that_matter if it.element == "actuator/muscle"]
+        (lost,) = [it for it in scene.ignored.that_matter if it.element == "actuator/general"]
         assert "muscle" in lost.reason
 
 

@@ -4,6 +4,7 @@ import pytest
 from schema import SCHEMA
 
 from carom import World
+from carom.formats.mjcf.compiled.sensors import BUILT
 from carom.formats.mjcf.rules import MJCF_RULES
 
 UNKNOWN = "that Carom knows"
@@ -18,7 +19,9 @@ READ = (
     "mujoco/deformable", "mujoco/contact/pair", "mujoco/actuator/general", "mujoco/actuator/motor",
     "mujoco/actuator/position", "mujoco/actuator/velocity", "mujoco/actuator/intvelocity",
     "mujoco/actuator/damper", "mujoco/actuator/cylinder", "mujoco/equality/connect", "mujoco/equality/weld",
-    "mujoco/equality/joint",
+    "mujoco/equality/joint", "mujoco/equality/tendon", "mujoco/actuator/muscle", "mujoco/tendon/fixed",
+    "mujoco/tendon/fixed/joint", "mujoco/tendon/spatial", "mujoco/tendon/spatial/site",
+    "mujoco/tendon/spatial/geom", "mujoco/tendon/spatial/pulley", *(f"mujoco/sensor/{tag}" for tag in BUILT),
 )  # fmt: skip
 
 
@@ -77,7 +80,7 @@ def test_what_is_read_leaves_nothing_to_report(tmp_path):
         assert not scene.ignored
 
 
-@pytest.mark.parametrize("tag", ["actuator/muscle", "sensor/gyro", "equality/flex", "deformable/flex"])
+@pytest.mark.parametrize("tag", ["actuator/adhesion", "sensor/distance", "equality/flex", "deformable/flex"])
 def test_what_is_not_read_is_reported_one_by_one(tmp_path, tag):
     around, inner = tag.split("/")
     (tmp_path / "a.xml").write_text(f"<mujoco>\n<{around}>\n<{inner}/>\n<{inner}/></{around}></mujoco>")

@@ -13,17 +13,51 @@ Range = tuple[float, float]
 UNBOUNDED: Range = (-inf, inf)
 
 
+Wrench = tuple[float, float, float, float, float, float]
+NO_WRENCH: Wrench = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@record
+class MuscleSpec:
+    """The force of a muscle, by its length and velocity.
+
+    Attributes:
+        force: Greatest active force [N].
+        fibre: Length of the fibre at rest: the unit of normalised lengths [m].
+        tendon: Length of what does not stretch [m].
+        shortest: Normalised length from which on it acts.
+        longest: Normalised length up to which it acts.
+        speed: Greatest speed of shortening, in lengths at rest per second.
+        passive: Passive force at the longest length, per greatest active force.
+        lengthening: Active force when lengthened fast, per greatest active force.
+        fall_time: Time constant of the activation where it falls [s]; `time_constant` is that of rising.
+        smoothing: Width of the range of controls over which one becomes the other; 0 for none.
+    """
+
+    force: float
+    fibre: float
+    tendon: float
+    shortest: float = 0.5
+    longest: float = 1.6
+    speed: float = 1.5
+    passive: float = 1.3
+    lengthening: float = 1.2
+    fall_time: float = 0.04
+    smoothing: float = 0.0
+
+
 @record
 class ActuatorSpec:
-    """An actuator of a joint with one degree of freedom, as the engine simulates it.
+    """An actuator of a joint with one degree of freedom, of a tendon or a site, as the engine simulates it.
 
     Its length is `gear` times the position of the joint, and its velocity `gear` times its rate. Its force is
     (gain · (1, length, velocity)) · input + bias · (1, length, velocity), within `force_range`; the joint
-    feels `gear` times that. The input is the control, or the activation if there are dynamics.
+    feels `gear` times that. The input is the control, or the activation if there are dynamics. For a tendon,
+    its length takes the place of the position. At a site it exerts `gear` times `wrench`.
 
     Attributes:
         name: Its name among the actuators of the body.
-        joint: Name of the joint.
+        joint: Name of the joint; empty if it acts on something else.
         gain: Force per input; its change per length and per velocity.
         bias: Force without input; its change per length and per velocity.
         gear: Length per position of the joint; not 0.
@@ -32,6 +66,13 @@ class ActuatorSpec:
         dynamics: How the activation follows the control.
         time_constant: Of a filter [s].
         activation_range: Bounds of the activation.
+        tendon: Name of the tendon that it pulls.
+        site: Name of the site at which it exerts a wrench.
+        reference_site: Name of a site in whose axes the wrench is given; its length is then the pose of the
+            other relative to this one. Empty for the axes of the site; then its length is 0.
+        wrench: Force along the axes, then torque about them, per force of the actuator.
+        muscle: How its force depends on length and velocity if it is a muscle; then gain and bias have no
+            meaning.
     """
 
     name: str
@@ -44,6 +85,11 @@ class ActuatorSpec:
     dynamics: ActivationDynamics = ActivationDynamics.NONE
     time_constant: float = 1.0
     activation_range: Range = UNBOUNDED
+    tendon: str = ""
+    site: str = ""
+    reference_site: str = ""
+    wrench: Wrench = NO_WRENCH
+    muscle: MuscleSpec | None = None
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the numbers have a meaning."""
@@ -51,7 +97,7 @@ class ActuatorSpec:
             lower, upper = getattr(self, name)
             if not lower <= upper:
                 raise DescriptionError(f"actuator {self.name!r}: {name} {lower:g} to {upper:g} is empty")
-        numbers = (self.gear, self.time_constant, *self.gain, *self.bias)
+        numbers = (self.gear, self.time_constant, *self.gain, *self.bias, *self.wrench)
         if not all(-inf < number < inf for number in numbers):
             raise DescriptionError(f"actuator {self.name!r}: gear, gain, bias and time must be finite")
         if self.gear == 0.0:
@@ -62,9 +108,9 @@ class ActuatorSpec:
 
 @record
 class GeneralActuator:
-    """An actuator with any affine gain and bias; attributes as of `ActuatorSpec`."""
+    """An actuator of a joint, a tendon or a site, affine or a muscle; attributes as of `ActuatorSpec`."""
 
-    joint: str
+    joint: str = ""
     gain: Vector3 = (1.0, 0.0, 0.0)
     bias: Vector3 = (0.0, 0.0, 0.0)
     gear: float = 1.0
@@ -73,6 +119,11 @@ class GeneralActuator:
     dynamics: ActivationDynamics = ActivationDynamics.NONE
     time_constant: float = 1.0
     activation_range: Range = UNBOUNDED
+    tendon: str = ""
+    site: str = ""
+    reference_site: str = ""
+    wrench: Wrench = NO_WRENCH
+    muscle: MuscleSpec | None = None
 
     def spec(self, name: str) -> ActuatorSpec:
         """The same with a name."""
@@ -87,6 +138,11 @@ class GeneralActuator:
             self.dynamics,
             self.time_constant,
             self.activation_range,
+            self.tendon,
+            self.site,
+            self.reference_site,
+            self.wrench,
+            self.muscle,
         )
 
 

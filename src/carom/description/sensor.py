@@ -52,6 +52,9 @@ class SensorKind(Enum):
     SUBTREE_ANGULAR_MOMENTUM = "subtreeangmom"
     # Of the world.
     CLOCK = "clock"
+    # Of a tendon.
+    TENDON_POSITION = "tendonpos"
+    TENDON_VELOCITY = "tendonvel"
 
 
 class SensorObject(Enum):
@@ -67,6 +70,7 @@ class SensorObject(Enum):
     INERTIAL_FRAME = "inertial frame"
     JOINT = "joint"
     ACTUATOR = "actuator"
+    TENDON = "tendon"
 
 
 _QUATERNIONS = (SensorKind.FRAME_QUATERNION, SensorKind.BALL_QUATERNION)
@@ -87,6 +91,8 @@ _NUMBERS = (
     SensorKind.ACTUATOR_VELOCITY,
     SensorKind.ACTUATOR_FORCE,
     SensorKind.CLOCK,
+    SensorKind.TENDON_POSITION,
+    SensorKind.TENDON_VELOCITY,
 )
 OF_STEPS: tuple[SensorKind, ...] = (
     SensorKind.ACCELEROMETER,
@@ -100,6 +106,7 @@ _SITE_KINDS = tuple(SensorKind)[:8]
 _JOINT_KINDS = tuple(SensorKind)[8:16]
 _ACTUATOR_KINDS = tuple(SensorKind)[16:19]
 FRAME_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[19:28]
+_TENDON_KINDS = (SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY)
 SUBTREE_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[28:32]
 
 
@@ -111,7 +118,7 @@ class SensorSpec:
         name: Its name among the sensors of the body.
         kind: What it measures.
         object_type: What its object is.
-        object: Name of the site, link, joint or actuator of the body; empty for a clock.
+        object: Name of the site, link, joint, actuator or tendon of the body; empty for a clock.
         reference_type: Of sensors of frames: what they are seen from; NONE for the world.
         reference: Its name.
         reference_body: Name of the body that has it; empty for the same body.
@@ -204,6 +211,8 @@ def objects_of(kind: SensorKind) -> tuple[SensorObject, ...]:
         return (SensorObject.JOINT,)
     if kind in _ACTUATOR_KINDS:
         return (SensorObject.ACTUATOR,)
+    if kind in _TENDON_KINDS:
+        return (SensorObject.TENDON,)
     if kind in FRAME_KINDS:
         return SensorObject.SITE, SensorObject.LINK, SensorObject.INERTIAL_FRAME
     return (SensorObject.LINK,) if kind in SUBTREE_KINDS else (SensorObject.NONE,)

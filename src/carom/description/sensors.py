@@ -213,6 +213,27 @@ class ActuatorForce(_ActuatorSensor):
     kind = SensorKind.ACTUATOR_FORCE
 
 
+class _TendonSensor(Sensor):
+    __slots__ = ()
+
+    def __init__(self, tendon: str, **quality: Unpack[Quality]) -> None:
+        super().__init__(SensorObject.TENDON, tendon, **quality)
+
+
+class TendonPosition(_TendonSensor):
+    """Length of a tendon [m]; of one over joints their weighted sum."""
+
+    __slots__ = ()
+    kind = SensorKind.TENDON_POSITION
+
+
+class TendonVelocity(_TendonSensor):
+    """Rate of the length of a tendon [m/s]."""
+
+    __slots__ = ()
+    kind = SensorKind.TENDON_VELOCITY
+
+
 class _FrameSensor(Sensor):
     """Base of sensors of a frame: exactly one of `site`, `link`, `inertial_frame` names it.
 

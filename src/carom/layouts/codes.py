@@ -34,16 +34,30 @@ class ActivationDynamics(IntEnum):
     INTEGRATOR = 1  # the rate is the control
     FILTER = 2  # first order, by an Euler step
     FILTER_EXACT = 3  # first order, by its exact solution
+    MUSCLE = 4  # first order, with time constants that depend on control and activation
+
+
+class PathKind(IntEnum):
+    """Parts of the path of a tendon."""
+
+    JOINT = 0  # adds a share of the position of a joint
+    SITE = 1  # the path goes through this point
+    SPHERE = 2  # the path goes around it if it is in the way
+    CYLINDER = 3  # likewise
+    PULLEY = 4  # a new branch of the path begins
 
 
 class UserConstraintKind(IntEnum):
-    """Kinds of user constraint between links; the values are PyBullet's, which has no coupling."""
+    """Kinds of user constraint between links; the values up to `GEAR` are PyBullet's."""
 
     PRISMATIC = 1
     FIXED = 4
     POINT_TO_POINT = 5
     GEAR = 6
     COUPLING = 7
+    TENDON = 8
+    TENDON_COUPLING = 9
+    TRANSMISSION = 10  # of an actuator to a tendon, or to a site
 
 
 class Activity(IntEnum):
@@ -122,14 +136,24 @@ MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD = 0, 1, 2, 3
 MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, MOTOR_DAMPING, MOTOR_TARGET_W = 4, 5, 6, 7
 PD_POSITION, PD_VELOCITY, PD_KP, PD_KD, PD_MAX_FORCE = 0, 1, 2, 3, 4
 
+# Columns of `Model.actuator_muscle`: greatest active force; length at rest of fibre and tendon; the range of
+# normalised lengths in which it acts; speed at which it does not act, in lengths at rest per second; passive
+# force at the end of this range and active force when lengthened fast, per greatest active force.
+MUSCLE_FORCE, MUSCLE_FIBRE, MUSCLE_TENDON, MUSCLE_SHORTEST = 0, 1, 2, 3
+MUSCLE_LONGEST, MUSCLE_SPEED, MUSCLE_PASSIVE, MUSCLE_LENGTHENING = 4, 5, 6, 7
+
 # Columns of `PairRows.contact_rows`, the rows of a contact; -1 for none.
 NORMAL_ROW, LATERAL_ROW, ROLLING_ROW, SPINNING_ROW = 0, 1, 2, 3
 
 # Kernels read codes as Warp constants.
 REVOLUTE, PRISMATIC, SPHERICAL, PLANAR, FIXED = map(int, JointCode)
 MOTOR, LIMIT, SPHERICAL_MOTOR, SPHERICAL_LIMIT, USER, FRICTION, ACTUATOR = map(int, ConstraintKind)
-UNFILTERED, INTEGRATOR, FILTER, FILTER_EXACT = map(int, ActivationDynamics)
-USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(int, UserConstraintKind)
+UNFILTERED, INTEGRATOR, FILTER, FILTER_EXACT, MUSCLE = map(int, ActivationDynamics)
+USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(
+    int, tuple(UserConstraintKind)[:5]
+)
+USER_TENDON, USER_TENDON_COUPLING, USER_TRANSMISSION = map(int, tuple(UserConstraintKind)[5:])
+PATH_JOINT, PATH_SITE, PATH_SPHERE, PATH_CYLINDER, PATH_PULLEY = map(int, PathKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
 ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)

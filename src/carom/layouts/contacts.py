@@ -297,7 +297,26 @@ class UserConstraints:
     user_relative_target: Reals
     user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`
     user_erp: Reals
+    user_first_path: (
+        Ints  # parts of the path of a tendon, of a second one, or of the frames of a transmission
+    )
+    user_path_count: Ints
+    user_second_path: Ints  # first part of the second path; the end of all parts if there is none
+    user_actuator: Ints  # row of the actuator of a transmission
+    user_is_wrench: Ints  # 1: a transmission to a site, a wrench along its axes
+    user_spring: Vectors4  # of a tendon: stiffness, damping, lengths between which it is slack; see `tendons`
+    user_range: Vectors4  # of a tendon: least and greatest length, and friction; see `tendons`
     user_enabled: IntRows  # 0: no effect
+
+    # Parts of paths.
+    path_kind: Ints  # `codes.PathKind`
+    path_link: Ints  # row of the link, -1 for the world
+    path_point: Vectors3  # in the inertial frame of the link, or in the world
+    path_turn: Quaternions  # likewise, of the frame of a cylinder or of a site that is a transmission's
+    path_size: Reals  # share of a joint, radius, or divisor of a pulley
+    path_has_side: Ints  # 1: the path goes around on the side of a point, or within if the point is inside
+    path_side_link: Ints
+    path_side_point: Vectors3
 
 
 @struct

@@ -133,6 +133,7 @@ class ActuatorModel:
     """One actuator."""
 
     dynamics: Int32  # see `codes.ActivationDynamics`
+    is_muscle: Int32  # 1: its force is that of a muscle, not affine
 
 
 @struct
@@ -177,7 +178,9 @@ class Model:
     actuator_force_upper: RealRows
     actuator_activation_lower: RealRows
     actuator_activation_upper: RealRows
-    actuator_time_constant: RealRows  # of a filter [s]
+    actuator_time_constant: RealRows  # of a filter, or of a muscle's activation [s]
+    actuator_muscle: Vector8Rows  # columns: see `codes`
+    actuator_muscle_time: Vector3Rows  # of its deactivation [s]; width of the transition between both
 
 
 @struct

@@ -21,6 +21,20 @@ def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
     model["actuator_bias"][:, row] = spec.bias
     model["actuator_gear"][:, row] = spec.gear
     model["actuator_time_constant"][:, row] = spec.time_constant
+    muscle = spec.muscle
+    model["actuator_is_muscle"][row] = muscle is not None
+    if muscle is not None:
+        model["actuator_muscle"][:, row] = (
+            muscle.force,
+            muscle.fibre,
+            muscle.tendon,
+            muscle.shortest,
+            muscle.longest,
+            muscle.speed,
+            muscle.passive,
+            muscle.lengthening,
+        )
+        model["actuator_muscle_time"][:, row] = (muscle.fall_time, muscle.smoothing, 0.0)
     for name in ("control", "force", "activation"):
         lower, upper = getattr(spec, f"{name}_range")
         model[f"actuator_{name}_lower"][:, row] = lower

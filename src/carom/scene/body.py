@@ -35,11 +35,13 @@ if TYPE_CHECKING:
     from carom.description.keyframe import BodyKeyframe
     from carom.description.sensors import Sensor
     from carom.description.site import SiteShape
+    from carom.description.tendon import TendonSpec
     from carom.scene.actuators.actuator import BodyActuators
     from carom.scene.joint import Joints
     from carom.scene.link import Links
     from carom.scene.sensors.sensor import BodySensors
     from carom.scene.sensors.site import BodySites
+    from carom.scene.tendons.tendon import BodyTendons
     from carom.world.world import World
 
 _NUMBER = np.dtype(NUMPY_REAL)
@@ -183,6 +185,26 @@ class Body:
         from carom.scene.actuators.changes import add_actuator
 
         add_actuator(self, name, actuator)
+
+    @property
+    def tendons(self) -> BodyTendons:
+        """The tendons by index or name."""
+        from carom.scene.tendons.tendon import BodyTendons
+
+        return BodyTendons(self)
+
+    def add_tendon(self, tendon: TendonSpec) -> None:
+        """Add a tendon.
+
+        Args:
+            tendon: Its name, its path over joints, or through points of links, and its spring and limits.
+
+        Raises:
+            DescriptionError: What it refers to does not exist, the name is taken, or a number has no meaning.
+        """
+        from carom.scene.tendons.changes import add_tendon
+
+        add_tendon(self, tendon)
 
     @cached_property
     def sites(self) -> BodySites:

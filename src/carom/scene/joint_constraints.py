@@ -9,7 +9,7 @@ from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, Constrain
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
 from carom.record import record
-from carom.scene.actuators.actuated_joint import actuated_joint
+from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.constraint_rows import ConstraintRows
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
@@ -96,6 +96,8 @@ class JointConstraints:
                     friction = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=link.friction)
                     self.all.append(friction)
         for number, actuator in enumerate(body.spec.actuators):
+            if not drives_joint(actuator):
+                continue
             joint = actuated_joint(body, actuator)
             self.all.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
 

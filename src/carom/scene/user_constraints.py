@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.tendon import WORLD, Path
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
 from carom.native.tables import ArrayTable
@@ -24,6 +25,9 @@ ROWS = {
     UserConstraintKind.PRISMATIC: 5,
     UserConstraintKind.GEAR: 1,
     UserConstraintKind.COUPLING: 1,
+    UserConstraintKind.TENDON: 3,
+    UserConstraintKind.TENDON_COUPLING: 1,
+    UserConstraintKind.TRANSMISSION: 1,
 }
 _MOST_ROWS = 6
 _ROW_BYTES = 8 * _MOST_ROWS
@@ -45,6 +49,24 @@ _FIELDS = (
     "user_frame_a",
     "user_frame_b",
     "user_axis",
+    "user_first_path",
+    "user_path_count",
+    "user_second_path",
+    "user_actuator",
+    "user_is_wrench",
+    "user_spring",
+    "user_range",
+)
+# Those of parts of paths.
+_PATH_FIELDS = (
+    "path_kind",
+    "path_link",
+    "path_point",
+    "path_turn",
+    "path_size",
+    "path_has_side",
+    "path_side_link",
+    "path_side_point",
 )
 # Terms of a row whose contents are not known.
 _UNKNOWN = (None,) * (1 + len(_FIELDS))
@@ -75,6 +97,15 @@ class UserConstraint:
         erp: Share of a gear's position error corrected per substep; 0 corrects velocities only.
         enabled: Whether it is active.
         name: Name in the file it comes from.
+        path: Of tendons, and of actuators of tendons and sites: parts of a path, with poses in the inertial
+            frames of links of the parent.
+        second_path: The path of the leader of two coupled tendons; the site in whose axes an actuator acts.
+        actuator: Number of the actuator of a transmission among those of the parent.
+        is_wrench: Whether a transmission is to a site.
+        spring: Of a tendon: stiffness, damping, and the lengths between which it is slack. Of a transmission
+            to a site: force along its axes, per force of the actuator.
+        range: Of a tendon: least and greatest length, friction. Of coupled ones: the lengths from which both
+            are counted. Of a transmission to a site: torque about its axes.
     """
 
     id: int
@@ -95,9 +126,40 @@ class UserConstraint:
     enabled: bool = True
     polynomial: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     name: str = ""
+    path: Path = ()
+    second_path: Path = ()
+    actuator: int = -1
+    is_wrench: bool = False
+    spring: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    range: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
-    def terms(self) -> tuple[Any, ...]:
-        """The values of its row in the engine's arrays: of `_FIELDS`, and whether it is enabled."""
+    @property
+    def both_paths(self) -> Path:
+        """The parts of its path and of the second one."""
+        return (*self.path, *self.second_path)
+
+    def path_terms(self) -> list[tuple[Any, ...]]:
+        """The values of the rows of its path's parts, of `_PATH_FIELDS`."""
+        base = self.parent.first_link + 1
+        return [
+            (
+                part.kind,
+                -1 if part.link == WORLD else base + part.link,
+                part.pose.position,
+                part.pose.orientation,
+                part.size,
+                part.side is not None,
+                -1 if part.side_link == WORLD else base + part.side_link,
+                part.side or (0.0, 0.0, 0.0),
+            )
+            for part in self.both_paths
+        ]
+
+    def terms(self, first_path: int) -> tuple[Any, ...]:
+        """The values of its row in the engine's arrays: of `_FIELDS`, and whether it is enabled.
+
+        Its path begins in row `first_path`.
+        """
         parent, child, auxiliary = self.parent, self.child, self.gear_auxiliary_link
         return (
             self.kind,
@@ -116,6 +178,13 @@ class UserConstraint:
             self.parent_frame.orientation,
             self.child_frame.orientation,
             self.axis,
+            first_path,
+            len(self.both_paths),
+            first_path + len(self.path),
+            parent.rows.first["actuator"] + self.actuator if self.actuator >= 0 else -1,
+            self.is_wrench,
+            self.spring,
+            self.range,
             self.enabled,
         )
 
@@ -238,8 +307,14 @@ class UserConstraints:
 
     def write(self, contact_arrays: ContactArrays, state: ArrayTable) -> None:
         """Write all constraints that have changed to the arrays of the engine; impulses follow their rows."""
-        now = [constraint.terms() for constraint in self._by_id.values()]
+        now, parts = [], []
+        for constraint in self._by_id.values():
+            now.append(constraint.terms(len(parts)))
+            if constraint.path:
+                parts += constraint.path_terms()
         contact_arrays.user_count = len(now)
+        if parts:
+            _write_paths(contact_arrays, parts)
         if now != self._written:
             self._write_rows(contact_arrays, now)
         if self._solved != list(self._by_id):
@@ -293,3 +368,11 @@ class UserConstraints:
             else bytes(_ROW_BYTES)
             for number in numbers
         )
+
+
+def _write_paths(contact_arrays: ContactArrays, parts: Sequence[tuple[Any, ...]]) -> None:
+    """Write the parts of all paths."""
+    contact_arrays.users.reserve({"path": len(parts)})
+    users = contact_arrays.users.numpy
+    for field, values in zip(_PATH_FIELDS, zip(*parts, strict=True), strict=True):
+        users[field][: len(parts)] = values

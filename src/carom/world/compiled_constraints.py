@@ -10,6 +10,8 @@ from carom.description.transform import compose
 from carom.model.body_spec import BASE
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 from carom.scene.named_constraints.tie import Connect, Weld, new_tie
+from carom.scene.tendons.tendon import TendonCoupling
+from carom.world.file_tendons import add_tendons
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from carom.scene.user_constraints import UserConstraint
 
 WORLD = "world"
-NamedConstraint = JointCoupling | Connect
+NamedConstraint = JointCoupling | Connect | TendonCoupling
 
 
 def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list[NamedConstraint]:
@@ -40,6 +42,8 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
         tie = new_tie(it.name, first, second, fixed, is_weld=it.is_weld)
         _put(first[0], tie, enabled=it.enabled)
         made.append(Weld(tie) if it.is_weld else Connect(tie))
+    if model.tendons or any(it.spec is not None and it.spec.site for it in model.actuators):
+        made += add_tendons(bodies, model, place)
     return made
 
 

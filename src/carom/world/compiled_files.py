@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from carom.description.sensor import SensorObject
 from carom.model.body_spec import BASE
+from carom.scene.sensors.changes import put_sensor
 from carom.world.file_keyframes import give_keyframes
+from carom.world.file_muscles import find_forces
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
@@ -27,27 +31,52 @@ def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
 
 
 def describe(scene: Scene, model: CompiledModel) -> None:
-    """Give a scene the sites, cameras, actuators, keyframes and options of its file."""
+    """Give a scene the sites, cameras, actuators, sensors, keyframes and options of its file."""
     scene.sites = dict(model.sites)
     scene.cameras = dict(model.cameras)
     scene.options = dict(model.options)
     of_bodies = {it.name: it for body in scene.bodies for it in body.actuators}
     scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
-    _give_sites(scene.bodies, model)
+    places = {
+        body.spec.link(index).name: (body, index)
+        for body in reversed(scene.bodies)
+        for index in range(BASE, len(body.spec.links))
+    }
+    _give_sites(places, model)
+    find_forces(scene.bodies)
+    _give_sensors(scene.bodies, places, model)
     give_keyframes(scene.bodies, model)
 
 
-def _give_sites(bodies: Sequence[Body], model: CompiledModel) -> None:
+def _give_sites(places: Mapping[str, tuple[Body, int]], model: CompiledModel) -> None:
     """Add the sites of the file to the bodies with their links; those of the world stay with the scene."""
-    places = {
-        body.spec.link(index).name: (body, index)
-        for body in reversed(bodies)
-        for index in range(BASE, len(body.spec.links))
-    }
     for site in model.sites.values():
         if site.body in places:
             body, link = places[site.body]
             body.add_site(site.name, link, site.frame, shape=site.kind, size=site.size)
+
+
+def _give_sensors(
+    bodies: Sequence[Body], places: Mapping[str, tuple[Body, int]], model: CompiledModel
+) -> None:
+    """Add the sensors of the file to the bodies that have what they measure."""
+    owners = {
+        **{(SensorObject.JOINT, link.joint_name): body for body in bodies for link in body.spec.links},
+        **{(SensorObject.ACTUATOR, it.name): body for body in bodies for it in body.spec.actuators},
+        **{(SensorObject.TENDON, it.name): body for body in bodies for it in body.tendons},
+        **{(SensorObject.SITE, site.name): body for body in bodies for site in body.spec.sites},
+        **{
+            (kind, name): body
+            for name, (body, _) in places.items()
+            for kind in (SensorObject.LINK, SensorObject.INERTIAL_FRAME)
+        },
+    }
+    for spec in model.sensors:
+        body = owners[spec.object_type, spec.object] if spec.object else bodies[0]
+        if spec.reference:
+            other = owners[spec.reference_type, spec.reference]
+            spec = spec if other is body else replace(spec, reference_body=other.name)
+        put_sensor(body, spec)
 
 
 def _rows_of(bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]) -> Iterator[tuple[int, int]]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
     from carom.scene.sensors.sensor import BodySensor
+    from carom.scene.tendons.tendon import BodyTendon
     from carom.world.compiled_constraints import NamedConstraint
     from carom.world.world import World
 
@@ -28,7 +29,7 @@ class Scene(Sequence[Body]):
         source: The file.
         format: Its format: `URDF`, `SDF`, `MJCF` or `saved world`.
         bodies: The bodies, in the order of the file.
-        constraints: Couplings of joints, and connected and welded links, by name.
+        constraints: Couplings of joints and of tendons, and connected and welded links, by name.
         actuators: Actuators of all bodies by name, in the order of an MJCF file.
         sites: Named frames of MJCF files, by name; `Body.sites` has those of each body.
         cameras: Cameras of MJCF files, by name.
@@ -75,6 +76,12 @@ class Scene(Sequence[Body]):
         """The sensors of all bodies by name; if two have the same name, the first."""
         sensors = [sensor for body in self.bodies for sensor in body.sensors]
         return {sensor.name: sensor for sensor in reversed(sensors)}
+
+    @property
+    def tendons(self) -> dict[str, BodyTendon]:
+        """The tendons of all bodies by name; if two have the same name, the first."""
+        tendons = [tendon for body in self.bodies for tendon in body.tendons]
+        return {tendon.name: tendon for tendon in reversed(tendons)}
 
     @property
     def keyframes(self) -> dict[str, Keyframe]:

@@ -217,6 +217,10 @@ class World(
         frames = (axis, parent_frame, child_frame)
         return tie(self, self.user_constraints.new(kind, *places, *frames, hidden=hidden))
 
+    def add_constraint(self, constraint: UserConstraint) -> None:
+        """Add a constraint that `user_constraints.new` has made for a body of this world."""
+        tie(self, constraint)
+
     def untie(self, constraint: UserConstraint) -> None:
         """Remove a constraint made by `tie`."""
         untie(self, constraint)

@@ -9,15 +9,24 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.tendon import WORLD, PathPart, TendonSpec
 from carom.engine.parameters import EngineParameters
 from carom.errors import DescriptionError
 from carom.formats.bullet import is_bullet
 from carom.formats.files import read_bounded
-from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, UserConstraintKind
+from carom.layouts.codes import (
+    LIMIT_KIND,
+    MOTOR_KIND,
+    WITH_FRICTION,
+    ConstraintKind,
+    PathKind,
+    UserConstraintKind,
+)
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
 from carom.scene.actuators.actuated_joint import actuated_joint
@@ -125,6 +134,12 @@ class SavedTie:
     enabled: bool = True
     polynomial: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     name: str = ""
+    path: tuple[PathPart, ...] = ()
+    second_path: tuple[PathPart, ...] = ()
+    actuator: int = -1
+    is_wrench: bool = False
+    spring: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    range: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(slots=True)
@@ -418,6 +433,7 @@ def _make_ties(
         _check_link(parent, record.gear_auxiliary_link)
         if child is not None:
             _check_link(child, record.child_link)
+        _check_path(parent, record)
         values = {field.name: getattr(record, field.name) for field in fields(SavedTie)}
         values |= {"parent": parent, "child": child}
         if not alone:
@@ -427,6 +443,32 @@ def _make_ties(
         ties[record.id] = UserConstraint(**values)
         world.user_constraints.put(ties[record.id])
     return ties
+
+
+def _check_path(body: Body, record: SavedTie) -> None:
+    """Raise `ValueError` unless the path of a constraint is one, and its actuator exists."""
+    if record.kind < UserConstraintKind.TENDON:
+        return
+    if record.kind is UserConstraintKind.TENDON:
+        stiffness, damping, *rest = record.spring
+        lower, upper, friction, _ = record.range
+        bounds = (rest[0], rest[1]), (lower, upper)
+        TendonSpec(record.name, record.path, stiffness, damping, *bounds, friction).check()
+    elif any(abs(number) == inf for number in record.range):
+        raise ValueError("only tendons have bounds that may be infinite")
+    for path in (record.path, *((record.second_path,) if record.second_path else ())):
+        if not record.is_wrench:
+            TendonSpec(record.name, path).check()
+        elif len(path) != 1 or path[0].kind is not PathKind.SITE:
+            raise ValueError("the transmission to a site needs one site")
+    for part in (*record.path, *record.second_path):
+        for link in (part.link, part.side_link):
+            if link != WORLD:
+                _check_link(body, link)
+        if part.kind is PathKind.JOINT and (part.link < 0 or body.velocity_count[part.link] != 1):
+            raise ValueError(f"link {part.link} of body {body.id} has no joint that a tendon could follow")
+    if record.kind is UserConstraintKind.TRANSMISSION:
+        _index(record.actuator, list(body.spec.actuators))
 
 
 def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alone: bool) -> None:

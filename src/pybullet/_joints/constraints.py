@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 _WORLD = -1
-_KINDS = {int(kind): kind for kind in UserConstraintKind}
+_KINDS = {int(kind): kind for kind in UserConstraintKind if kind <= UserConstraintKind.COUPLING}
 _FAILED = "createConstraint failed."
 _PARENT_FRAME = "parentFramePosition", "parentFrameOrientation"
 _CHILD_FRAME = "childFramePosition", "childFrameOrientation"

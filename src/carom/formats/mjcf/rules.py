@@ -20,7 +20,7 @@ _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
 _BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
-_ACTUATOR = f"{_BOUNDS} class gear group joint jointinparent name"
+_ACTUATOR = f"{_BOUNDS} class gear group joint jointinparent name refsite site tendon"
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype",
     "motor": "",
@@ -29,12 +29,38 @@ _ACTUATORS = {
     "intvelocity": "dampratio inheritrange kp kv",
     "damper": "kv",
     "cylinder": "area bias diameter timeconst",
+    "muscle": "force fpmax fvmax lengthrange lmax lmin range scale tausmooth timeconst vmax",
 }
 
 _EQUALITY = "active body1 body2 class name site1 site2"
-_NOT_OF_JOINTS = "cranklength cranksite refsite site slidersite tendon body"
+_NOT_OF_JOINTS = "cranklength cranksite slidersite body"
 
-_UNBUILT = ("orientation", "pid", "muscle", "adhesion", "dcmotor", "plugin")
+_SENSOR = "cutoff delay interp interval name nsample"
+_FRAME = f"{_SENSOR} objname objtype"
+_RELATIVE = f"{_FRAME} refname reftype"
+_SENSORS = {
+    **dict.fromkeys(
+        ("touch", "accelerometer", "velocimeter", "gyro", "force", "torque", "magnetometer"),
+        f"{_SENSOR} site",
+    ),
+    "rangefinder": f"{_SENSOR} camera data site",
+    **{
+        f"joint{what}": f"{_SENSOR} joint"
+        for what in ("pos", "vel", "actuatorfrc", "limitpos", "limitvel", "limitfrc")
+    },
+    **dict.fromkeys(("ballquat", "ballangvel"), f"{_SENSOR} joint"),
+    **{f"actuator{what}": f"{_SENSOR} actuator" for what in ("pos", "vel", "frc")},
+    **{f"frame{what}": _RELATIVE for what in ("pos", "quat", "xaxis", "yaxis", "zaxis", "linvel", "angvel")},
+    **{f"frame{what}": _FRAME for what in ("linacc", "angacc")},
+    **{f"subtree{what}": f"{_SENSOR} body" for what in ("com", "linvel", "angmom")},
+    **{f"tendon{what}": f"{_SENSOR} tendon" for what in ("pos", "vel")},
+    "clock": _SENSOR,
+}
+
+_TENDON = "class damping frictionloss limited name range springlength stiffness"
+_TENDONS = ("fixed", "spatial", "tendon")
+
+_UNBUILT = ("orientation", "pid", "adhesion", "dcmotor", "plugin")
 
 _READ = {
     "mujoco": "model",
@@ -65,6 +91,7 @@ _READ = {
     "connect": f"anchor {_EQUALITY}",
     "weld": f"anchor relpose {_EQUALITY}",
     "equality": "active class",
+    **dict.fromkeys(_TENDONS, _TENDON),
     "pair": "class geom1 geom2 name",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
@@ -89,7 +116,17 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
         for tag in _ACTUATORS
     ],
     ("general", "inheritrange", _LAW, _YET),
-    *[(tag, "solimp solref", _RIGID, _YET) for tag in ("connect", "weld", "equality", "equality/joint")],
+    *[(tag, "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET) for tag in _TENDONS],
+    *[
+        (tag, "actuatorfrclimited actuatorfrcrange", "its actuators have no such bound", _YET)
+        for tag in _TENDONS
+    ],
+    *[(tag, "armature", "it has no inertia", _YET) for tag in _TENDONS],
+    *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
+    *[
+        (tag, "solimp solref", _RIGID, _YET)
+        for tag in ("connect", "weld", "equality", "equality/joint", "equality/tendon")
+    ],
     ("pair", "adhesion condim friction gap margin solimp solref solreffriction", _SOFT, _YET),
     ("weld", "torquescale", _RIGID, _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
@@ -109,9 +146,10 @@ _WITHOUT_LOSS = {
     "joint": "group user",
     "freejoint": "group",
     "geom": "castshadow user",
-    **dict.fromkeys(_ACTUATORS, f"lengthrange user {_NOT_OF_JOINTS}"),
+    **{tag: f"{'lengthrange ' * (tag != 'muscle')}user {_NOT_OF_JOINTS}" for tag in _ACTUATORS},
     "site": "group material rgba user",
     "camera": "ipd output principal principalpixel projection target user",
+    **dict.fromkeys(_TENDONS, "group material rgba user width"),
     "light": "active ambient attenuation bulbradius castshadow class cutoff diffuse dir directional exponent "
     "intensity mode name pos range softness specular target texture type",
 }
@@ -123,6 +161,21 @@ _ELEMENTS = (
     *[
         Rule(f"equality/joint@{name}", "none: it has no meaning here", "another attribute counts")
         for name in ("active", "class", "joint1", "joint2", "name", "polycoef")
+    ],
+    *[
+        Rule(f"equality/tendon@{name}", "none: it has no meaning here", "another attribute counts")
+        for name in ("active", "class", "tendon1", "tendon2", "name", "polycoef")
+    ],
+    *[
+        Rule(place, "none: it has no meaning here", "another attribute counts")
+        for place in (
+            "fixed/joint@coef",
+            "fixed/joint@joint",
+            "spatial/geom@geom",
+            "spatial/geom@sidesite",
+            "spatial/pulley@divisor",
+            "spatial/site@site",
+        )
     ],
     Rule("sensor/*", "there is no such sensor", _YET),
     Rule("tendon/*", "it does not pull", _YET),
@@ -157,6 +210,11 @@ def _rules() -> Iterator[Rule]:
         for name in names.split():
             yield Rule(f"{element}@{name}", "none: it has no meaning here", "another attribute counts")
             yield Rule(f"default/{element}@{name}", "none: no element uses it", "it is not needed")
+    for tag, names in _SENSORS.items():
+        for name in names.split():
+            yield Rule(f"sensor/{tag}@{name}", "none: it has no meaning here", "another attribute counts")
+        yield Rule(f"sensor/{tag}@noise", "none: readings of MuJoCo have no noise either", "as in MuJoCo")
+        yield Rule(f"sensor/{tag}@user", _NO_LOSS, "it has no other use")
     for element, names, consequence, reason in _NOT_SIMULATED:
         for name in names.split():
             yield Rule(f"{element}@{name}", consequence, reason, even_if_taken=True)

@@ -8,11 +8,12 @@ are those of the force. All other forces are impulses that are known, rows with 
 import warp as wp
 
 from carom.kernels.dynamics.motors import unless_nan
+from carom.kernels.dynamics.muscles import activation_rate, muscle_force
 from carom.kernels.dynamics.rows import LEAST_INVERSE_MASS, add_row, inverse_mass_entry
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, UNFILTERED
+from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, UNFILTERED
 
 
 @func
@@ -24,6 +25,26 @@ def bounded_control(model: Model, state: State, world: Int32, actuator: Int32) -
         model.actuator_control_upper[world, actuator],
     )
     return unless_nan(within_bounds(control, lower, upper), control)
+
+
+@func
+def actuator_law(model: Model, state: State, world: Int32, actuator: Int32, length: real, speed: real):
+    """Force of an actuator at velocity 0, and stiffness and damping by which it falls, without bounds.
+
+    What of the force grows with velocity is that of the present velocity.
+    """
+    drive = state.actuator_activation[world, actuator]
+    if model.actuator[actuator].dynamics == UNFILTERED:
+        drive = bounded_control(model, state, world, actuator)
+    if model.actuator[actuator].is_muscle != 0:
+        pull = muscle_force(model.actuator_muscle[world, actuator], length, speed, drive)
+        return pull, real(0.0), real(0.0)
+    gain, bias = model.actuator_gain[world, actuator], model.actuator_bias[world, actuator]
+    terms = gain * drive + bias
+    # Force = terms[0] - stiffness length - damping velocity; what is negative of both is explicit.
+    stiffness, damping = wp.max(-terms[1], real(0.0)), wp.max(-terms[2], real(0.0))
+    force = terms[0] + terms[1] * length + (terms[2] + damping) * speed
+    return force, stiffness, damping
 
 
 @func
@@ -47,14 +68,7 @@ def actuator_row(
     rate = state.dof_velocity[world, dof]
     length = gear * state.position[world, model.link[link].first_position]
     speed = gear * rate
-    drive = state.actuator_activation[world, actuator]
-    if model.actuator[actuator].dynamics == UNFILTERED:
-        drive = bounded_control(model, state, world, actuator)
-    gain, bias = model.actuator_gain[world, actuator], model.actuator_bias[world, actuator]
-    terms = gain * drive + bias
-    # Force = terms[0] - stiffness length - damping velocity; what is negative of both is explicit.
-    stiffness, damping = wp.max(-terms[1], real(0.0)), wp.max(-terms[2], real(0.0))
-    force = terms[0] + terms[1] * length + (terms[2] + damping) * speed
+    force, stiffness, damping = actuator_law(model, state, world, actuator, length, speed)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     # Impulse on the joint = h gear force - yielding (rate of the joint at the end).
     yielding = h * gear * gear * (damping + h * stiffness)
@@ -108,6 +122,9 @@ def advance_activations(model: Model, settings: Settings, state: State, world: I
                 activation += h * (control - activation) / constant
             elif dynamics == FILTER_EXACT:
                 activation += (control - activation) * (1.0 - wp.exp(-h / constant))
+            elif dynamics == MUSCLE:
+                times = model.actuator_muscle_time[world, actuator]
+                activation += h * activation_rate(control, activation, constant, times[0], times[1])
             lower = model.actuator_activation_lower[world, actuator]
             upper = model.actuator_activation_upper[world, actuator]
             state.actuator_activation[world, actuator] = within_bounds(activation, lower, upper)

@@ -78,4 +78,4 @@ def island_impulses_kernel(
     done = work.tree_progress[world, root]
     keep_row_results(model, settings, state, own_scratch, world, root, done.rows, done.sweeps, done.residual)
     keep_unit_impulses(contacts, own_pair_rows, world, done.units, done.outcome)
-    keep_constraint_impulses(model, state, users, own_pair_rows, world, root)
+    keep_constraint_impulses(model, settings, state, users, own_pair_rows, world, root)

@@ -22,7 +22,7 @@ from carom.kernels.solver.user_constraints import (
 )
 from carom.kernels.structs import Contacts, Model, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.codes import USER_COUPLING, USER_GEAR
+from carom.layouts.codes import USER_COUPLING, USER_GEAR, USER_TENDON
 from carom.layouts.contacts import THERE
 
 
@@ -106,6 +106,8 @@ def gather_user_forces(
             add_joint_force(model, scratch, world, ends[1], size)
         if ends[2] == tree:
             add_joint_force(model, scratch, world, ends[3], -slope * size)
+        return
+    if users.user_kind[user] >= USER_TENDON:
         return
     force, torque = user_wrench(settings, model, state, scratch, users, world, user)
     point_a, point_b = held_points(state, users, world, user)

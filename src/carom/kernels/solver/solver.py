@@ -185,16 +185,22 @@ def solve_island(
                 trying = Int32(1)
     keep_row_results(model, settings, state, scratch, world, root, rows, sweeps, residual)
     keep_unit_impulses(contacts, pair_rows, world, units, outcome)
-    keep_constraint_impulses(model, state, users, pair_rows, world, root)
+    keep_constraint_impulses(model, settings, state, users, pair_rows, world, root)
 
 
 @func
 def keep_constraint_impulses(
-    model: Model, state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, root: Int32
+    model: Model,
+    settings: Settings,
+    state: State,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+    root: Int32,
 ):
     """Store the impulses of an island's user constraints."""
     constraint = pair_rows.tree_first_constraint[world, root]
     while constraint >= 0:
         if model.constraint[constraint].kind == USER:
-            keep_user_impulses(state, users, pair_rows, world, model.constraint[constraint].link)
+            keep_user_impulses(settings, state, users, pair_rows, world, model.constraint[constraint].link)
         constraint = pair_rows.constraint_next[world, constraint]

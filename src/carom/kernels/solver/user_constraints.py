@@ -7,8 +7,16 @@ from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, wri
 from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
+from carom.kernels.tendons.rows import add_path_rows
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
-from carom.layouts.codes import USER_COUPLING, USER_GEAR, USER_POINT_TO_POINT, USER_PRISMATIC
+from carom.layouts.codes import (
+    USER_COUPLING,
+    USER_GEAR,
+    USER_POINT_TO_POINT,
+    USER_PRISMATIC,
+    USER_TENDON,
+    USER_TRANSMISSION,
+)
 
 _PARALLEL = real(1e-6)
 
@@ -28,9 +36,9 @@ def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Qua
 @func
 def user_row_count(kind: Int32) -> Int32:
     """Number of rows of a user constraint."""
-    if kind == USER_GEAR or kind == USER_COUPLING:
+    if kind == USER_GEAR or kind == USER_COUPLING or kind > USER_TENDON:
         return Int32(1)
-    if kind == USER_POINT_TO_POINT:
+    if kind == USER_POINT_TO_POINT or kind == USER_TENDON:
         return Int32(3)
     return Int32(5) if kind == USER_PRISMATIC else Int32(6)
 
@@ -123,6 +131,9 @@ def add_user_rows(
         row, block = add_coupling_row(
             settings, model, state, scratch, users, pair_rows, world, user, row, block
         )
+        return row, block
+    if users.user_kind[user] >= USER_TENDON:
+        row, block = add_path_rows(settings, model, state, scratch, users, pair_rows, world, user, row, block)
         return row, block
     ends = user_ends(users, user)
     point_a, point_b = held_points(state, users, world, user)
@@ -287,11 +298,16 @@ def add_coupling_row(
 
 
 @func
-def keep_user_impulses(state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, user: Int32):
-    """Store the impulses of a user constraint's rows."""
+def keep_user_impulses(
+    settings: Settings, state: State, users: UserConstraints, pair_rows: PairRows, world: Int32, user: Int32
+):
+    """Store the impulses of a user constraint's rows, and the force of an actuator."""
     first = pair_rows.user_first_row[world, user]
     for i in range(user_row_count(users.user_kind[user])):
         impulse = real(0.0)
         if users.user_enabled[world, user] != 0:
             impulse = pair_rows.row_terms[world, first + i].impulse
         state.user_impulse[world, user][i] = impulse
+    if users.user_kind[user] == USER_TRANSMISSION:
+        force = state.user_impulse[world, user][0] / settings.time_step
+        state.actuator_force[world, users.user_actuator[user]] = force

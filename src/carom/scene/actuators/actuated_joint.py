@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+def drives_joint(spec: ActuatorSpec) -> bool:
+    """Whether an actuator drives a joint, and not a tendon or a site."""
+    return not spec.tendon and not spec.site
+
+
 def actuated_joint(body: Body, spec: ActuatorSpec) -> int:
     """Index of the joint of an actuator.
 

@@ -9,8 +9,11 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each
 from carom.description.actuator import ActuatorSpec, Range
+from carom.scene.actuators.actuated_joint import drives_joint
 from carom.scene.handles import world_of
 from carom.scene.named import Named
+from carom.scene.sensors.joints import along_actuator
+from carom.scene.sensors.lone_source import LoneSource
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -32,7 +35,10 @@ class BodyActuator:
         self.index: int = index
 
     def __repr__(self) -> str:
-        return f"<Actuator {self.index} {self.name!r} of {self.body.name!r}: joint {self.spec.joint!r}>"
+        spec = self.spec
+        what = f"tendon {spec.tendon!r}" if spec.tendon else f"site {spec.site!r}"
+        what = f"joint {spec.joint!r}" if drives_joint(spec) else what
+        return f"<Actuator {self.index} {self.name!r} of {self.body.name!r}: {what}>"
 
     @property
     def spec(self) -> ActuatorSpec:
@@ -46,7 +52,7 @@ class BodyActuator:
 
     @property
     def joint(self) -> Joint:
-        """The joint that it drives."""
+        """The joint that it drives; raises `KeyError` if it drives a tendon or acts at a site."""
         return self.body.joints[self.spec.joint]
 
     @property
@@ -74,13 +80,13 @@ class BodyActuator:
 
     @property
     def length(self) -> float:
-        """`gear` times the position of its joint."""
-        return self.gear * self.joint.position
+        """`gear` times the position of its joint or the length of its tendon; of sites see `ActuatorSpec`."""
+        return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[0][0])
 
     @property
     def velocity(self) -> float:
-        """`gear` times the velocity of its joint."""
-        return self.gear * self.joint.velocity
+        """The rate of its length."""
+        return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[1][0])
 
     @property
     def gear(self) -> float:

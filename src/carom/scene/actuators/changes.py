@@ -9,9 +9,10 @@ from carom.description.actuator import Actuator
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import insert_actuator, write_actuator
-from carom.scene.actuators.actuated_joint import actuated_joint
+from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
+from carom.scene.tendons.making import new_transmission
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -23,12 +24,18 @@ def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
     spec.check()
     if not name or any(other.name == name for other in body.spec.actuators):
         raise DescriptionError(f"actuator {name!r}: each one of a body needs a name of its own")
-    joint = actuated_joint(body, spec)
+    number = len(body.spec.actuators)
+    if drives_joint(spec):
+        joint = actuated_joint(body, spec)
+        made = JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number)
+    else:
+        transmission = new_transmission(body, number, spec)
+        made = JointConstraint(body, transmission.parent_link, ConstraintKind.USER, user=transmission)
+        world.user_constraints.put(transmission)
     row = insert_actuator(world.arrays, body.rows, [other.rows for other in world.bodies.values()])
     write_actuator(world.arrays.model.numpy, row, spec)
-    number = len(body.spec.actuators)
     body.spec = replace(body.spec, actuators=(*body.spec.actuators, spec))
-    world.constraints.all.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
+    world.constraints.all.append(made)
     world.constraints.rows.forget()
     body.__dict__.pop("actuators", None)
     world.scene_changed()

@@ -17,6 +17,7 @@ from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
 from carom.scene.sensors.observer import SensorObserver
 from carom.scene.sensors.rows import insert_memory
+from carom.scene.tendons.making import tendon_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -47,10 +48,15 @@ def add_site(
 
 def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
     """Add a sensor to a body, as `Body.add_sensor` does."""
-    world, spec = world_of(body), sensor.spec(name)
+    put_sensor(body, sensor.spec(name))
+
+
+def put_sensor(body: Body, spec: SensorSpec) -> None:
+    """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
+    world = world_of(body)
     check_sensor(world, body, spec)
-    if not name or any(other.name == name for other in body.spec.sensors):
-        raise DescriptionError(f"sensor {name!r}: each one of a body needs a name of its own")
+    if not spec.name or any(other.name == spec.name for other in body.spec.sensors):
+        raise DescriptionError(f"sensor {spec.name!r}: each one of a body needs a name of its own")
     if spec.memory:
         others = [other.rows for other in world.bodies.values()]
         insert_memory(world.arrays, body.rows, others, spec.memory)
@@ -68,6 +74,8 @@ def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
         joint_of(body, spec)
     elif kind.startswith("actuator"):
         actuator_of(body, spec)
+    elif kind.startswith("tendon"):
+        tendon_of(body, spec.object)
     elif spec.kind in _OF_LOADS:
         loaded_frame(body, spec)
     elif spec.object:

@@ -1,4 +1,4 @@
-"""What sensors of joints and actuators measure."""
+"""What sensors of joints, actuators and tendons measure."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind, JointCode
 from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import turned
+from carom.scene.tendons.making import tendon_of, transmission_of
+from carom.scene.tendons.measure import measured, measured_wrench
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -116,25 +118,40 @@ def _limit_force(source: Source, body: Body, spec: SensorSpec) -> Array:
 
 
 def _actuator_position(source: Source, body: Body, spec: SensorSpec) -> Array:
-    return _along_actuator(source, body, spec, "position", body.position_index)
+    return along_actuator(source, body, actuator_of(body, spec))[0]
 
 
 def _actuator_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
-    return _along_actuator(source, body, spec, "dof_velocity", body.velocity_index)
+    return along_actuator(source, body, actuator_of(body, spec))[1]
 
 
-def _along_actuator(
-    source: Source, body: Body, spec: SensorSpec, field: str, index: tuple[int, ...]
-) -> Array:
-    actuator = actuator_of(body, spec)
-    names = [link.joint_name for link in body.spec.links]
-    joint = names.index(body.spec.actuators[actuator].joint)
+def along_actuator(source: Source, body: Body, actuator: int) -> tuple[Array, Array]:
+    """Length of an actuator of a body in each world, and its velocity, (count,) each."""
+    spec = body.spec.actuators[actuator]
     gear = source.parameter("actuator_gear", body.rows.first["actuator"] + actuator)
-    return gear * source.state(field)[:, index[joint]]
+    if spec.joint:
+        joint = [link.joint_name for link in body.spec.links].index(spec.joint)
+        position = source.state("position")[:, body.position_index[joint]]
+        return gear * position, gear * source.state("dof_velocity")[:, body.velocity_index[joint]]
+    transmission = transmission_of(body, actuator)
+    if transmission.is_wrench:
+        origin = transmission.second_path[0] if transmission.second_path else None
+        length, velocity = measured_wrench(source, body, transmission.path[0], origin, spec.wrench)
+    else:
+        length, velocity = measured(source, body, transmission.path)
+    return gear * length, gear * velocity
 
 
 def _actuator_force(source: Source, body: Body, spec: SensorSpec) -> Array:
     return source.state("actuator_force")[:, body.rows.first["actuator"] + actuator_of(body, spec)].copy()
+
+
+def _tendon_position(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return measured(source, body, tendon_of(body, spec.object).path)[0]
+
+
+def _tendon_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+    return measured(source, body, tendon_of(body, spec.object).path)[1]
 
 
 OF_JOINTS: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
@@ -149,4 +166,6 @@ OF_JOINTS: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
     SensorKind.ACTUATOR_POSITION: _actuator_position,
     SensorKind.ACTUATOR_VELOCITY: _actuator_velocity,
     SensorKind.ACTUATOR_FORCE: _actuator_force,
+    SensorKind.TENDON_POSITION: _tendon_position,
+    SensorKind.TENDON_VELOCITY: _tendon_velocity,
 }

@@ -17,12 +17,18 @@ if TYPE_CHECKING:
 
 
 class LoneSource(Source):
-    """A world as a source for sensors."""
+    """A world as a source for sensors.
 
-    def __init__(self, world: World) -> None:
+    Args:
+        world: The world.
+        within_change: Used within a change of the world's bodies; only coordinates and poses are valid then.
+    """
+
+    def __init__(self, world: World, *, within_change: bool = False) -> None:
         super().__init__(world.bodies)
         self._world = world
-        world.prepare()
+        if not within_change:
+            world.prepare()
 
     @property
     def engine(self) -> Engine:

@@ -37,6 +37,7 @@ class BodyReader:
         bodies: All bodies, without the world, in document order.
         elements: The walk through all elements of bodies.
         geom_bodies: Name of the body of each geom, by name.
+        geoms: Each geom that has a name, by name.
         paired: Names of geoms, without prefixes, that collide in pairs whatever their bits say.
         missing_meshes: Geoms whose mesh is missing are left out and reported.
     """
@@ -46,6 +47,7 @@ class BodyReader:
         self.bodies: list[CompiledBody] = []
         self.missing_meshes = missing_meshes
         self.geom_bodies: dict[str, str] = {}
+        self.geoms: dict[str, Geom] = {}
         self.paired: set[str] = set()
         self.elements = Elements()
         self._meshes = Meshes()
@@ -98,6 +100,7 @@ class BodyReader:
                 case "geom":
                     if (geom := self._read_geom(child, within)) is not None:
                         self.geom_bodies[geom.name] = body.name
+                        self.geoms[geom.name] = geom
                         geoms.append(geom)
                         body.contact = _contact(within, child, body.contact)
                 case "joint" | "freejoint":

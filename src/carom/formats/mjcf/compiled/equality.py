@@ -1,4 +1,4 @@
-"""`<equality>`: joints that follow others, and bodies that are connected at a point or welded."""
+"""`<equality>`: joints and tendons that follow others, and bodies that are connected at a point or welded."""
 
 from __future__ import annotations
 
@@ -10,15 +10,20 @@ from carom.description import Pose
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileCoupling, FileTie
-from carom.formats.mjcf.compiled.names import Names, full
-from carom.formats.mjcf.defaults import MAIN, Attributes
-from carom.formats.reading.cursor import Recorded, layered
+from carom.formats.mjcf.compiled.model import (
+    CompiledBody,
+    CompiledModel,
+    FileCoupling,
+    FileTendonCoupling,
+    FileTie,
+)
+from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.native.products import length
 
-_BUILT = ("joint", "connect", "weld")
+_BUILT = ("joint", "tendon", "connect", "weld")
 _WORLD = "world"
 _LOST = "this constraint does not hold"
 _POWERS = 5
@@ -45,9 +50,11 @@ class EqualityReader:
             if element.tag not in _BUILT:
                 self.model.equality_count += 1
                 continue
-            attributes = _attributes(of, element)
+            attributes = section_attributes(of, element, "equality")
             if element.tag == "joint":
                 parts, known, what = ("joint1", "joint2"), set(self._kinds), "joint"
+            elif element.tag == "tendon":
+                parts, known, what = ("tendon1", "tendon2"), set(self.model.tendons), "tendon"
             elif "site1" in element.attributes:
                 parts, known, what = ("site1", "site2"), set(self.model.sites), "site"
             else:
@@ -62,6 +69,8 @@ class EqualityReader:
                 a, b = full(copy, first), full(copy, second)
                 if element.tag == "joint":
                     self._read_coupling(copy, element, attributes, a, b)
+                elif element.tag == "tendon":
+                    self._read_tendons(copy, element, attributes, a, b)
                 elif what == "site":
                     one, other = self.model.sites[a], self.model.sites[b]
                     self._add_tie(copy, element, attributes, (one.body, one.frame), (other.body, other.frame))
@@ -78,8 +87,7 @@ class EqualityReader:
         ):
             context.leave_out(element, _LOST, "free and ball joints are not coupled")
             return
-        stated = context.numbers(element, "polycoef", attributes.get("polycoef", ""), 0, _POWERS)
-        coefficients = [*stated, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(stated) :]]
+        coefficients = _coefficients(scope, element, attributes)
         start = self.names.joints[follower][1].reference
         if not leader:
             coefficients[1:] = [0.0] * (_POWERS - 1)
@@ -90,6 +98,26 @@ class EqualityReader:
         self.model.couplings.append(
             FileCoupling(
                 name, follower, leader or None, (start + constant, first, second, third, fourth), enabled
+            )
+        )
+
+    def _read_tendons(
+        self, scope: Scope, element: Element, attributes: Attributes, follower: str, leader: str
+    ) -> None:
+        robots = {self.model.tendons[name].robot for name in (follower, leader) if name}
+        if len(robots) > 1 or "" in robots:
+            scope.context.leave_out(
+                element, _LOST, "the tendons are not simulated, or are of different bodies of the world"
+            )
+            return
+        constant, first, second, third, fourth = _coefficients(scope, element, attributes)
+        self.model.tendon_couplings.append(
+            FileTendonCoupling(
+                self._name(scope, element),
+                follower,
+                leader or None,
+                (constant, first, second, third, fourth),
+                scope.context.flag(element, attributes, "active", True),
             )
         )
 
@@ -144,16 +172,10 @@ class EqualityReader:
         return name
 
 
-def _attributes(scope: Scope, element: Element) -> Attributes:
-    """The attributes of a constraint over those of its class of defaults."""
-    context = scope.context
-    name = element.attributes.get("class") or MAIN
-    if name not in context.classes and name != MAIN:
-        raise context.error(element, f"there is no default class {shown(name)}")
-    defaults = context.classes.get(name, {}).get("equality", {})
-    if isinstance(defaults, Recorded):
-        defaults.note_use()
-    return layered(defaults, element.attributes)
+def _coefficients(scope: Scope, element: Element, attributes: Attributes) -> list[float]:
+    """The coefficients of the polynomial of a coupling, those that are not stated included."""
+    stated = scope.context.numbers(element, "polycoef", attributes.get("polycoef", ""), 0, _POWERS)
+    return [*stated, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(stated) :]]
 
 
 def _shifted(coefficients: list[float], start: float) -> list[float]:

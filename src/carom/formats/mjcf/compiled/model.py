@@ -12,10 +12,12 @@ from carom.description.pose import IDENTITY, Vector3
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
+from carom.layouts.codes import PathKind
 from carom.record import record
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
+    from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
 
 
@@ -191,6 +193,71 @@ class FileTie:
     enabled: bool
 
 
+@record
+class FilePart:
+    """A part of the path of a tendon.
+
+    Attributes:
+        kind: What it is.
+        on: Name of its body, or of its joint; empty for a pulley.
+        frame: Its pose in the frame of that body.
+        size: Coefficient of a joint, radius of a sphere or cylinder, or divisor of a pulley.
+        side_on: Name of the body of a side site; empty if there is none.
+        side: That site in the frame of that body.
+    """
+
+    kind: PathKind
+    on: str
+    frame: Pose = IDENTITY
+    size: float = 0.0
+    side_on: str = ""
+    side: Vector3 = (0.0, 0.0, 0.0)
+
+
+@record
+class FileTendon:
+    """A tendon.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        parts: Its path.
+        robot: Name of the robot that it moves; empty if it is not simulated.
+        stiffness: Of its spring.
+        damping: Of its damper.
+        spring_range: Lengths between which its spring is slack; None for that at the rest of all springs.
+        range: Least and greatest length.
+        friction: Greatest force of its friction.
+    """
+
+    name: str
+    parts: tuple[FilePart, ...]
+    robot: str
+    stiffness: float
+    damping: float
+    spring_range: tuple[float, float] | None
+    range: tuple[float, float]
+    friction: float
+
+
+@record
+class FileTendonCoupling:
+    """A tendon whose length follows that of another.
+
+    Attributes:
+        name: Its name; made up if it has none.
+        follower: Name of the tendon.
+        leader: Name of the tendon that it follows; None if it is held.
+        coefficients: Of the polynomial in what the leader is longer than at the reference.
+        enabled: It holds.
+    """
+
+    name: str
+    follower: str
+    leader: str | None
+    coefficients: tuple[float, float, float, float, float]
+    enabled: bool
+
+
 @record(frozen=False, eq=False)
 class CompiledModel:
     """All of a file.
@@ -210,6 +277,10 @@ class CompiledModel:
         couplings: Of joints, by `<equality>`.
         ties: Of bodies, by `<equality>`.
         equality_count: Number of all constraints in `<equality>`.
+        tendons: By name; those that are not simulated have no robot.
+        tendon_couplings: Of tendons, by `<equality>`.
+        still: World poses of bodies that do not move, and of the world.
+        sensors: Those that are built, in order; what they refer to has a name of its own in the whole file.
     """
 
     name: str = ""
@@ -226,3 +297,7 @@ class CompiledModel:
     couplings: list[FileCoupling] = field(default_factory=list)
     ties: list[FileTie] = field(default_factory=list)
     equality_count: int = 0
+    sensors: list[SensorSpec] = field(default_factory=list)
+    tendons: dict[str, FileTendon] = field(default_factory=dict)
+    tendon_couplings: list[FileTendonCoupling] = field(default_factory=list)
+    still: dict[str, Pose] = field(default_factory=dict)

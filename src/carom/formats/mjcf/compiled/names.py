@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 from carom.formats.mjcf.compiled.elements import Elements, Scope
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
+from carom.formats.mjcf.defaults import MAIN, Attributes
+from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
@@ -48,6 +50,15 @@ class Names:
             return [scope]
         return [each for each in self.elements.copied(scope) if fits(each)]
 
+    def copies_or_missing(
+        self, scope: Scope, element: Element, names: list[str], known: set[str], what: str
+    ) -> list[Scope]:
+        """As `copies`; raises an error as `missing` does if there are none."""
+        copies = self.copies(scope, names, known)
+        if not copies:
+            self.missing(scope, element, names, known, what)
+        return copies
+
     def missing(self, scope: Scope, element: Element, names: list[str], known: set[str], what: str) -> None:
         """Raise an error about the first unknown one; an attached model may lack it."""
         for name in names:
@@ -58,3 +69,15 @@ class Names:
 def full(scope: Scope, name: str) -> str:
     """A name with the prefix and the suffix of a scope; that of the world has none."""
     return name if name in ("", "world") else f"{scope.prefix}{name}{scope.suffix}"
+
+
+def section_attributes(scope: Scope, element: Element, kind: str) -> Attributes:
+    """The attributes of an element of a section over those of its class of defaults for a kind."""
+    context = scope.context
+    name = element.attributes.get("class") or MAIN
+    if name not in context.classes and name != MAIN:
+        raise context.error(element, f"there is no default class {shown(name)}")
+    defaults = context.classes.get(name, {}).get(kind, {})
+    if isinstance(defaults, Recorded):
+        defaults.note_use()
+    return layered(defaults, element.attributes)

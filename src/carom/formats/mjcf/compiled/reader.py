@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from carom.description.actuator import ActuatorSpec
 from carom.formats.mjcf.compiled.actuation.reader import ActuatorReader
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.collision_groups import set_collision_groups
@@ -20,7 +21,9 @@ from carom.formats.mjcf.compiled.names import Names
 from carom.formats.mjcf.compiled.option import DEFAULTS, read_option
 from carom.formats.mjcf.compiled.pairs import paired_geoms, read_pairs
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
+from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
+from carom.formats.mjcf.compiled.tendons import TendonReader
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, read_root
 from carom.formats.placed import PlacedRobot
@@ -48,8 +51,7 @@ def compile_mjcf(
     """Reads and checks an MJCF file as MuJoCo understands it, in double precision.
 
     Inertia comes from geoms and meshes by the rules of `<compiler>`; bodies without joints are fixed to what
-    is around them; the geoms of the world are one robot, `world`. Sensors, tendons and soft bodies are
-    not read.
+    is around them; the geoms of the world are one robot, `world`. Soft bodies are not read.
 
     Args:
         path: The file, looked up with `AssetSearch.find`.
@@ -91,9 +93,13 @@ def compile_mjcf(
         for tag in _BY_CHILDREN:
             for element in each.context.root.all(tag):
                 element.note()
-    ActuatorReader(model, names).read(scope)
+    tendons = TendonReader(model, names, reader, whole)
+    tendons.read(scope)
+    model.still = tendons.still
+    ActuatorReader(model, names, tendons.moving).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
     EqualityReader(model, names, whole).read(scope)
+    SensorReader(model, names).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
@@ -102,9 +108,16 @@ def compile_mjcf(
 
 
 def _driven(placed: PlacedRobot, model: CompiledModel) -> PlacedRobot:
-    """A robot with the actuators of its joints, in the order of the file."""
+    """A robot with the actuators of its joints, tendons and sites, in the order of the file."""
     joints = {joint.name for joint in placed.robot.joints}
-    actuators = (it.spec for it in model.actuators if it.spec is not None and it.spec.joint in joints)
+    links = {link.name for link in placed.robot.links} - {WORLD}
+
+    def is_own(spec: ActuatorSpec) -> bool:
+        if spec.tendon:
+            return model.tendons[spec.tendon].robot == placed.robot.name
+        return model.sites[spec.site].body in links if spec.site else spec.joint in joints
+
+    actuators = (it.spec for it in model.actuators if it.spec is not None and is_own(it.spec))
     return replace(placed, robot=replace(placed.robot, actuators=tuple(actuators)))
 
 

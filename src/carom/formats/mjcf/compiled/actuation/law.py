@@ -16,10 +16,11 @@ from carom.formats.mjcf.defaults import Attributes
 Numbers = Callable[[str, str, int], list[float]]
 """Of an attribute's name and text, and the most numbers it may have: its numbers."""
 
-SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder")
+SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle")
 FIXED, AFFINE, NONE = "fixed", "affine", "none"
 FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
-_UNBUILT = ("orientation", "muscle", "adhesion", "dcmotor", "pid", "plugin")
+MUSCLE = "muscle"
+_UNBUILT = ("orientation", "adhesion", "dcmotor", "pid", "plugin")
 KINDS = (*SHORTCUTS, *_UNBUILT)
 
 
@@ -98,6 +99,8 @@ class Law:
                     area = 0.25 * pi * diameter * diameter
                 bias = several("bias", self.bias, 3)
                 self._set(FIXED, AFFINE, FILTER, [area, 0.0, 0.0], bias)
+            case "muscle":
+                self._set(MUSCLE, MUSCLE, MUSCLE, _one(), _zero())
             case _:
                 self.gain_type = tag
 
@@ -132,6 +135,8 @@ class Law:
 
     def unbuilt(self) -> str:
         """What of it is not built; empty if nothing is."""
+        if self.shortcut == MUSCLE:
+            return ""
         for kind, built in (
             (self.gain_type, (FIXED, AFFINE)),
             (self.bias_type, (NONE, AFFINE)),

@@ -1,22 +1,25 @@
-"""Reading `<actuator>`: motors, servos and general actuators of hinges and slides."""
+"""Reading `<actuator>`: motors, servos, general actuators and muscles of joints, tendons and sites."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
 
-from carom.description.actuator import ActuatorSpec
+from carom.description.actuator import ActuatorSpec, MuscleSpec
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.actuation.law import (
     FILTER,
     FILTER_EXACT,
     INTEGRATOR,
     KINDS,
+    MUSCLE,
     NONE,
     Law,
     Laws,
 )
 from carom.formats.mjcf.compiled.actuation.moved_inertia import moved_inertia
+from carom.formats.mjcf.compiled.actuation.muscle import read_muscle, times_of
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint, CompiledModel, FileActuator
@@ -32,8 +35,9 @@ _DYNAMICS = {
     INTEGRATOR: ActivationDynamics.INTEGRATOR,
     FILTER: ActivationDynamics.FILTER,
     FILTER_EXACT: ActivationDynamics.FILTER_EXACT,
+    MUSCLE: ActivationDynamics.MUSCLE,
 }
-_TRANSMISSIONS = ("tendon", "site", "body", "cranksite", "slidersite", "refsite")
+_TRANSMISSIONS = ("body", "cranksite", "slidersite")
 _UNBOUNDED = (-inf, inf)
 _NO_FORCE = (0.0, 0.0)
 _LOST = "it does not act"
@@ -42,9 +46,11 @@ _LOST = "it does not act"
 class ActuatorReader:
     """Reads all `<actuator>` sections into a model."""
 
-    def __init__(self, model: CompiledModel, names: Names) -> None:
+    def __init__(self, model: CompiledModel, names: Names, moving: Mapping[str, str]) -> None:
+        """`moving` has the robot of each body that can move."""
         self.model = model
         self.names = names
+        self.moving = moving
         self._kinds = {name: kind for name, _, kind in model.joints if name}
         self._drivers: dict[str, list[int]] = {}
         self._elements: dict[str, tuple[Element, Scope]] = {}
@@ -57,22 +63,132 @@ class ActuatorReader:
                 raise of.context.error(element, f"<{element.tag}> is not known as an actuator")
             attributes, law = _law(of, element)
             joint = attributes.get("joint") or attributes.get("jointinparent") or ""
-            if element.tag == "plugin" or law.unbuilt() or not joint:
+            tendon, site = attributes.get("tendon") or "", attributes.get("site") or ""
+            unbuilt = any(attributes.get(name) for name in _TRANSMISSIONS)
+            if element.tag == "plugin" or law.unbuilt() or unbuilt or not (joint or tendon or site):
                 self._leave_out(of, element, attributes, law)
-                continue
-            copies = self.names.copies(of, [joint], known)
-            if not copies:
-                self.names.missing(of, element, [joint], known, "joint")
-            for copy in copies:
-                self._add(copy, element, attributes, law, full(copy, joint))
+            elif joint:
+                for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
+                    self._add(copy, element, attributes, law, full(copy, joint))
+            elif tendon:
+                tendons = {*self.model.tendons}
+                for copy in self.names.copies_or_missing(of, element, [tendon], tendons, "tendon"):
+                    self._add_to_tendon(copy, element, attributes, law, full(copy, tendon))
+            else:
+                self._read_sites(of, element, attributes, law, site)
         self._bound_joints()
+
+    def _read_sites(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, site: str
+    ) -> None:
+        reference, sites = attributes.get("refsite") or "", {*self.model.sites}
+        for copy in self.names.copies_or_missing(scope, element, [site, reference], sites, "site"):
+            of_site, of_reference = full(copy, site), full(copy, reference)
+            moved = self.moving.get(self.model.sites[of_site].body, "")
+            around = moved
+            if reference:
+                around = self.moving.get(self.model.sites[of_reference].body, "")
+            problem = "it moves nothing" if not moved and not around else ""
+            if reference and moved and around and moved != around:
+                problem = "it pulls bodies of the world that move apart"
+            if not moved and not problem:
+                problem = "its first site is in the world, and the other one moves"
+            gear = copy.context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)
+            fx, fy, fz, tx, ty, tz = (*gear, *(0.0,) * 6)[:6]
+            spec = ActuatorSpec(
+                "", "", site=of_site, reference_site=of_reference, wrench=(fx, fy, fz, tx, ty, tz)
+            )
+            self._add_path(copy, element, attributes, law, spec, problem, None)
+
+    def _add_to_tendon(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, tendon: str
+    ) -> None:
+        found = self.model.tendons[tendon]
+        gear = scope.context.number(element, attributes, "gear", 1.0)
+        problem = "its tendon is not simulated" if not found.robot else ""
+        spec = ActuatorSpec("", "", tendon=tendon, gear=gear or 1.0)
+        self._add_path(
+            scope, element, attributes, law, spec, problem or ("" if gear else "its gear is 0"), found.range
+        )
+
+    def _add_path(
+        self,
+        scope: Scope,
+        element: Element,
+        attributes: Attributes,
+        law: Law,
+        spec: ActuatorSpec,
+        problem: str,
+        bounds: tuple[float, float] | None,
+    ) -> None:
+        """Add an actuator of a tendon or a site, which `spec` has; `bounds` are those of its length."""
+        name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
+        if law.damping_ratio:
+            problem = problem or "damping ratios are built for joints only"
+        muscle = None
+        if not problem and element.tag == MUSCLE:
+            length = (bounds[0] * spec.gear, bounds[1] * spec.gear) if bounds else None
+            muscle, problem = read_muscle(scope, element, attributes, length)
+            problem = problem or self._unknown_force(muscle, self._robot_of(spec))
+        if problem:
+            scope.context.leave_out(element, _LOST, problem)
+            self._note(FileActuator(name, None, has_activation))
+            return
+        ranges = self._ranges(scope, element, attributes, law)
+        if law.inherited:
+            ranges["act" if law.dynamics == INTEGRATOR else "ctrl"] = _within_share(
+                scope, element, law, bounds or _UNBOUNDED, f"tendon {shown(spec.tendon)}"
+            )
+        whole = replace(
+            spec,
+            name=name,
+            gain=law.gains,
+            bias=law.biases,
+            control_range=ranges["ctrl"],
+            force_range=ranges["force"],
+            dynamics=_DYNAMICS[law.dynamics],
+            time_constant=_time(scope, element, law),
+            activation_range=ranges["act"],
+            muscle=muscle,
+        )
+        self._finish(scope, element, whole, has_activation)
+
+    def _robot_of(self, spec: ActuatorSpec) -> str:
+        if spec.tendon:
+            return self.model.tendons[spec.tendon].robot
+        return self.moving[self.model.sites[spec.site].body]
+
+    def _unknown_force(self, muscle: MuscleSpec | None, robot: str) -> str:
+        """Why the force of a muscle is not known; empty if it is."""
+        if muscle is None or muscle.force >= 0.0:
+            return ""
+        free = any(it.robot.name == robot and not it.fixed_base for it in self.model.robots)
+        return "on a free body its force is not found; state its force" if free else ""
+
+    def _ranges(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law
+    ) -> dict[str, tuple[float, float]]:
+        ranges = {
+            kind: _range(scope, element, attributes, kind, law)
+            for kind in ("ctrl", "force", "act")
+        }  # fmt: skip
+        if self._is_off(scope, element, attributes):
+            ranges["force"] = _NO_FORCE
+        return ranges
+
+    def _finish(self, scope: Scope, element: Element, spec: ActuatorSpec, has_activation: bool) -> None:
+        try:
+            spec.check()
+        except DescriptionError as problem:
+            raise scope.context.error(element, problem.reason) from None
+        self._note(FileActuator(spec.name, spec, has_activation))
 
     def _leave_out(self, scope: Scope, element: Element, attributes: Attributes, law: Law) -> None:
         transmission = next((name for name in _TRANSMISSIONS if name in attributes), "")
         if element.tag == "plugin" or law.unbuilt():
             reason = f"{law.unbuilt() or 'plugin'} actuators are not built"
         elif transmission:
-            reason = f"actuators are built for joints only, not for a {transmission}"
+            reason = f"actuators are not built for a {transmission}"
         else:
             raise scope.context.error(element, "it states nothing that it acts on, such as a joint")
         scope.context.leave_out(element, _LOST, reason)
@@ -82,21 +198,27 @@ class ActuatorReader:
     def _add(self, scope: Scope, element: Element, attributes: Attributes, law: Law, joint: str) -> None:
         name, has_activation = self._name(scope, element), _has_activation(element.tag, law)
         gear = scope.context.number(element, attributes, "gear", 1.0)
-        if joint not in self.names.joints or self._kinds[joint] == "spherical" or gear == 0.0:
-            reason = "its gear is 0" if gear == 0.0 else "free and ball joints have no actuators"
+        reason = "its gear is 0" if gear == 0.0 else ""
+        if joint not in self.names.joints or self._kinds[joint] == "spherical":
+            reason = "free and ball joints have no actuators"
+        muscle = None
+        if not reason and element.tag == MUSCLE:
+            limit = self.names.joints[joint][1].joint.limit
+            length = (limit.lower * gear, limit.upper * gear) if limit.lower < limit.upper else None
+            muscle, reason = read_muscle(scope, element, attributes, length)
+            reason = reason or self._unknown_force(muscle, self.moving[self.names.joints[joint][0].name])
+        if reason:
             scope.context.leave_out(element, _LOST, reason)
             self._note(FileActuator(name, None, has_activation))
             return
         body, of_joint = self.names.joints[joint]
-        ranges = {
-            kind: _range(scope, element, attributes, kind, law)
-            for kind in ("ctrl", "force", "act")
-        }  # fmt: skip
+        ranges = self._ranges(scope, element, attributes, law)
         if law.inherited:
             inherits = "act" if law.dynamics == INTEGRATOR else "ctrl"
-            ranges[inherits] = _inherited(scope, element, law, of_joint)
-        if self._is_off(scope, element, attributes):
-            ranges["force"] = _NO_FORCE
+            limit = of_joint.joint.limit
+            ranges[inherits] = _within_share(
+                scope, element, law, (limit.lower, limit.upper), f"joint {shown(joint)}"
+            )
         spec = ActuatorSpec(
             name,
             joint,
@@ -106,15 +228,12 @@ class ActuatorReader:
             ranges["ctrl"],
             ranges["force"],
             _DYNAMICS[law.dynamics],
-            law.time if law.dynamics in (FILTER, FILTER_EXACT) else 1.0,
+            _time(scope, element, law),
             ranges["act"],
+            muscle=muscle,
         )
-        try:
-            spec.check()
-        except DescriptionError as problem:
-            raise scope.context.error(element, problem.reason) from None
         self._drivers.setdefault(joint, []).append(len(self.model.actuators))
-        self._note(FileActuator(name, spec, has_activation))
+        self._finish(scope, element, spec, has_activation)
 
     def _note(self, actuator: FileActuator) -> None:
         self.model.actuators.append(actuator)
@@ -178,7 +297,7 @@ def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
 
 
 def _has_activation(tag: str, law: Law) -> bool:
-    return tag == "muscle" or law.dynamics != NONE
+    return law.dynamics != NONE
 
 
 def _range(
@@ -200,15 +319,22 @@ def _range(
     return lower, upper
 
 
-def _inherited(scope: Scope, element: Element, law: Law, joint: CompiledJoint) -> tuple[float, float]:
-    """The range of a servo's target from that of its joint."""
-    lower, upper = joint.joint.limit.lower, joint.joint.limit.upper
-    if lower > upper:
-        raise scope.context.error(
-            element, f"inheritrange: joint {shown(joint.joint.name)} has no range to inherit"
-        )
+def _within_share(
+    scope: Scope, element: Element, law: Law, bounds: tuple[float, float], whose: str
+) -> tuple[float, float]:
+    """The range of a servo's target from that of its joint or tendon."""
+    lower, upper = bounds
+    if lower > upper or -lower == upper == inf:
+        raise scope.context.error(element, f"inheritrange: {whose} has no range to inherit")
     middle, half = 0.5 * (lower + upper), 0.5 * (upper - lower) * law.inherited
     return middle - half, middle + half
+
+
+def _time(scope: Scope, element: Element, law: Law) -> float:
+    """The time constant of the dynamics; of a muscle that of its activation."""
+    if law.dynamics == MUSCLE:
+        return times_of(scope, element)[0]
+    return law.time if law.dynamics in (FILTER, FILTER_EXACT) else 1.0
 
 
 def _damped(law: Law, gear: float, body: CompiledBody, joint: CompiledJoint) -> tuple[float, float, float]:

@@ -1,0 +1,194 @@
+"""`<sensor>`: what is measured of sites, joints, actuators and bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from carom.description.sensor import (
+    FRAME_KINDS,
+    SUBTREE_KINDS,
+    SensorKind,
+    SensorObject,
+    SensorSpec,
+    objects_of,
+)
+from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.model import CompiledModel
+from carom.formats.mjcf.compiled.names import Names, full
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
+
+_LOST = "there is no such sensor"
+_WORLD = "world"
+_OF_MUJOCO = tuple(kind for kind in SensorKind if kind is not SensorKind.SUBTREE_LINEAR_MOMENTUM)
+BUILT: dict[str, SensorKind] = {kind.value: kind for kind in _OF_MUJOCO}
+"""The kinds that are read, by the names of their elements."""
+_FRAMES = {"site": SensorObject.SITE, "xbody": SensorObject.LINK, "body": SensorObject.INERTIAL_FRAME}
+_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
+_BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
+
+
+class SensorReader:
+    """Reads all `<sensor>` sections into a model whose other parts are known."""
+
+    def __init__(self, model: CompiledModel, names: Names) -> None:
+        self.model = model
+        self._names = names
+        self._lines: dict[str, int] = {}
+        self._kinds = {name: kind for name, _, kind in model.joints if name}
+        self._robots = {
+            link.name: placed.robot.name for placed in model.robots for link in placed.robot.links
+        }
+        self._held = {
+            link.name for placed in model.robots if placed.fixed_base for link in placed.robot.links[:1]
+        }
+
+    def read(self, scope: Scope) -> None:
+        """Read the sensors of a file and of all that it attaches; raises `DescriptionError`."""
+        for element, of in self._names.sections(scope, "sensor"):
+            kind = BUILT.get(element.tag)
+            if kind is None:
+                continue
+            element.note()
+            attributes = element.attributes
+            object_type, name, known, problem = self._object(of, element, kind)
+            reference_type, reference = SensorObject.NONE, ""
+            if not problem and kind in FRAME_KINDS and attributes.get("refname"):
+                reference_type, reference, others, problem = self._frame(of, element, "ref")
+                known = known | others
+                if reference == _WORLD and reference_type is not SensorObject.SITE:
+                    reference_type, reference = SensorObject.NONE, ""
+            if problem:
+                of.context.leave_out(element, _LOST, problem)
+                continue
+            copies = self._names.copies(of, [name, reference], known) if name else [of]
+            if not copies:
+                self._names.missing(of, element, [name, reference], known, object_type.value)
+            for copy in copies:
+                spec = self._spec(copy, element, kind)
+                found = replace(
+                    spec,
+                    object_type=object_type,
+                    object=full(copy, name),
+                    reference_type=reference_type,
+                    reference=full(copy, reference),
+                )
+                self._add(copy, element, found)
+
+    def _object(
+        self, scope: Scope, element: Element, kind: SensorKind
+    ) -> tuple[SensorObject, str, set[str], str]:
+        """What a sensor measures: type, name, all names of this type, and what of it is not built."""
+        if kind in FRAME_KINDS:
+            return self._frame(scope, element, "obj")
+        (what,) = objects_of(kind)
+        known: Iterable[str] = ()
+        attribute, problem = "", ""
+        if what is SensorObject.SITE:
+            attribute, known = "site", self.model.sites
+            if kind is SensorKind.RANGE_FINDER and ("camera" in element.attributes):
+                return what, "", set(), "range finders of cameras are not built"
+            if kind is SensorKind.RANGE_FINDER and element.attributes.get("data", "dist") != "dist":
+                problem = "range finders are built for distances only"
+        elif what is SensorObject.JOINT:
+            attribute, known = "joint", self._kinds
+        elif what is SensorObject.ACTUATOR:
+            attribute, known = "actuator", (actuator.name for actuator in self.model.actuators)
+        elif what is SensorObject.TENDON:
+            attribute, known = "tendon", self.model.tendons
+        elif kind in SUBTREE_KINDS:
+            attribute, known = "body", (*self._names.bodies, _WORLD)
+        if not attribute:
+            return what, "", set(), "" if self.model.robots else "there are no bodies"
+        name = scope.context.required(element, attribute)
+        return what, name, {*known}, problem
+
+    def _frame(self, scope: Scope, element: Element, prefix: str) -> tuple[SensorObject, str, set[str], str]:
+        """The frame that attributes of a prefix name, as `_object`."""
+        kind = scope.context.required(element, f"{prefix}type")
+        name = scope.context.required(element, f"{prefix}name")
+        if kind in ("geom", "camera"):
+            return SensorObject.SITE, name, set(), f"frames of a {kind} are not measured; a site can be"
+        if kind not in _FRAMES:
+            raise scope.context.error(
+                element, f"{prefix}type={shown(kind)} is none of site, body, xbody, geom and camera"
+            )
+        known = self.model.sites if kind == "site" else (*self._names.bodies, _WORLD)
+        return _FRAMES[kind], name, {*known}, ""
+
+    def _spec(self, scope: Scope, element: Element, kind: SensorKind) -> SensorSpec:
+        """Name and quality of a sensor."""
+        context, attributes = scope.context, element.attributes
+        spec = SensorSpec(
+            self._name(scope, element),
+            kind,
+            cutoff=context.number(element, attributes, "cutoff", 0.0),
+            delay=context.number(element, attributes, "delay", 0.0),
+            period=context.number(element, attributes, "interval", 0.0),
+            samples=int(context.number(element, attributes, "nsample", 0.0)),
+        )
+        if attributes.get("interp", "zoh") != "zoh":
+            context.leave_out(
+                element, "it shows the last sample that is old enough", "samples are held", "interp"
+            )
+        if kind is SensorKind.MAGNETOMETER and "magnetic" in self.model.options:
+            spec = replace(spec, magnetic_field=self.model.options["magnetic"])
+        return spec
+
+    def _add(self, scope: Scope, element: Element, spec: SensorSpec) -> None:
+        """Add a sensor to the model, unless what it refers to is not simulated."""
+        problem = self._unbuilt(spec)
+        if problem:
+            scope.context.leave_out(element, _LOST, problem)
+            return
+        if spec.kind in _LOADS and self._is_pulled(spec.object):
+            scope.context.leave_out(
+                element, "it does not feel forces along tendons and at sites", "they are not gathered"
+            )
+        try:
+            spec.check()
+        except DescriptionError as error:
+            raise scope.context.error(element, error.reason) from None
+        self.model.sensors.append(spec)
+
+    def _is_pulled(self, site: str) -> bool:
+        """Whether tendons, or actuators at sites, act on the robot of a site."""
+        robot = self._robots[self.model.sites[site].body]
+        acting = [it.spec.site for it in self.model.actuators if it.spec is not None and it.spec.site]
+        return any(it.robot == robot for it in self.model.tendons.values()) or any(
+            self._robots.get(self.model.sites[name].body) == robot for name in acting
+        )
+
+    def _unbuilt(self, spec: SensorSpec) -> str:
+        """What of a sensor is not built; empty if nothing is."""
+        if spec.object_type is SensorObject.JOINT:
+            kind, wanted = self._kinds[spec.object], spec.kind in _BALLS
+            if (kind == "spherical") != wanted or kind == "free":
+                types = "ball joints" if wanted else "hinges and slides"
+                return f"such sensors are for {types} only"
+        if spec.object_type is SensorObject.ACTUATOR:
+            specs = {actuator.name: actuator.spec for actuator in self.model.actuators}
+            return "" if specs[spec.object] is not None else "its actuator is not simulated"
+        if spec.object_type is SensorObject.TENDON and not self.model.tendons[spec.object].robot:
+            return "its tendon is not simulated"
+        for kind, name in ((spec.object_type, spec.object), (spec.reference_type, spec.reference)):
+            if kind in _FRAMES.values():
+                body = self.model.sites[name].body if kind is SensorObject.SITE else name
+                if body == _WORLD or body not in self._robots:
+                    return "the world has no sensors"
+                if spec.kind in _LOADS and body in self._held:
+                    return "the force on a fixed base is not computed"
+        return ""
+
+    def _name(self, scope: Scope, element: Element) -> str:
+        name = scope.name(element)
+        if not name:
+            return f"sensor{len(self.model.sensors)}_{scope.context.next_number()}"
+        if name in self._lines:
+            raise scope.context.error(
+                element, f"the name {shown(name)} is taken already, on line {self._lines[name]}"
+            )
+        self._lines[name] = element.line
+        return name

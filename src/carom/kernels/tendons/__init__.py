@@ -1,0 +1,1 @@
+"""Tendons: their lengths, moment arms and rows."""

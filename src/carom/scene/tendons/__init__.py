@@ -1,0 +1,1 @@
+"""Tendons of a body, as handles; how long they are, and what is made from them."""

@@ -1,0 +1,162 @@
+"""Length and velocity of tendons, from the coordinates of their body."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.checks import Array
+from carom.description.actuator import Wrench
+from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.tendon import WORLD, PathPart
+from carom.description.transform import compose, inverse, rotate
+from carom.layouts.codes import PathKind
+from carom.native.trigonometry import atan2
+from carom.scene.sensors.source import Source
+from carom.scene.tendons.wrapping import wrapped
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+
+class _Walk:
+    """One way along a path in one world; parts are in inertial frames, see `inertial_path`."""
+
+    def __init__(self, source: Source, body: Body, world: int) -> None:
+        self._source = source
+        self._body = body
+        self._world = world
+        self._poses = source.poses(body)[world]
+        self._twists = source.velocities(body)[world]
+        self.length = 0.0
+        self.velocity = 0.0
+
+    def pose(self, link: int) -> Pose:
+        """World pose of the inertial frame of a link."""
+        if link == WORLD:
+            return IDENTITY
+        px, py, pz, x, y, z, w = self._poses[self._body.first_link + 1 + link].tolist()
+        return Pose((px, py, pz), (x, y, z, w))
+
+    def _speed(self, link: int, point: Vector3, along: Vector3) -> float:
+        """Velocity of a point of a link along a direction."""
+        if link == WORLD:
+            return 0.0
+        row = self._body.first_link + 1 + link
+        vx, vy, vz, wx, wy, wz = self._twists[row].tolist()
+        cx, cy, cz = self._poses[row, :3].tolist()
+        x, y, z = point[0] - cx, point[1] - cy, point[2] - cz
+        return (
+            along[0] * (vx + wy * z - wz * y)
+            + along[1] * (vy + wz * x - wx * z)
+            + along[2] * (vz + wx * y - wy * x)
+        )
+
+    def power(self, link: int, point: Vector3, force: Vector3, torque: Vector3) -> float:
+        """Power of a force at a point of a link, and a torque, by the motion of the link."""
+        if link == WORLD:
+            return 0.0
+        wx, wy, wz = self._twists[self._body.first_link + 1 + link, 3:].tolist()
+        return self._speed(link, point, force) + torque[0] * wx + torque[1] * wy + torque[2] * wz
+
+    def _add(self, a: tuple[int, Vector3], b: tuple[int, Vector3], divisor: float) -> None:
+        x, y, z = (q - p for p, q in zip(a[1], b[1], strict=True))
+        distance = hypot(x, y, z)
+        self.length += distance / divisor
+        if distance > 0.0 and a[0] != b[0]:
+            along = (x / distance, y / distance, z / distance)
+            self.velocity += (self._speed(b[0], b[1], along) - self._speed(a[0], a[1], along)) / divisor
+
+    def follow(self, path: Sequence[PathPart]) -> None:
+        """Add up the length of a path and its velocity."""
+        divisor, at = 1.0, None
+        over: PathPart | None = None
+        for part in path:
+            if part.kind is PathKind.JOINT:
+                self._add_joint(part)
+            elif part.kind is PathKind.PULLEY:
+                divisor, at = part.size, None
+            elif part.kind is PathKind.SITE:
+                there = (part.link, compose(self.pose(part.link), part.pose).position)
+                if at is not None and over is not None:
+                    at = self._around(over, at, there, divisor)
+                if at is not None:
+                    self._add(at, there, divisor)
+                at, over = there, None
+            else:
+                over = part
+
+    def _add_joint(self, part: PathPart) -> None:
+        body, state = self._body, self._source.state
+        self.length += part.size * float(state("position")[self._world, body.position_index[part.link]])
+        rate = state("dof_velocity")[self._world, body.velocity_index[part.link]]
+        self.velocity += part.size * float(rate)
+
+    def _around(
+        self, part: PathPart, at: tuple[int, Vector3], there: tuple[int, Vector3], divisor: float
+    ) -> tuple[int, Vector3]:
+        """Add the way to where a path leaves a sphere or cylinder; returns this point."""
+        side = None if part.side is None else compose(self.pose(part.side_link), Pose(part.side)).position
+        found = wrapped(part.kind, compose(self.pose(part.link), part.pose), part.size, at[1], there[1], side)
+        if found is None:
+            return at
+        self._add(at, (part.link, found.begin), divisor)
+        self.length += found.length / divisor
+        return part.link, found.end
+
+
+def measured(source: Source, body: Body, path: Sequence[PathPart]) -> tuple[Array, Array]:
+    """Length of a path of a body in each world, and its velocity, (count,) each."""
+    walks = [_Walk(source, body, world) for world in range(source.count)]
+    for walk in walks:
+        walk.follow(path)
+    return np.array([it.length for it in walks]), np.array([it.velocity for it in walks])
+
+
+def measured_wrench(
+    source: Source, body: Body, site: PathPart, origin: PathPart | None, wrench: Wrench
+) -> tuple[Array, Array]:
+    """Length and velocity of an actuator of a site in each world, (count,) each.
+
+    The length is the pose of the site relative to the origin, along a wrench in the axes of the origin; 0 if
+    there is none. Then the velocity is that along the axes of the site.
+    """
+    lengths, velocities = [], []
+    for world in range(source.count):
+        walk = _Walk(source, body, world)
+        own = compose(walk.pose(site.link), site.pose)
+        around = own if origin is None else compose(walk.pose(origin.link), origin.pose)
+        force = rotate(around.orientation, wrench[:3])
+        torque = rotate(around.orientation, wrench[3:])
+        length = 0.0
+        velocity = walk.power(site.link, own.position, force, torque)
+        if origin is not None:
+            shared = _shared_link(body, site.link, origin.link)
+            velocity -= walk.power(shared, own.position, force, torque)
+            velocity -= walk.power(origin.link, around.position, force, torque)
+            velocity += walk.power(shared, around.position, force, torque)
+            apart = compose(inverse(around), own)
+            x, y, z, w = apart.orientation
+            size = hypot(x, y, z)
+            angle = 2.0 * atan2(size, abs(w)) * (1.0 if w >= 0.0 else -1.0)
+            turn = (x, y, z) if size == 0.0 else tuple(it * angle / size for it in (x, y, z))
+            length = sum(a * b for a, b in zip((*apart.position, *turn), wrench, strict=True))
+        lengths.append(length)
+        velocities.append(velocity)
+    return np.array(lengths), np.array(velocities)
+
+
+def _shared_link(body: Body, a: int, b: int) -> int:
+    """The last link on the ways from the base to two links; the world if one is in it."""
+    if WORLD in (a, b):
+        return WORLD
+    ways = []
+    for link in (a, b):
+        way = [link]
+        while way[-1] >= 0:
+            way.append(body.spec.links[way[-1]].parent)
+        ways.append(way)
+    return next(link for link in ways[0] if link in ways[1])

@@ -1,0 +1,40 @@
+"""MJCF files of the tests with sensors; `record_sensors.py` asks MuJoCo what they show."""
+
+FRAMES = ("pos", "quat", "xaxis", "yaxis", "zaxis", "linvel", "angvel", "linacc", "angacc")
+
+_BODIES = """<mujoco><option timestep="1e-7" magnetic=".1 .2 -.4"><flag contact="disable"/></option>
+<worldbody><geom type="plane" size="5 5 .1"/><body name="a" pos="0 0 1"><joint name="j" axis="0 1 0"
+ range="-90 90"/><geom size=".1" pos=".2 0 0"/><site name="one" pos=".1 .05 0" euler="20 0 10"/><body name="b"
+ pos=".4 0 0" euler="0 0 20"><joint name="k" type="slide" axis="1 0 0" range="-.1 .05" limited="true"/>
+<geom type="box" size=".05 .1 .15" pos=".1 0 0"/><site name="tip" pos=".2 .1 0" euler="180 10 0"/>
+<body name="c" pos="0 0 .3"><joint name="ball" type="ball"/>
+<geom type="capsule" size=".04 .1" pos=".1 0 0"/></body></body></body>
+<body name="f" pos="1 2 1.5"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 0 0"/>
+<site name="free" pos="0 .1 .2"/></body></worldbody><actuator><motor name="m" joint="j" gear="3"/>
+<position name="p" joint="k" kp="50"/></actuator><sensor>"""
+_PARTS = [
+    *(f'<{tag} site="tip"/>' for tag in ("accelerometer", "velocimeter", "gyro", "magnetometer")),
+    *(f'<{tag} site="tip"/>' for tag in ("force", "torque")),
+    *(f'<{tag} site="one"/>' for tag in ("gyro", "velocimeter")),
+    *(f'<{tag} site="free"/>' for tag in ("accelerometer", "velocimeter", "gyro")),
+    '<rangefinder site="tip"/>',
+    '<rangefinder site="tip" cutoff=".5"/>',
+    *(f'<joint{what} joint="{joint}"/>' for what in ("pos", "vel", "actuatorfrc") for joint in "jk"),
+    *(f'<joint{what} joint="k"/>' for what in ("limitpos", "limitvel")),
+    '<ballquat joint="ball"/>',
+    '<ballangvel joint="ball"/>',
+    *(f'<actuator{what} actuator="{it}"/>' for what in ("pos", "vel", "frc") for it in "mp"),
+    *(f'<frame{what} objtype="site" objname="tip"/>' for what in FRAMES),
+    *(f'<frame{what} objtype="xbody" objname="b"/>' for what in FRAMES),
+    *(f'<frame{what} objtype="site" objname="tip" reftype="xbody" refname="f"/>' for what in FRAMES[:7]),
+    '<framepos objtype="body" objname="b" reftype="site" refname="one"/>',
+    '<framelinvel objtype="body" objname="f" reftype="xbody" refname="world"/>',
+    *(f'<subtree{what} body="{body}"/>' for what in ("com", "linvel", "angmom") for body in "abf"),
+    '<gyro site="tip" cutoff=".4"/>',
+]
+SENSORS: dict[str, str] = {
+    "one of each": f"{_BODIES}{''.join(_PARTS)}</sensor></mujoco>",
+    "copies": '<mujoco><worldbody><replicate count="3" offset="0 1 0"><body><joint name="r"/><geom size=".1" '
+    'pos=".1 0 0"/><site name="s" pos="0 0 .2"/></body></replicate></worldbody><sensor><jointpos name="p" '
+    'joint="r"/><velocimeter name="v" site="s"/></sensor></mujoco>',
+}

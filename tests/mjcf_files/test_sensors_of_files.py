@@ -1,0 +1,114 @@
+"""Sensors of MJCF files show what MuJoCo's show."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from sensor_cases import SENSORS
+
+from carom import World
+from carom.errors import DescriptionError
+
+ANSWERS = json.loads(Path(__file__).with_name("sensor_answers.json").read_text())
+# Those that are means over the last step, or of its forces.
+OF_STEPS = ("ACC", "FORCE", "TORQUE", "ACTUATORFRC", "ACTFRC", "ACCELEROMETER")
+
+
+def load(world, folder, text):
+    (folder / "file.xml").write_text(text)
+    return world.load(folder / "file.xml")
+
+
+@pytest.mark.parametrize("name", SENSORS)
+def test_readings_are_those_of_mujoco(tmp_path, name):
+    answer = ANSWERS[name]
+    numbers = {"qpos": answer["q"], "qvel": answer["v"], "ctrl": answer["control"]}
+    key = " ".join(f'{it}="{" ".join(map(repr, values))}"' for it, values in numbers.items())
+    text = SENSORS[name].replace("</mujoco>", f'<keyframe><key name="x" {key}/></keyframe></mujoco>')
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        assert [it.element for it in scene.ignored.that_matter] == ["option/flag"][: "flag" in text]
+        scene.apply_options()
+        scene.reset("x")
+        sensors = list(scene.sensors.values())
+        before = [sensor.read() for sensor in sensors]
+        for body in scene.bodies:
+            for joint in body.joints:
+                body.change_dynamics(joint.index, joint_lower_limit=1.0, joint_upper_limit=-1.0)
+        world.step()
+        after = [sensor.read() for sensor in sensors]
+    order = {it.name: place for place, it in enumerate(sensors)}
+    assert len(order) == len(answer["values"])
+    places = in_file_order(scene, answer)
+    for place, kind, value in zip(places, answer["kinds"], answer["values"], strict=True):
+        got = (after if kind.endswith(OF_STEPS) else before)[place]
+        if "QUAT" in kind:
+            value = [*value[1:], value[0]]
+            got = got * np.sign(np.dot(got, value))
+        tolerance = 2e-5 if kind.endswith(OF_STEPS) else 1e-9
+        assert_allclose(got, value, rtol=tolerance, atol=tolerance, err_msg=f"{kind} {sensors[place]}")
+
+
+def in_file_order(scene, answer):
+    """Places among the sensors of all bodies, in the order of the file."""
+    places = {name: place for place, name in enumerate(scene.sensors)}
+    if all(answer["names"]):
+        return [places[name] for name in answer["names"]]
+    # Names that are made up begin with their number.
+    return sorted(places.values(), key=lambda it: int(list(places)[it].removeprefix("sensor").split("_")[0]))
+
+
+@pytest.mark.parametrize(
+    ("sensor", "reason"),
+    [
+        ('<rangefinder camera="eye"/>', "cameras"),
+        ('<framepos objtype="geom" objname="g"/>', "geom"),
+        ('<jointpos joint="free"/>', "hinges and slides"),
+        ('<velocimeter site="still"/>', "world has no sensors"),
+        ('<force site="fixed"/>', "fixed base"),
+        ('<subtreecom body="world"/>', "world has no sensors"),
+        ('<actuatorpos actuator="m"/>', "not simulated"),
+        ('<distance geom1="g" geom2="h"/>', "not read yet"),
+    ],
+)
+def test_what_has_no_sensor_is_reported(tmp_path, sensor, reason):
+    text = f"""<mujoco><worldbody><camera name="eye"/><site name="still"/><body name="f"><freejoint
+ name="free"/><geom name="g" size=".1"/></body><body><geom name="h" size=".1"/><site name="fixed"/></body>
+</worldbody><actuator><adhesion name="m" body="f" ctrlrange="0 1"/></actuator><sensor>{sensor}</sensor>
+</mujoco>"""
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        (lost,) = [it for it in scene.ignored.that_matter if it.element.startswith("sensor/")]
+        assert reason in lost.reason
+        assert not scene.sensors
+
+
+def test_quality_is_that_of_the_file(tmp_path):
+    text = """<mujoco><worldbody><body name="b"><joint name="j"/><geom size=".1"/><site name="s"/></body>
+</worldbody><sensor><gyro name="g" site="s" cutoff="2" delay=".01" interval=".005" nsample="7" noise=".1"
+ interp="cubic"/></sensor></mujoco>"""
+    with World() as world:
+        scene = load(world, tmp_path, text)
+        spec = scene.sensors["g"].spec
+        assert (spec.cutoff, spec.delay, spec.period, spec.samples, spec.noise) == (2.0, 0.01, 0.005, 7, 0.0)
+        (lost,) = scene.ignored.that_matter
+        assert lost.attributes == ("interp",)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "problem"),
+    [
+        ('<gyro site="no"/>', "no site 'no'"),
+        ("<gyro/>", "'site' is missing"),
+        ('<framepos objtype="thing" objname="b"/>', "none of site"),
+        ('<gyro site="s" cutoff="-1"/>', "cutoff of 0 or more"),
+        ('<gyro name="a" site="s"/><gyro name="a" site="s"/>', "taken already"),
+    ],
+)
+def test_mistakes_are_named(tmp_path, sensor, problem):
+    text = f"""<mujoco><worldbody><body name="b"><joint name="j"/><geom size=".1"/><site name="s"/></body>
+</worldbody><sensor>{sensor}</sensor></mujoco>"""
+    with World() as world, pytest.raises(DescriptionError, match=problem):
+        load(world, tmp_path, text)
