@@ -17,7 +17,7 @@ DIGESTS = {
     "stack": "11d0e4789a276aec",
     "tied": "064ac2b19117a7d3",
     "questions": "54d8874ff3d1bde4",
-    "images": "59104a2976070434",
+    "images": "fe6e4b42c0953681",
     "robots": "c9c1650622f92f83",
     "meshes": "14f94aab95169ce5",
     "soft": "f41f129ea7c3adb8",
