@@ -23,6 +23,7 @@ INTERNAL: dict[str, set[str]] = {
         *("arrays", "contact_arrays", "engine", "quick", "undo", "listing", "links_loaded", "free_ids"),
         *("next_id", "constraints", "user_constraints", "unspent_time", "view", "motor", "pd"),
         *(
+            "add_constraint",
             "be_quick",
             "constraints_changed",
             "link_columns",
