@@ -31,7 +31,8 @@ __all__ = [
 ]
 
 _WORLD = -1
-_KINDS = {int(kind): kind for kind in UserConstraintKind if kind <= UserConstraintKind.COUPLING}
+# Those that PyBullet has.
+_KINDS = {int(kind): kind for kind in UserConstraintKind if kind <= UserConstraintKind.GEAR}
 _FAILED = "createConstraint failed."
 _PARENT_FRAME = "parentFramePosition", "parentFrameOrientation"
 _CHILD_FRAME = "childFramePosition", "childFrameOrientation"

@@ -163,6 +163,8 @@ REFUSED: list[dict[str, Any]] = [
     {"childBodyUniqueId": 99},
     {"childBodyUniqueId": PAIR, "childLinkIndex": 1},
     {"jointType": 77},
+    {"jointType": 7},  # a coupling of the modern API
+    {"jointType": 8},
     {"jointType": p.JOINT_GEAR},
     {"jointAxis": [0.0, 0.0, nan]},
     {"parentFramePosition": [0.0, inf, 0.0]},
