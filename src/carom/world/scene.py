@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+from carom.description.pose import Pose
+from carom.description.transform import compose
 from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
 from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
 
 if TYPE_CHECKING:
+    from carom.camera import Camera
     from carom.formats.mjcf.compiled.model import FileCamera, Site
     from carom.formats.reading.ignored import IgnoredList
     from carom.scene.sensors.sensor import BodySensor
@@ -19,6 +22,8 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _MOST_NAMES = 8
+# MJCF's cameras look along -z, with y up; those of images along z, with y down.
+_FROM_CAMERA = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
 class Scene(Sequence[Body]):
@@ -32,7 +37,7 @@ class Scene(Sequence[Body]):
         constraints: Couplings of joints and of tendons, and connected and welded links, by name.
         actuators: Actuators of all bodies by name, in the order of an MJCF file.
         sites: Named frames of MJCF files, by name; `Body.sites` has those of each body.
-        cameras: Cameras of MJCF files, by name.
+        cameras: Cameras of MJCF files, by name; `camera` makes images by one.
         options: What an MJCF file states in `<option>`, by name; `apply_options` sets it in the world.
         ignored: What the file says and the simulation lacks; prints as a table.
     """
@@ -87,6 +92,32 @@ class Scene(Sequence[Body]):
     def keyframes(self) -> dict[str, Keyframe]:
         """The keyframes of the bodies by name."""
         return keyframes_of(self.bodies)
+
+    def camera(self, name: str, width: int = 320, height: int = 240) -> Camera:
+        """A camera for images as one of the file, on the link that has it, with that field of view.
+
+        Args:
+            name: One of `cameras`.
+            width: Number of columns; the image of a file that states a resolution has that one.
+            height: Number of rows, likewise.
+
+        Raises:
+            KeyError: The file has no camera of this name.
+        """
+        if name not in self.cameras:
+            known = ", ".join(map(repr, self.cameras)) or "none"
+            raise KeyError(f"{self.source.name} has no camera {name!r}; it has {known}")
+        from carom.camera import Camera
+
+        it = self.cameras[name]
+        if min(it.resolution) > 1:
+            width, height = it.resolution
+        camera = Camera.with_field_of_view(width, height, it.field_of_view)
+        links = (link for body in self.bodies for link in body.links if link.name == it.body)
+        camera.mount(next(links, None))
+        pose = compose(it.frame, _FROM_CAMERA)
+        camera.place(pose.position, pose.orientation)
+        return camera
 
     def reset(self, name: str) -> None:
         """Reset the bodies that have a keyframe of this name to it, and the world to its time.

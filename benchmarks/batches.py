@@ -1,0 +1,129 @@
+"""World-steps per second of `Worlds` beside `mujoco.batch`, with controls that change in each call.
+
+    python benchmarks/batches.py [--mujoco .mujoco/bin/python] [--turns 3] [--page docs/scaling.md]
+
+The engines take turns on the same cores by wall time, and a figure is the median over the turns.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+from run import put_between_marks
+from throughput import HOME, PANDA, ROOT, boxes
+
+from carom import Motor, PositionActuator, World, Worlds
+from carom.scene.body import Body
+
+HERE = Path(__file__).resolve().parent
+DATA = PANDA.parent.parent
+COUNT, STEPS = 256, (1, 20)
+STRENGTH = 20.0
+CASES = {
+    "panda": "Panda, nine position servos, targets that change",
+    "boxes": "9 towers of 3 boxes",
+    "ant": "Ant on a floor, random torques",
+    "humanoid": "Humanoid on a floor, random torques",
+}
+MARKS = ("<!-- batches -->", "<!-- end of batches -->")
+
+
+def scene(case: str) -> tuple[World, Body | None]:
+    """The world of a case, and the body that is controlled."""
+    if case == "boxes":
+        return boxes(), None
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    if case == "panda":
+        # The servos that MuJoCo has in `throughput_mujoco.panda_model`.
+        arm = world.load_urdf(PANDA, fixed_base=True)
+        arm.joints.reset(HOME)
+        for joint in _hinges(arm):
+            arm.add_actuator(joint, PositionActuator(joint, kp=400.0, kv=40.0))
+        return world, arm
+    world.add_plane()
+    robot = next(body for body in world.load(DATA / "mjcf" / f"{case}.xml").bodies if body.joint_count)
+    for joint in _hinges(robot):
+        robot.add_actuator(joint, Motor(joint, gear=STRENGTH))
+    return world, robot
+
+
+def _hinges(body: Body) -> list[str]:
+    return [joint.name for joint in body.joints if joint.degrees_of_freedom == 1]
+
+
+def ours(case: str, threads: int, seconds: float, steps: int) -> float:
+    """World-steps per second of `Worlds`, so many steps in a call."""
+    world, body = scene(case)
+    worlds = Worlds(world, COUNT, threads=threads)
+    generator = np.random.default_rng(0)
+    middle, amount = (np.array(HOME), 0.2) if case == "panda" else (0.0, 1.0)
+    began, done = 0.0, 0
+    for turn in range(1_000_000):
+        if turn == 5:
+            began, done = time.perf_counter(), 0
+        elif turn > 5 and time.perf_counter() - began > seconds:
+            break
+        if body is not None:
+            shape = worlds[body].controls.shape
+            worlds[body].controls[:] = middle + generator.uniform(-amount, amount, shape)
+        worlds.step(steps)
+        done += COUNT * steps
+    return done / (time.perf_counter() - began)
+
+
+def mujoco(case: str, threads: int, seconds: float, steps: int, interpreter: Path) -> float:
+    """World-steps per second of `mujoco.batch`."""
+    numbers = [str(number) for number in (seconds, threads, steps, COUNT)]
+    command = [str(interpreter), str(HERE / "batches_mujoco.py"), case, *numbers, str(DATA)]
+    found = subprocess.run(command, cwd=HERE, text=True, check=True, stdout=subprocess.PIPE)
+    return float(found.stdout.split()[-1])
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description="Time Worlds against mujoco.batch.")
+    parser.add_argument("--mujoco", type=Path, default=ROOT / ".mujoco" / "bin" / "python")
+    parser.add_argument("--turns", type=int, default=3)
+    parser.add_argument("--seconds", type=float, default=2.0, help="time spent on each figure in each turn")
+    parser.add_argument("--only", nargs="*", choices=CASES, default=list(CASES))
+    parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
+    arguments = parser.parse_args()
+    threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    samples: dict[tuple[str, int, str], list[float]] = defaultdict(list)
+    for turn in range(arguments.turns):
+        print(f"turn {turn + 1} of {arguments.turns}", file=sys.stderr, flush=True)
+        for case in arguments.only:
+            for steps in STEPS:
+                asked = case, threads, arguments.seconds, steps
+                samples[case, steps, "ours"].append(ours(*asked))
+                samples[case, steps, "MuJoCo"].append(mujoco(*asked, arguments.mujoco.absolute()))
+    figures = table({key: statistics.median(values) for key, values in samples.items()}, threads)
+    print(figures)
+    if arguments.page:
+        put_between_marks(arguments.page, figures, MARKS)
+
+
+def table(medians: dict[tuple[str, int, str], float], threads: int) -> str:
+    """The rates as a Markdown table."""
+    lines = [
+        f"| world-steps per second, {COUNT} worlds, {threads} threads | steps a call | Carom | mujoco.batch "
+        "| Carom : MuJoCo |",
+        "| --- |" + " ---: |" * 4,
+    ]
+    for case, steps in {(case, steps): None for case, steps, _ in medians}:
+        carom, other = medians[case, steps, "ours"], medians[case, steps, "MuJoCo"]
+        lines.append(f"| {CASES[case]} | {steps} | {carom:,.0f} | {other:,.0f} | {carom / other:.2f}× |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

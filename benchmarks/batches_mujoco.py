@@ -1,0 +1,65 @@
+"""World-steps per second of `mujoco.batch`; `batches.py` starts it."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import mujoco  # pyright: ignore[reportMissingImports]
+import numpy as np
+from mujoco.batch import Batch  # pyright: ignore[reportMissingImports]
+from mujoco_cases import SETTLING_STEPS, tower_model
+from throughput_mujoco import HOME, TIME_STEP, panda_model
+
+
+def legged_model(path: Path, strength: float) -> mujoco.MjModel:
+    """A robot of a file on a floor, with a motor at each of its hinges."""
+    spec = mujoco.MjSpec.from_file(str(path))
+    spec.option.timestep = TIME_STEP
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_EULER
+    if not any(geom.type == mujoco.mjtGeom.mjGEOM_PLANE for geom in spec.geoms):
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], contype=1, conaffinity=1)
+    for joint in spec.joints:
+        if joint.type == mujoco.mjtJoint.mjJNT_HINGE:
+            motor = spec.add_actuator()
+            motor.target, motor.trntype = joint.name, mujoco.mjtTrn.mjTRN_JOINT
+            motor.set_to_motor()
+            motor.gear[0] = strength
+    return spec.compile()
+
+
+def main() -> None:
+    """Step for some seconds and print how many steps a second all threads make together."""
+    case, seconds, threads, steps, count = sys.argv[1], float(sys.argv[2]), *map(int, sys.argv[3:6])
+    data = Path(sys.argv[6])
+    generator = np.random.default_rng(0)
+    if case == "panda":
+        model, _ = panda_model(str(data / "franka_panda" / "panda.urdf"))
+        middle, amount = np.array(HOME), 0.2
+    elif case == "boxes":
+        model, middle, amount = tower_model(3), np.zeros(0), 0.0
+    else:
+        model, amount = legged_model(data / "mjcf" / f"{case}.xml", 20.0), 1.0
+        middle = np.zeros(model.nu)
+    batch = Batch(model, count, threads, persistent=True)
+    if case == "panda":
+        batch.bind("qpos")[:] = middle
+    if case == "boxes":
+        batch.step(nstep=SETTLING_STEPS)
+    controls = batch.bind("ctrl")
+    began, done = 0.0, 0
+    for turn in range(1_000_000):
+        if turn == 5:
+            began, done = time.perf_counter(), 0
+        elif turn > 5 and time.perf_counter() - began > seconds:
+            break
+        if len(middle):
+            controls[:] = middle + generator.uniform(-amount, amount, controls.shape)
+        batch.step(nstep=steps)
+        done += count * steps
+    print(done / (time.perf_counter() - began))
+
+
+if __name__ == "__main__":
+    main()
