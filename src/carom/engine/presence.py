@@ -1,8 +1,8 @@
 """Bodies that are absent: part of the scene, and so of all arrays, but not there in some worlds.
 
 `State.tree_activity` says so. Kernels leave absent trees out of dynamics and constraints, and give their
-shapes empty bounds; contacts and overlaps are dropped here, when a body goes. So the other bodies move bit for
-bit as in a world made without it. Its own state stays as it is until it comes back.
+shapes empty bounds; contacts and overlaps are dropped here, when a body goes. So the other bodies move bit
+for bit as in a world made without it. Its own state stays as it is until it comes back.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ def change_presence(
 ) -> Callable[[], None]:
     """Prepare to let a body come or go in some worlds.
 
-    Where it goes, its contacts are dropped. Where it comes or goes, bodies are woken, and contacts are not warm
-    started in the next step.
+    Where it goes, its contacts are dropped. Where it comes or goes, bodies are woken, and contacts are not
+    warm started in the next step.
 
     Args:
         arrays: All bodies.

@@ -92,7 +92,7 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
     centres = product(poses[..., :3, :3], scene.part_centres[casts][:, :, None])[..., 0] + poses[..., :3, 3]
     radii = scene.part_radii[casts]
     # Matrices of absent bodies are all zeros.
-    absent = poses[..., 3, 3] == 0.0
+    absent = np.asarray(poses[..., 3, 3] == 0.0)
     if absent.any():
         centres = np.where(absent[..., None], _present_centres(centres, absent)[:, None], centres)
         radii = np.where(absent, 0.0, radii)

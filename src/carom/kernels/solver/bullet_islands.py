@@ -66,7 +66,7 @@ def join_links(
 
 @func
 def number_islands(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
-    """Write the number of each tree's island to `tree_number`, -1 for trees that cannot move or are absent."""
+    """Write the number of each tree's island to `tree_number`, -1 for those absent or unable to move."""
     for tree in range(settings.tree_count):
         number = Int32(NONE)
         first = model.tree[tree].first_link
