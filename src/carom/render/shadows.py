@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isinf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.native.products import dots, product
 from carom.record import record
@@ -92,7 +93,7 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
     centres = product(poses[..., :3, :3], scene.part_centres[casts][:, :, None])[..., 0] + poses[..., :3, 3]
     radii = scene.part_radii[casts]
     # Matrices of absent bodies are all zeros.
-    absent = np.asarray(poses[..., 3, 3] == 0.0)
+    absent: NDArray[np.bool_] = np.equal(poses[..., 3, 3], 0.0)
     if absent.any():
         centres = np.where(absent[..., None], _present_centres(centres, absent)[:, None], centres)
         radii = np.where(absent, 0.0, radii)
@@ -105,7 +106,7 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
     return middle, np.maximum((np.sqrt(dots(away, away)) + radii).max(axis=1), 1e-3)
 
 
-def _present_centres(centres: Matrix, absent: np.ndarray) -> Matrix:
+def _present_centres(centres: Matrix, absent: NDArray[np.bool_]) -> Matrix:
     """The centre of the first part that is present in each world, (n, 3); 0 where all are absent."""
     first = centres[np.arange(len(centres)), absent.argmin(axis=1)]
     return np.where(absent.all(axis=1)[:, None], 0.0, first)

@@ -51,8 +51,8 @@ class BodyBatch(JointBatch, ActuatorBatch, AlgorithmBatch, SensorBatch):
         """Let the body come or go in each world, or in some.
 
         Where it is absent, it does not move, nothing touches or sees it, and constraints on it do nothing;
-        the others move bit for bit as in a world made without it. Its coordinates and velocities stay as they are
-        and can be set; forces on it are lost. Sleeping bodies wake where it comes or goes.
+        the others move bit for bit as in a world made without it. Its coordinates and velocities stay as they
+        are and can be set; forces on it are lost. Sleeping bodies wake where it comes or goes.
 
         Args:
             present: Whether it is present: one value, or one for each of the n worlds chosen, (n,).

@@ -62,8 +62,8 @@ def magnitudes(matrix: Matrix3) -> Matrix3:
 
 @func
 def empty_bounds(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32):
-    """Write bounds of a shape that meet no others."""
-    corner = Vector3(UNBOUNDED, UNBOUNDED, UNBOUNDED)
+    """Write bounds of a shape that meet no others, not even those of planes."""
+    corner = Vector3(2.0 * UNBOUNDED, 2.0 * UNBOUNDED, 2.0 * UNBOUNDED)
     pairs.shape_lower[world, shape] = corner
     pairs.shape_upper[world, shape] = -corner
     if shapes.shape_part[shape] == FIRST_PART:
