@@ -228,7 +228,7 @@ def test_rays_pass_through_the_absent(shown: tuple[World, Body, Body, Worlds]) -
     assert (hits.bodies == [[ball.id, box.id], [0, box.id], [ball.id, 0]]).all()
     lone = worlds.extract(1)
     assert not lone.bodies[ball.id].present
-    assert lone.queries.cast_ray((0, 0, 2), (0, 0, -0.5)).body_id == 0
+    assert lone.queries().cast_ray((0, 0, 2), (0, 0, -0.5)).body == 0
 
 
 @pytest.mark.parametrize("light", [Light(), Light(shadow=True), Light(distance=np.inf, shadow=True)])

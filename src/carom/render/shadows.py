@@ -93,7 +93,7 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
     centres = product(poses[..., :3, :3], scene.part_centres[casts][:, :, None])[..., 0] + poses[..., :3, 3]
     radii = scene.part_radii[casts]
     # Matrices of absent bodies are all zeros.
-    absent: NDArray[np.bool_] = np.equal(poses[..., 3, 3], 0.0)
+    absent = poses[..., 3, 3] == 0.0
     if absent.any():
         centres = np.where(absent[..., None], _present_centres(centres, absent)[:, None], centres)
         radii = np.where(absent, 0.0, radii)
@@ -109,4 +109,4 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
 def _present_centres(centres: Matrix, absent: NDArray[np.bool_]) -> Matrix:
     """The centre of the first part that is present in each world, (n, 3); 0 where all are absent."""
     first = centres[np.arange(len(centres)), absent.argmin(axis=1)]
-    return np.where(absent.all(axis=1)[:, None], 0.0, first)
+    return np.where(np.all(absent, axis=1, keepdims=True), 0.0, first)

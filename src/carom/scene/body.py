@@ -383,8 +383,8 @@ class Body:
 
         While it is absent, it does not move, nothing touches or sees it, and constraints on it do nothing;
         the others move bit for bit as in a world made without it. Its coordinates and velocities stay as they
-        are and can be set; forces on it are lost. Sleeping bodies wake when it comes or goes. Setting it raises
-        `ValueError` for a soft body, and for a body that a soft body is anchored to.
+        are and can be set; forces on it are lost. Sleeping bodies wake when it comes or goes. Setting it
+        raises `ValueError` for a soft body, and for a body that a soft body is anchored to.
         """
         return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] != Activity.ABSENT)
 
