@@ -251,6 +251,13 @@ def test_cubes_slide_as_far_as_their_friction_lets_them(example):
     assert record["farther"][1::2].max() < 1e-3
 
 
+def test_worlds_have_terrains_and_objects_of_their_own(example):
+    record = example("differing_worlds").main(count=60)
+    assert set(record) == {(number, name) for number in range(3) for name in ("ball", "box")}
+    assert record[1, "ball"] > record[0, "ball"] + 0.2
+    assert abs(record[0, "box"]) < 0.05
+
+
 def test_an_environment_of_ones_own_can_be_solved(example):
     record = example("own_vector_env").main(count=5)
     assert record["return"].min() > 120.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.engine.contact_arrays import ContactArrays
+from carom.layouts.codes import ABSENT, ACTIVE
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
@@ -34,4 +35,5 @@ def can_sleep(arrays: WorldArrays) -> bool:
     count = arrays.used["tree"]
     if arrays.model.numpy["tree_can_sleep"][:count].any():
         return True
-    return bool(np.asarray(arrays.state.numpy["tree_activity"])[:, :count].any())
+    activity = np.asarray(arrays.state.numpy["tree_activity"])[:, :count]
+    return bool(((activity != ACTIVE) & (activity != ABSENT)).any())

@@ -13,6 +13,7 @@ from carom.engine.can_collide import can_collide, can_sleep
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
 from carom.engine.parameters import EngineParameters
+from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
 from carom.engine.settings import EngineSettings
@@ -64,6 +65,8 @@ class Engine:
     # The programs of steps and of collision detection.
     step_program: ProgramMaker = staticmethod(step_program)
     detection_program: Callable[[KernelStructs], Program] = staticmethod(detection_program)
+    # Whether bodies can be absent in some worlds.
+    allows_absence = True
     # Whether workspaces depend on nothing but the lengths of arrays and the numbers of rows in use.
     keeps_structs = True
 
@@ -245,13 +248,16 @@ class Engine:
         """Find out which parts of a step are needed now."""
         if self._plan_before is not None:
             touching, sleeping = self._plan_before.touching, self._plan_before.sleeping
+            absent = self._plan_before.absent
         else:
             touching, sleeping = can_collide(self.arrays, self.contact_arrays), can_sleep(self.arrays)
+            absent = any_absent(self.arrays)
         if not touching:
             self.contact_arrays.forget_contacts()
         soft = bool(self.contact_arrays.soft.bodies)
-        coupled = touching or sleeping or self._watched or self.contact_arrays.user_count > 0 or soft
-        self._plan = Plan(touching, sleeping, coupled, soft)
+        coupled = touching or sleeping or absent or soft
+        coupled = coupled or self._watched or self.contact_arrays.user_count > 0
+        self._plan = Plan(touching, sleeping, coupled, soft, absent)
         return self._plan
 
     def step(self, due: Sequence[int], worlds: np.ndarray | None = None) -> None:
@@ -441,10 +447,13 @@ class Engine:
         """Number of steps that some worlds have completed in the last call."""
         return self.status[worlds, STEPS_DONE]
 
-    def sleep_changed(self) -> None:
-        """Include sleep in steps again, after a world with sleeping bodies was restored."""
+    def activity_changed(self) -> None:
+        """Include sleep and absence in steps if bodies are asleep or absent now, as in a restored world."""
         plan = self._plan or self._plan_before
-        if plan is not None and not plan.sleeping and can_sleep(self.arrays):
+        if plan is None:
+            return
+        sleeping = not plan.sleeping and can_sleep(self.arrays)
+        if sleeping or (not plan.absent and any_absent(self.arrays)):
             self.changed()
 
     def load(self, interpreters: list[Stepper], program: Callable[[KernelStructs], Program]) -> None:

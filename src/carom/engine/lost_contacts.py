@@ -19,20 +19,20 @@ Rows = dict[str, np.ndarray]
 """Fields of contacts and of overlaps of a world, with all rows there are."""
 
 
-def kept_rows(contacts: ArrayTable, lost: Sequence[int]) -> Rows:
-    """The contacts and overlaps of a single world, except those of some shapes, by row."""
+def kept_rows(contacts: ArrayTable, lost: Sequence[int], world: int = 0) -> Rows:
+    """The contacts and overlaps of a world, except those of some shapes, by row."""
     numpy = contacts.numpy
-    counts = numpy["count_contacts"][0]
+    counts = numpy["count_contacts"][world]
     there = int(counts[THERE])
-    shapes = numpy["contact_shapes"][0, :there, :2]
+    shapes = numpy["contact_shapes"][world, :there, :2]
     stays = np.ones(there, dtype=bool)
     for shape in lost:
         stays &= (shapes != shape).all(axis=1)
-    fields = {name: rows[0] for name, rows in numpy.items() if name.startswith("contact_")}
+    fields = {name: rows[world] for name, rows in numpy.items() if name.startswith("contact_")}
     # Most bodies touch nothing: then only row numbers can change.
     changed = ("contact_shapes", "contact_warm_start") if stays.all() else fields
     rows = {name: fields[name][:there][stays] for name in changed}
-    pairs, places, manifolds = (numpy[name][0, : counts[OVERLAPS]] for name in _OVERLAPS)
+    pairs, places, manifolds = (numpy[name][world, : counts[OVERLAPS]] for name in _OVERLAPS)
     rows.update(zip(_OVERLAPS, without_overlaps(pairs, places, manifolds, lost), strict=True))
     return rows
 
@@ -47,10 +47,10 @@ def renumber(rows: Rows, shapes: tuple[int, int], links: tuple[int, int]) -> Non
         numbers -= count * (numbers >= first + count)
 
 
-def write_rows(contacts: ArrayTable, rows: Rows) -> None:
+def write_rows(contacts: ArrayTable, rows: Rows, world: int = 0) -> None:
     """Write these contacts and overlaps; can be repeated if it was interrupted."""
     numpy = contacts.numpy
     for name, kept in rows.items():
-        numpy[name][0, : len(kept)] = kept
-    counts = numpy["count_contacts"][0]
+        numpy[name][world, : len(kept)] = kept
+    counts = numpy["count_contacts"][world]
     counts[THERE], counts[OVERLAPS] = len(rows["contact_shapes"]), len(rows["overlap_shapes"])

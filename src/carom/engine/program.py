@@ -50,15 +50,17 @@ class Plan(NamedTuple):
     Attributes:
         touching: Some shapes could touch.
         sleeping: Some body could fall asleep, or is asleep.
-        coupled: A step needs its separate stages: bodies could interact or sleep, there are soft bodies, or a
-            function is called after every substep.
+        coupled: A step needs its separate stages: bodies could interact or sleep, some are absent, there are
+            soft bodies, or a function is called after every substep.
         soft: There are soft bodies.
+        absent: A body is absent in some world.
     """
 
     touching: bool
     sleeping: bool
     coupled: bool
     soft: bool = False
+    absent: bool = False
 
 
 class Program(NamedTuple):

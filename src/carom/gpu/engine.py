@@ -35,6 +35,7 @@ class DeviceEngine(Engine):
     step_program = staticmethod(parallel_step_program)
     detection_program = staticmethod(parallel_detection_program)
 
+    allows_absence = False
     # Workspaces also depend on whether shapes can touch.
     keeps_structs = False
 

@@ -67,6 +67,7 @@ class Activity(IntEnum):
     WANTS_SLEEP = 1  # simulated, until no tree of its island is active
     ASLEEP = 2
     WOKEN = 3  # as WANTS_SLEEP, in the first substep after being asleep
+    ABSENT = 4  # not in this world: it does not move, and nothing meets it, see `engine.presence`
 
 
 class FrictionBound(IntEnum):
@@ -154,7 +155,7 @@ USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(
 )
 USER_TENDON, USER_TENDON_COUPLING, USER_TRANSMISSION = map(int, tuple(UserConstraintKind)[5:])
 PATH_JOINT, PATH_SITE, PATH_SPHERE, PATH_CYLINDER, PATH_PULLEY = map(int, PathKind)
-ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN = map(int, Activity)
+ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN, ABSENT = map(int, Activity)
 ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)
 ALONE, FIRST_PART, OTHER_PART = map(int, Part)

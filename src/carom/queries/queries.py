@@ -14,6 +14,7 @@ import numpy as np
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.engine.contact_arrays import ContactArrays
+from carom.engine.presence import absent_links
 from carom.engine.quick_scene import QuickScene
 from carom.engine.row_maps import row_map_struct
 from carom.layouts.codes import PLANE
@@ -29,6 +30,7 @@ from carom.queries.quick_queries import tell_placement
 from carom.queries.ray_cast import Points, RayCast, RayHit, RayTuple
 
 if TYPE_CHECKING:
+    from carom.model.builder import WorldArrays
     from carom.queries.soft_bodies import SoftQueries
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
@@ -51,19 +53,20 @@ class Queries:
         present_poses: Callable[[], AbstractContextManager[memoryview[int]]],
         contact_arrays: ContactArrays,
         pairs: ArrayTable,
-        state: ArrayTable,
+        arrays: WorldArrays,
         soft_work: ArrayTable,
         quick: QuickScene,
     ) -> None:
         self._structs = structs
         structs["places"] = row_map_struct(places)
         self._link_count = len(places)
+        self._arrays = arrays
         self._touch = contact_arrays
         self._soft: SoftQueries | None = None
         if contact_arrays.soft.bodies:
             from carom.queries.soft_bodies import SoftQueries
 
-            self._soft = SoftQueries(structs, contact_arrays, state, soft_work, places, present_poses)
+            self._soft = SoftQueries(structs, contact_arrays, arrays.state, soft_work, places, present_poses)
         # Quick calls do not handle soft bodies. In worlds with soft bodies, `quick` stays without addresses.
         self._quick = quick if self._soft is None else QuickScene()
         self._positions = positions
@@ -104,19 +107,22 @@ class Queries:
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Minimum and maximum corner of each shape, whether it is unbounded (a plane), and its link row."""
         rows = slice(self._shape_count)
-        endless = self._shapes["shape_kind"][rows] == PLANE
         lowest, highest = (self._pairs[name][0, rows] for name in ("shape_lower", "shape_upper"))
+        endless = (self._shapes["shape_kind"][rows] == PLANE) & (lowest[:, 0] <= highest[:, 0])
         return lowest, highest, endless, self._shapes["shape_link"][rows]
 
     @cached_property
     def _without_shapes(self) -> list[tuple[int, Bounds]]:
-        """Rows of the links of rigid bodies without shapes, and their bounds in the link frame."""
+        """Rows of links without shapes of rigid bodies, and their bounds in the link frame."""
         counts = self._shapes["link_shape_count"][: self._link_count].tolist()
-        soft = {body.rows.first["link"] for body in self._touch.soft.bodies}
+        hidden = {body.rows.first["link"] for body in self._touch.soft.bodies}
+        absent = absent_links(self._arrays, np.arange(self._link_count), np.zeros(1, dtype=np.int64))
+        if absent is not None:
+            hidden.update(np.flatnonzero(absent[0]).tolist())
         return [
             (row, self._all_shapes.bounds(row))
             for row, count in enumerate(counts)
-            if not count and row not in soft
+            if not count and row not in hidden
         ]
 
     def cast_rays(

@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.engine.presence import absent_links
 from carom.render.appearance import appearance_of
 from carom.render.image_batch import ImageBatch, RawImages
 from carom.render.image_target import ImageTarget, RawImage
@@ -25,6 +26,8 @@ MAX_PIXELS = 64 << 20
 
 KEPT_SIZES = 4
 """Number of image sizes whose memory is kept between images."""
+
+_ONLY_WORLD = np.zeros(1, dtype=np.int64)
 
 
 class Renderer:
@@ -73,6 +76,9 @@ class Renderer:
         with world.present_poses():
             scene.follow_nodes()
             link_to_world = poses_to_matrices(world.link_pose[scene.link_rows])
+        absent = absent_links(world.arrays, scene.link_rows, _ONLY_WORLD)
+        if absent is not None:
+            link_to_world[absent[0]] = 0.0
         return target.draw(link_to_world, view, projection, light, projector)
 
     def draw_worlds(
@@ -85,6 +91,7 @@ class Renderer:
         height: int,
         light: Light,
         threads: int,
+        absent: NDArray[np.bool_] | None = None,
     ) -> RawImages:
         """Draw images of many worlds with the bodies of this one, none of them soft.
 
@@ -97,6 +104,7 @@ class Renderer:
             height: Number of rows.
             light: The light.
             threads: Number of threads.
+            absent: Links of bodies that are absent, (n, links); None for none.
 
         Raises:
             ValueError: The size is out of range.
@@ -108,6 +116,8 @@ class Renderer:
             self._batch = key, ImageBatch(scene, width, height, threads)
         poses = link_poses[:, scene.link_rows]
         matrices = poses_to_matrices(poses.reshape(-1, 7)).reshape(*poses.shape[:2], 4, 4)
+        if absent is not None:
+            matrices[absent[:, scene.link_rows]] = 0.0
         return self._batch[1].draw(matrices, views, projection, light)
 
     def _present_scene(self, world: World) -> SceneArrays:

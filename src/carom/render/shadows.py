@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import isinf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.native.products import dots, product
 from carom.record import record
@@ -91,8 +92,21 @@ def _casters(scene: SceneArrays, link_to_world: Matrix) -> tuple[Matrix, Matrix]
     poses = link_to_world[:, scene.part_links[casts]]
     centres = product(poses[..., :3, :3], scene.part_centres[casts][:, :, None])[..., 0] + poses[..., :3, 3]
     radii = scene.part_radii[casts]
-    low = (centres - radii[:, None]).min(axis=1)
-    high = (centres + radii[:, None]).max(axis=1)
+    # Matrices of absent bodies are all zeros.
+    absent = poses[..., 3, 3] == 0.0
+    if absent.any():
+        centres = np.where(absent[..., None], _present_centres(centres, absent)[:, None], centres)
+        radii = np.where(absent, 0.0, radii)
+    else:
+        radii = radii[None]
+    low = (centres - radii[..., None]).min(axis=1)
+    high = (centres + radii[..., None]).max(axis=1)
     middle = 0.5 * (low + high)
     away = centres - middle[:, None]
     return middle, np.maximum((np.sqrt(dots(away, away)) + radii).max(axis=1), 1e-3)
+
+
+def _present_centres(centres: Matrix, absent: NDArray[np.bool_]) -> Matrix:
+    """The centre of the first part that is present in each world, (n, 3); 0 where all are absent."""
+    first = centres[np.arange(len(centres)), absent.argmin(axis=1)]
+    return np.where(np.all(absent, axis=1, keepdims=True), 0.0, first)

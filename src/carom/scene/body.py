@@ -29,6 +29,7 @@ from carom.native.tables import NUMPY_REAL
 from carom.scene.dynamics_changes import change_dynamics, write_link
 from carom.scene.handles import world_of
 from carom.scene.link_dynamics import LinkDynamics
+from carom.scene.presence import set_present
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator
@@ -375,6 +376,21 @@ class Body:
     def is_asleep(self) -> bool:
         """Whether the body slept in the last step, because it and all bodies near it had been at rest."""
         return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
+
+    @property
+    def present(self) -> bool:
+        """Whether the body is present; it may be set.
+
+        While it is absent, it does not move, nothing touches or sees it, and constraints on it do nothing;
+        the others move bit for bit as in a world made without it. Its coordinates and velocities stay as they
+        are and can be set; forces on it are lost. Sleeping bodies wake when it comes or goes. Setting it
+        raises `ValueError` for a soft body, and for a body that a soft body is anchored to.
+        """
+        return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] != Activity.ABSENT)
+
+    @present.setter
+    def present(self, value: bool) -> None:
+        set_present(self, bool(value))
 
     def change_dynamics(self, link: int | str, **changes: Any) -> None:
         """Change inertia, surface or joint limits of a link, or damping of the whole body.

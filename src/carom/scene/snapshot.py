@@ -165,6 +165,8 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         world.scene_changed()
 
     def put_back() -> None:
+        activity = world.arrays.state.numpy["tree_activity"]
+        was_all_active = not activity.any()
         _write(world, snapshot)
         if same:
             _write_contacts(world, snapshot)
@@ -174,7 +176,7 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
         if same_constraints:
             world.user_constraints.set_impulses(world.arrays.state, snapshot.user_impulses)
         world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
-        if snapshot.state["tree_activity"].any():
+        if not was_all_active or activity.any():
             world.scene_changed()
 
     return put_back

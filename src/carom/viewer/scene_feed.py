@@ -116,16 +116,12 @@ class SceneFeed:
         world = self._world
         # A reset gives a world new arrays.
         same_world = world.arrays is self._arrays
-        if (
-            same_world
-            and list(world.bodies.values()) == self._bodies
-            and self._looks == self._present_looks()
-        ):
+        if same_world and _present_bodies(world) == self._bodies and self._looks == self._present_looks():
             return
         if not self._lock.acquire(timeout=_PATIENCE):
             return
         try:
-            self._describe(list(world.bodies.values()))
+            self._describe(_present_bodies(world))
         finally:
             self._lock.release()
 
@@ -185,3 +181,7 @@ class SceneFeed:
         self._bodies = bodies
         self._arrays = self._world.arrays
         self._looks = looks
+
+
+def _present_bodies(world: World) -> list[Body]:
+    return [body for body in world.bodies.values() if body.present]

@@ -560,7 +560,7 @@ class World(
                 self.present_poses,
                 self.contact_arrays,
                 self.engine.workspace.pairs,
-                self.arrays.state,
+                self.arrays,
                 self.engine.workspace.soft_work,
                 self.quick,
             )

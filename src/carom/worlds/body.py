@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
+from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.worlds.actuators import ActuatorBatch
+from carom.worlds.checks import Mask
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
 from carom.worlds.joints import JointBatch
@@ -33,6 +35,40 @@ class BodyBatch(JointBatch, ActuatorBatch, AlgorithmBatch, SensorBatch):
 
     def __repr__(self) -> str:
         return f"<BodyBatch {self.name!r} in {self._count} worlds>"
+
+    # Presence
+
+    @property
+    def present(self) -> Mask:
+        """In which worlds the body is present, a copy (count,); see `set_present`."""
+        return is_present(self._engine.arrays, self.rows)
+
+    @present.setter
+    def present(self, value: ArrayLike) -> None:
+        self.set_present(value)
+
+    def set_present(self, present: ArrayLike, where: ArrayLike | None = None) -> None:
+        """Let the body come or go in each world, or in some.
+
+        Where it is absent, it does not move, nothing touches or sees it, and constraints on it do nothing;
+        the others move bit for bit as in a world made without it. Its coordinates and velocities stay as they
+        are and can be set; forces on it are lost. Sleeping bodies wake where it comes or goes.
+
+        Args:
+            present: Whether it is present: one value, or one for each of the n worlds chosen, (n,).
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: The number of values differs from that of the worlds chosen, the worlds are on a GPU,
+                the body is soft, or a soft body is anchored to it.
+        """
+        engine = self._engine
+        if not engine.allows_absence:
+            raise ValueError("bodies cannot be absent in worlds on a GPU yet; use device='cpu'")
+        worlds = self._chosen(where)
+        wanted = worlds.values(np.asarray(present, dtype=bool), (), "present") != 0.0
+        change_presence(engine.arrays, engine.contact_arrays, self.rows, worlds.numbers, wanted)()
+        engine.activity_changed()
 
     # Nodes of soft bodies
 

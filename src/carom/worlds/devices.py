@@ -6,6 +6,7 @@ from importlib import util
 from typing import TYPE_CHECKING
 
 from carom.engine.engine import Engine
+from carom.engine.presence import any_absent
 from carom.native.cpu import core_count
 from carom.world.world import World
 from carom.worlds.memory import check_memory
@@ -23,7 +24,7 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
     """An engine for `count` copies of a scene, on a device as for `Worlds`, or one of `carom.gpu`.
 
     Raises:
-        ValueError: There is no such device.
+        ValueError: There is no such device, or it is a GPU and a body is absent.
         ImportError: A GPU is requested, and Warp is not installed.
         MemoryError: There is not enough memory for so many worlds.
     """
@@ -35,6 +36,8 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
     if threads is not None:
         raise ValueError("threads can be set for the device 'cpu' only")
     found = open_device(device) if isinstance(device, str) else device
+    if any_absent(scene.arrays):
+        raise ValueError(f"device {device!r} cannot simulate absent bodies yet; remove them, or use 'cpu'")
     from carom.gpu.engine import DeviceEngine
 
     return DeviceEngine.like(found, scene.arrays, scene.contact_arrays, count)

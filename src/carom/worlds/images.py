@@ -12,6 +12,7 @@ from carom.checks import Array
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.engine.engine import Engine, Task
+from carom.engine.presence import absent_links
 from carom.engine.threads import WORLDS_PER_THREAD
 from carom.native.cpu import core_count
 from carom.native.kernels import link_poses_kernel
@@ -86,6 +87,7 @@ class ImageTaker:
             camera.height,
             camera.light,
             self._threads,
+            absent_links(self._engine.arrays, np.arange(link_poses.shape[1]), worlds),
         )
 
     def _camera_poses(self, camera: Camera, link_poses: Array) -> Array:
@@ -114,6 +116,8 @@ class ImageTaker:
         link = None if camera.link is None else self._own(camera.link)
         for place, world in enumerate(worlds.tolist()):
             copy_coordinates(self._engine, world, self._scene)
+            activity = self._engine.arrays.state.numpy["tree_activity"][world]
+            self._scene.arrays.state.numpy["tree_activity"][0, : len(activity)] = activity
             pose = camera.pose_on(None if link is None else link.pose)
             image = renderer_of(self._scene).draw(
                 self._scene,

@@ -86,7 +86,7 @@ class SavedWorlds:
             else:
                 array[worlds] = self.contacts[name][rows]
         engine.contact_arrays.forget_order()
-        engine.sleep_changed()
+        engine.activity_changed()
 
 
 def _most_rows(counts: np.ndarray) -> dict[str, int]:

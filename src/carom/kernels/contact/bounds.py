@@ -5,6 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.kinematics import base_velocity
 from carom.kernels.maths.min_max import greatest_entry, maximum, upper_corner
 from carom.kernels.maths.rotation import rotation_matrix
+from carom.kernels.solver.activity import is_absent
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, FIRST_PART, HULL, PLANE, SPHERE
@@ -60,12 +61,26 @@ def magnitudes(matrix: Matrix3) -> Matrix3:
 
 
 @func
+def empty_bounds(shapes: Shapes, pairs: Pairs, world: Int32, shape: Int32):
+    """Write bounds of a shape that meet no others, not even those of planes."""
+    corner = Vector3(2.0 * UNBOUNDED, 2.0 * UNBOUNDED, 2.0 * UNBOUNDED)
+    pairs.shape_lower[world, shape] = corner
+    pairs.shape_upper[world, shape] = -corner
+    if shapes.shape_part[shape] == FIRST_PART:
+        pairs.shape_part_lower[world, shape] = corner
+        pairs.shape_part_upper[world, shape] = -corner
+
+
+@func
 def place_shape(shapes: Shapes, state: State, pairs: Pairs, world: Int32, shape: Int32):
     """Write the world pose and bounds of one shape; as in Bullet, the box around its rotated local box.
 
-    A shape whose pose is not finite gets empty bounds, so that it is in no pair. The first part of a compound
-    also gets the bounds of its link.
+    A shape whose pose is not finite, or whose tree is absent, gets empty bounds, so that it is in no pair.
+    The first part of a compound also gets the bounds of its link.
     """
+    if is_absent(state, world, shapes.shape_tree[shape]):
+        empty_bounds(shapes, pairs, world, shape)
+        return
     pose = state.link_pose[world, shapes.shape_link[shape]] * shapes.shape_pose[shape]
     frame = rotation_matrix(wp.transform_get_rotation(pose))
     position = wp.transform_get_translation(pose)

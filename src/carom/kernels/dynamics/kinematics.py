@@ -3,6 +3,7 @@
 import warp as wp
 
 from carom.kernels.maths.rotation import axis_rotation, canonical, rotation_matrix
+from carom.kernels.solver.activity import is_absent
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import (
     Int32,
@@ -175,7 +176,9 @@ def forward_kinematics_kernel(model: Model, state: State, tree: Int32, first_wor
 def update_link_poses(
     settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
-    """Update the link poses of a tree; the last ones are saved if continuous detection is used."""
+    """Update the link poses of a tree that is present; the last ones are saved if bounds look ahead."""
+    if is_absent(state, world, tree):
+        return
     if settings.looks_ahead != 0:
         base = model.tree[tree].first_link
         for link in range(base, base + model.tree[tree].link_count):
@@ -185,7 +188,7 @@ def update_link_poses(
 
 @kernel
 def link_poses_kernel(settings: Settings, model: Model, state: State, scratch: Scratch, first_world: Int32):
-    """Update the link poses of all trees from their coordinates."""
+    """Update the link poses of all trees that are present from their coordinates."""
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
         update_link_poses(settings, model, state, scratch, world, tree)

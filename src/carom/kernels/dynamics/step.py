@@ -22,7 +22,7 @@ from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, inv
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
 from carom.kernels.dynamics.step_ends import begin_step, end_step
-from carom.kernels.solver.activity import has_woken, is_asleep, stop
+from carom.kernels.solver.activity import has_woken, is_absent, is_left_out, stop
 from carom.kernels.solver.joint_solver import (
     apply_delta_velocities,
     clear_delta_velocities,
@@ -64,7 +64,7 @@ def free_motion(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32, pushed: bool
 ):
     """Update velocities for the substep without constraints; if `pushed`, also the data for constraints."""
-    if is_asleep(state, world, tree):
+    if is_left_out(state, world, tree):
         return
     if is_single_body(model, tree):
         move_single_body(model, settings, state, scratch, world, tree, pushed)
@@ -86,8 +86,9 @@ def constrained_motion(settings: Settings, model: Model, state: State, scratch: 
 @func
 def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32):
     """As `constrained_motion`, for one tree."""
-    if is_asleep(state, world, tree):
-        stop(model, state, world, tree)
+    if is_left_out(state, world, tree):
+        if not is_absent(state, world, tree):
+            stop(model, state, world, tree)
         return
     if model.tree[tree].sensor_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)

@@ -11,6 +11,7 @@ from carom.kernels.dynamics.quarantine import (
     return_to_start_impulses,
 )
 from carom.kernels.maths.runs import clear_run
+from carom.kernels.solver.activity import is_absent
 from carom.kernels.structs import Contacts, Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, Vector6, func, kernel
 from carom.layouts.contacts import NONE_KEPT, START_CONTACTS, START_OVERLAPS
@@ -55,6 +56,8 @@ def begin_step(
     begin_world(state, pairs, world)
     keep_start_impulses(settings, state, scratch, world)
     for tree in range(settings.tree_count):
+        if is_absent(state, world, tree):
+            continue
         keep_start(model, state, scratch, world, tree)
         if moves != 0:
             joint_damping(model, state, world, tree)
@@ -102,4 +105,6 @@ def abandon_step_kernel(
     restore_contacts(contacts, pairs, world)
     return_to_start_impulses(settings, state, scratch, world)
     for tree in range(settings.tree_count):
+        if is_absent(state, world, tree):
+            continue
         abandon_tree(model, state, scratch, world, tree)

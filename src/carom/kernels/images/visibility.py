@@ -26,6 +26,12 @@ def is_beyond(matrix: Matrix4, plane: Vector4, centre: Vector3, radius: real) ->
 
 
 @func
+def is_absent_matrix(matrix: Matrix4) -> bool:
+    """Whether a matrix is that of a link of an absent body, all zeros."""
+    return matrix[3, 0] == 0.0 and matrix[3, 1] == 0.0 and matrix[3, 2] == 0.0 and matrix[3, 3] == 0.0
+
+
+@func
 def is_out_of_sight(scene: Scene, view: View, part: Int32, matrix: Matrix4) -> bool:
     """Whether the bounding sphere of a part is outside the view, so that no pixel can show the part."""
     centre = scene.part_centre[part]
@@ -114,7 +120,11 @@ def project_chunk(scene: Scene, view: View, chunk: Int32, first_link: Int32, fir
     facet = Int32(first_facet)
     for part in range(scene.chunk_first_part[chunk], scene.chunk_first_part[chunk + 1]):
         matrix = view.link_to_pixel[first_link + scene.part_link[part]]
-        if scene.part_rgba[part][3] == 0.0 or is_out_of_sight(scene, view, part, matrix):
+        if (
+            scene.part_rgba[part][3] == 0.0
+            or is_absent_matrix(matrix)
+            or is_out_of_sight(scene, view, part, matrix)
+        ):
             continue
         for vertex in range(scene.part_first_vertex[part], scene.part_first_vertex[part + 1]):
             p = scene.vertex_position[vertex]

@@ -14,7 +14,7 @@ from carom.kernels.dynamics.mass_matrix import invert
 from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.dynamics.single_body import is_single_body, write_inverse_mass
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.solver.activity import is_asleep
+from carom.kernels.solver.activity import is_left_out
 from carom.kernels.solver.islands import may_be_pushed
 from carom.kernels.solver.joint_solver import apply_delta_velocities, clear_delta_velocities
 from carom.kernels.solver.pair_rows import push_row, row_velocity_change, tree_blocks, write_pair_jacobian
@@ -48,7 +48,7 @@ def can_be_pushed(model: Model, state: State, world: Int32, tree: Int32, link: I
     """Whether pushes can move a link: it has degrees of freedom and is awake. Tree -1 is the world."""
     if tree < 0:
         return False
-    return model.link[link].nearest_dof >= 0 and not is_asleep(state, world, tree)
+    return model.link[link].nearest_dof >= 0 and not is_left_out(state, world, tree)
 
 
 @func
@@ -144,7 +144,7 @@ def push_along(scratch: Scratch, pair_rows: PairRows, world: Int32, row: Int32, 
 def take_over_pushes(settings: Settings, model: Model, state: State, scratch: Scratch, world: Int32):
     """Add the changes of velocity by pushes to the velocities of trees."""
     for tree in range(settings.tree_count):
-        if model.tree[tree].dof_count > 0 and not is_asleep(state, world, tree):
+        if model.tree[tree].dof_count > 0 and not is_left_out(state, world, tree):
             if state.status_entry[world, STATUS] == WELL:
                 apply_delta_velocities(model, state, scratch, world, tree)
             clear_delta_velocities(model, scratch, world, tree)

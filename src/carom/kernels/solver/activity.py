@@ -1,8 +1,8 @@
-"""Which trees can move or are asleep; `sleeping` has the rules for falling asleep and waking up."""
+"""Which trees can move, are asleep or absent; `sleeping` has the rules for falling asleep and waking up."""
 
-from carom.kernels.structs import Model, Shapes, State
+from carom.kernels.structs import Model, Shapes, State, UserConstraints
 from carom.kernels.types import Index4, Int32, func, real
-from carom.layouts.codes import ASLEEP, WOKEN
+from carom.layouts.codes import ABSENT, ASLEEP, WOKEN
 
 
 @func
@@ -32,8 +32,33 @@ def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
 
 @func
 def is_asleep(state: State, world: Int32, tree: Int32) -> bool:
-    """Whether a tree is asleep: it is left out of dynamics and solver in this substep."""
+    """Whether a tree is asleep."""
     return state.tree_activity[world, tree] == ASLEEP
+
+
+@func
+def is_absent(state: State, world: Int32, tree: Int32) -> bool:
+    """Whether a tree is not in this world: its state does not change, and it has no bounds."""
+    return state.tree_activity[world, tree] == ABSENT
+
+
+@func
+def is_left_out(state: State, world: Int32, tree: Int32) -> bool:
+    """Whether a tree is asleep or absent: it is left out of dynamics and solver in this substep."""
+    activity = state.tree_activity[world, tree]
+    return activity == ASLEEP or activity == ABSENT
+
+
+@func
+def is_in_force(state: State, users: UserConstraints, world: Int32, user: Int32) -> bool:
+    """Whether a user constraint is switched on, and both of its bodies are present."""
+    if users.user_enabled[world, user] == 0:
+        return False
+    a = users.user_tree_a[user]
+    b = users.user_tree_b[user]
+    if a >= 0 and is_absent(state, world, a):
+        return False
+    return b < 0 or not is_absent(state, world, b)
 
 
 @func

@@ -10,7 +10,7 @@ All this depends on the overlaps and user constraints only; it is kept until the
 import warp as wp
 
 from carom.kernels.maths.union_find import find_root
-from carom.kernels.solver.activity import is_asleep, link_moves
+from carom.kernels.solver.activity import is_absent, is_in_force, is_left_out, link_moves
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func
 from carom.layouts.contacts import OVERLAPS
@@ -41,6 +41,7 @@ def join_overlapping(model: Model, shapes: Shapes, contacts: Contacts, pair_rows
 def join_links(
     settings: Settings,
     model: Model,
+    state: State,
     shapes: Shapes,
     contacts: Contacts,
     users: UserConstraints,
@@ -59,17 +60,19 @@ def join_links(
                 join(model, pair_rows, world, before, link)
                 before = link
     for user in range(settings.user_count):
-        if users.user_enabled[world, user] != 0:
+        if is_in_force(state, users, world, user):
             join(model, pair_rows, world, users.user_link_a[user], users.user_link_b[user])
 
 
 @func
-def number_islands(settings: Settings, model: Model, pair_rows: PairRows, world: Int32):
-    """Write the number of each tree's island to `tree_number`, -1 for trees that cannot move."""
+def number_islands(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
+    """Write the number of each tree's island to `tree_number`, -1 for those absent or unable to move."""
     for tree in range(settings.tree_count):
         number = Int32(NONE)
         first = model.tree[tree].first_link
         link = first + model.tree[tree].link_count - 1
+        if is_absent(state, world, tree):
+            link = first - 1
         while link >= first:
             if link_moves(model, link):
                 number = model.link[find_root(pair_rows.link_root, world, link)].number
@@ -87,7 +90,7 @@ def count_rows(
         pair_rows.number_size[world, number] = NONE
     for tree in range(settings.tree_count):
         number = pair_rows.tree_number[world, tree]
-        if number >= 0 and not is_asleep(state, world, tree):
+        if number >= 0 and not is_left_out(state, world, tree):
             pair_rows.number_size[world, number] = 0
     for place in range(manifolds):
         pair_rows.number_size[world, pair_rows.order_island[world, place]] += 1
@@ -121,7 +124,7 @@ def batch_islands(
     for tree in range(settings.tree_count):
         state.batch_tree[world, tree] = tree
         number = pair_rows.tree_number[world, tree]
-        if number >= 0 and not is_asleep(state, world, tree):
+        if number >= 0 and not is_left_out(state, world, tree):
             batch = pair_rows.number_batch[world, number]
             if pair_rows.number_first[world, batch] == NONE:
                 pair_rows.number_first[world, batch] = tree

@@ -7,7 +7,7 @@ contacts take part in it; there is one for each overlap (`contact.overlaps`).
 
 import warp as wp
 
-from carom.kernels.solver.activity import is_asleep, pushed_tree
+from carom.kernels.solver.activity import is_left_out, pushed_tree
 from carom.kernels.solver.island_sort import sort_by_island
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
 from carom.kernels.types import Index2, Index4, Int32, func
@@ -69,7 +69,7 @@ def gather_manifolds(
     for place in range(total):
         row = pair_rows.order_row[world, place]
         tree = pushed_tree(shapes, model, with_links(shapes, contacts.overlap_shapes[world, row]))
-        if tree >= 0 and not is_asleep(state, world, tree):
+        if tree >= 0 and not is_left_out(state, world, tree):
             pair_rows.order_row[world, count] = row
             pair_rows.order_island[world, count] = pair_rows.tree_number[world, tree]
             count += 1

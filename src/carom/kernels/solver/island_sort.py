@@ -6,6 +6,7 @@ Before each step Bullet sorts its lists of constraints (motors, limits, user con
 
 import warp as wp
 
+from carom.kernels.solver.activity import is_absent
 from carom.kernels.structs import Model, PairRows, Settings, State
 from carom.kernels.types import Int32, func
 
@@ -63,12 +64,22 @@ def sort_by_island(pair_rows: PairRows, world: Int32, count: Int32):
 
 @func
 def sort_constraints(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
-    """Write the constraints to `batch_constraint` in the order of relaxation."""
+    """Write the constraints to `batch_constraint` in the order of relaxation, those of absent trees last."""
     for constraint in range(settings.constraint_count):
         pair_rows.order_row[world, model.constraint[constraint].place] = constraint
+    # Absent trees take no part in the sort, which also moves what has equal keys.
+    count = Int32(0)
+    last = settings.constraint_count + 0
     for place in range(settings.constraint_count):
-        tree = model.constraint[pair_rows.order_row[world, place]].tree
-        pair_rows.order_island[world, place] = pair_rows.tree_number[world, tree]
-    sort_by_island(pair_rows, world, settings.constraint_count)
-    for place in range(settings.constraint_count):
+        constraint = pair_rows.order_row[world, place]
+        tree = model.constraint[constraint].tree
+        if is_absent(state, world, tree):
+            last -= 1
+            state.batch_constraint[world, last] = constraint
+        else:
+            pair_rows.order_row[world, count] = constraint
+            pair_rows.order_island[world, count] = pair_rows.tree_number[world, tree]
+            count += 1
+    sort_by_island(pair_rows, world, count)
+    for place in range(count):
         state.batch_constraint[world, place] = pair_rows.order_row[world, place]

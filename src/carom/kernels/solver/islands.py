@@ -7,7 +7,7 @@ constraints and contacts, in the order in which they are relaxed.
 import warp as wp
 
 from carom.kernels.maths.union_find import find_root
-from carom.kernels.solver.activity import can_move, is_asleep, link_moves
+from carom.kernels.solver.activity import can_move, is_asleep, is_in_force, is_left_out, link_moves
 from carom.kernels.solver.bullet_islands import batch_islands, join_links, number_islands
 from carom.kernels.solver.contact_order import list_contacts, sort_manifolds
 from carom.kernels.solver.island_sort import sort_constraints
@@ -32,7 +32,7 @@ def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
 def unite_tied(settings: Settings, model: Model, state: State, users: UserConstraints, world: Int32):
     """Put trees that user constraints join into one island."""
     for user in range(settings.user_count):
-        if users.user_enabled[world, user] != 0:
+        if is_in_force(state, users, world, user):
             unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
 
 
@@ -81,7 +81,8 @@ def sort_rows(
 ):
     """Bring the orders of manifolds and constraints, and Bullet's islands, up to date.
 
-    They depend on the overlaps and user constraints only, and are kept until these change, if nothing sleeps.
+    They depend on the overlaps, the user constraints and which trees are present, and are kept until these
+    change, if nothing sleeps.
     In other cases SORTED is negative.
     """
     lasts = Int32(1)
@@ -90,8 +91,8 @@ def sort_rows(
             lasts = Int32(0)
     if lasts == 1 and contacts.count_contacts[world, SORTED] > 0:
         return
-    join_links(settings, model, shapes, contacts, users, pair_rows, world)
-    number_islands(settings, model, pair_rows, world)
+    join_links(settings, model, state, shapes, contacts, users, pair_rows, world)
+    number_islands(settings, model, state, pair_rows, world)
     sort_constraints(settings, model, state, pair_rows, world)
     manifolds = sort_manifolds(model, state, shapes, contacts, pair_rows, world)
     batch_islands(settings, model, state, pair_rows, world, manifolds)
@@ -105,7 +106,7 @@ def merge_moving(settings: Settings, state: State, pair_rows: PairRows, world: I
         pair_rows.tree_first_moving[world, tree] = _NONE
     for tree in range(settings.tree_count):
         island = state.tree_island[world, tree]
-        if pair_rows.tree_rest[world, island] == MOVING and not is_asleep(state, world, tree):
+        if pair_rows.tree_rest[world, island] == MOVING and not is_left_out(state, world, tree):
             batch = state.batch_tree[world, island]
             if pair_rows.tree_first_moving[world, batch] == _NONE:
                 pair_rows.tree_first_moving[world, batch] = tree
@@ -123,7 +124,7 @@ def list_constraints(settings: Settings, model: Model, state: State, pair_rows: 
         place -= 1
         constraint = state.batch_constraint[world, place]
         tree = model.constraint[constraint].tree
-        if not is_asleep(state, world, tree):
+        if not is_left_out(state, world, tree):
             root = state.tree_island[world, tree]
             pair_rows.constraint_next[world, constraint] = pair_rows.tree_first_constraint[world, root]
             pair_rows.tree_first_constraint[world, root] = constraint
@@ -144,7 +145,7 @@ def build_islands(
 
     Trees that touch or are tied together are one island. Those at rest are solved by themselves; all others
     together with those that Bullet sweeps over together with them. Constraints and contacts of trees that are
-    asleep are left out.
+    asleep or absent are left out.
     """
     for tree in range(settings.tree_count):
         state.tree_island[world, tree] = tree

@@ -9,7 +9,7 @@ import warp as wp
 
 from carom.kernels.dynamics.feedback import add_link_force
 from carom.kernels.maths.rotation import rotation_matrix
-from carom.kernels.solver.activity import can_move, is_asleep, pushed_tree
+from carom.kernels.solver.activity import can_move, is_in_force, is_left_out, pushed_tree
 from carom.kernels.solver.contact_terms import impulse_on_a
 from carom.kernels.solver.user_constraints import (
     coupled_position,
@@ -39,12 +39,12 @@ def gather_link_forces(
     tree: Int32,
 ):
     """Add to the constraint forces of a tree with sensors those of its contacts and user constraints."""
-    if model.tree[tree].sensor_count == 0 or is_asleep(state, world, tree):
+    if model.tree[tree].sensor_count == 0 or is_left_out(state, world, tree):
         return
     for contact in range(contacts.count_contacts[world, THERE]):
         gather_contact_force(settings, model, state, scratch, shapes, contacts, world, tree, contact)
     for user in range(settings.user_count):
-        if users.user_enabled[world, user] != 0:
+        if is_in_force(state, users, world, user):
             gather_user_forces(settings, model, state, scratch, users, world, tree, user)
 
 
@@ -70,7 +70,7 @@ def gather_contact_force(
     if a != tree and b != tree:
         return
     pushed = pushed_tree(shapes, model, pair)
-    if pushed < 0 or is_asleep(state, world, pushed):
+    if pushed < 0 or is_left_out(state, world, pushed):
         return
     force = impulse_on_a(contacts, world, contact) / settings.time_step
     if a == tree:
@@ -97,7 +97,7 @@ def gather_user_forces(
     pushed = ends[0]
     if not can_move(model, pushed):
         pushed = ends[2]
-    if not can_move(model, pushed) or is_asleep(state, world, pushed):
+    if not can_move(model, pushed) or is_left_out(state, world, pushed):
         return
     if users.user_kind[user] == USER_COUPLING:
         size = state.user_impulse[world, user][0] / settings.time_step

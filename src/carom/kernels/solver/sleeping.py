@@ -9,11 +9,11 @@ import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
 from carom.kernels.maths.union_find import find_root
-from carom.kernels.solver.activity import link_moves, squared_motion
+from carom.kernels.solver.activity import is_absent, link_moves, squared_motion
 from carom.kernels.solver.islands import unite, unite_tied
 from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
-from carom.layouts.codes import ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
+from carom.layouts.codes import ABSENT, ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
 from carom.layouts.contacts import NEAR, PAIRS, THERE
 from carom.layouts.status import STATUS, WELL
 
@@ -83,7 +83,7 @@ def settle_kernel(
             pair_rows.tree_awake[world, find_root(state.tree_island, world, tree)] = 1
     for tree in range(settings.tree_count):
         activity = state.tree_activity[world, tree]
-        if activity != ACTIVE and has_moving_shapes(model, shapes, tree):
+        if activity != ACTIVE and activity != ABSENT and has_moving_shapes(model, shapes, tree):
             if pair_rows.tree_awake[world, find_root(state.tree_island, world, tree)] == 0:
                 state.tree_activity[world, tree] = ASLEEP
             elif activity == ASLEEP:
@@ -116,6 +116,8 @@ def watch_kernel(settings: Settings, model: Model, state: State, first_world: In
     if state.status_entry[world, STATUS] != WELL:
         return
     for tree in range(settings.tree_count):
+        if is_absent(state, world, tree):
+            continue
         watch(model, settings, state, world, tree)
         if state.tree_wants_sleep[world, tree] == 0:
             state.tree_activity[world, tree] = ACTIVE

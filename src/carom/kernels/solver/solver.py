@@ -7,6 +7,7 @@ and user constraints.
 import warp as wp
 
 from carom.kernels.maths.min_max import later_maximum
+from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.conjugate import go_on, remember_impulses
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.kernels.solver.pair_rows import has_room
@@ -52,7 +53,7 @@ def island_rows(
             row = joint_constraint_rows(model, settings, state, scratch, world, constraint, row)
         else:
             user = model.constraint[constraint].link
-            if users.user_enabled[world, user] == 0:
+            if not is_in_force(state, users, world, user):
                 constraint = pair_rows.constraint_next[world, constraint]
                 continue
             if has_room(model, pair_rows, pair_row, block, users.user_tree_a[user], users.user_tree_b[user]):

@@ -5,6 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, write_multiple
 from carom.kernels.maths.rotation import column, rotation_matrix
+from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.rows import add_path_rows
@@ -305,7 +306,7 @@ def keep_user_impulses(
     first = pair_rows.user_first_row[world, user]
     for i in range(user_row_count(users.user_kind[user])):
         impulse = real(0.0)
-        if users.user_enabled[world, user] != 0:
+        if is_in_force(state, users, world, user):
             impulse = pair_rows.row_terms[world, first + i].impulse
         state.user_impulse[world, user][i] = impulse
     if users.user_kind[user] == USER_TRANSMISSION:

@@ -15,7 +15,7 @@ zero.
 import warp as wp
 
 from carom.kernels.maths.min_max import minimum
-from carom.kernels.solver.activity import is_asleep, squared_motion, stop
+from carom.kernels.solver.activity import is_left_out, squared_motion, stop
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
 from carom.kernels.types import Int32, Vector3, func, real
@@ -136,10 +136,10 @@ def find_resting_islands(settings: Settings, model: Model, state: State, pair_ro
             pair_rows.tree_rest[world, tree] = Int32(MOVING)
     for constraint in range(settings.constraint_count):
         tree = model.constraint[constraint].tree
-        if not is_asleep(state, world, tree):
+        if not is_left_out(state, world, tree):
             pair_rows.tree_rest[world, state.tree_island[world, tree]] = Int32(MOVING)
     for tree in range(settings.tree_count):
-        if is_asleep(state, world, tree):
+        if is_left_out(state, world, tree):
             continue
         root = state.tree_island[world, tree]
         pair_rows.tree_rest[world, root] = wp.min(
