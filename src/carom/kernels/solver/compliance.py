@@ -72,11 +72,13 @@ def write_compliant_row(
     error: real,
     size: real,
     bound: real,
+    half: real,
 ):
     """Write a row of a compliant constraint, whose Jacobian is there already.
 
     `velocity` is that after the free motion, `error` the row's own, and `size` that of all rows together.
-    `tree_b` is -1 if the second tree has no part of its own in the Jacobian.
+    `tree_b` is -1 if the second tree has no part of its own in the Jacobian. `half` is 0.5 for an angle and
+    otherwise 1, since MuJoCo's error is half the angle, but what it yields is as for the whole one.
     """
     h = settings.time_step
     start = pair_rows.row_start[world, row]
@@ -94,4 +96,5 @@ def write_compliant_row(
         stiffness = 1.0 / maximum(_LEAST, wp.pow(last * time_constant * reference[1], real(2.0)))
     d = impedance(users, user, size)
     change = before - h * (damping * before + stiffness * d * error) - velocity
-    write_row(pair_rows, world, row, inverse_mass, change, inverse_mass * (1.0 - d) / d, -bound, bound, 0.0)
+    softness = inverse_mass * (1.0 - d) / (d * half * half)
+    write_row(pair_rows, world, row, inverse_mass, change, softness, -bound, bound, 0.0)

@@ -157,7 +157,7 @@ def add_user_rows(
         if compliant:
             write_compliant_row(
                 settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
-                error, size, bound,
+                error, size, bound, real(0.5) if axis >= 0 else real(1.0),
             )  # fmt: skip
         else:
             change = -velocity - error * settings.joint_erp / settings.time_step
@@ -313,7 +313,7 @@ def add_coupling_row(
     if is_compliant(users, user):
         write_compliant_row(
             settings, model, scratch, users, pair_rows, world, user, row, Int32(-1) if one_tree else tree_b,
-            inverse_mass, rate, error, error, bound,
+            inverse_mass, rate, error, error, bound, real(1.0),
         )  # fmt: skip
     else:
         change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step

@@ -135,7 +135,7 @@ def add_tendon_coupling_row(
     if is_compliant(users, user):
         write_compliant_row(
             settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
-            error, bound,
+            error, bound, real(1.0),
         )  # fmt: skip
     else:
         change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
