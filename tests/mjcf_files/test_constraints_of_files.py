@@ -39,8 +39,8 @@ def test_bodies_move_as_in_mujoco(load, name):
     scene.world.step(200)
     links = {link.name: link for body in scene.bodies for link in body.links if link.name in ANSWERS[name]}
     assert links
-    # How much a constraint yields depends on an inverse mass. MuJoCo estimates it for the reference pose and all
-    # directions together; that is the true one for a single body and for a joint that is held.
+    # How much a constraint yields depends on an inverse mass. MuJoCo estimates it, for the reference pose and
+    # all directions together; that is the true one for a single body and for a joint that is held.
     known = name in ("welded to a moved body", "softly connected", "softly coupled", "softly welded")
     for one, link in links.items():
         assert_allclose(link.pose.position, ANSWERS[name][one], atol=1e-4 if known else 2.5e-3)
@@ -73,9 +73,9 @@ def test_a_weld_to_the_world_is_where_the_file_is_put(tmp_path):
         assert weld.second is None
         assert_allclose(weld.error, 0.0, atol=1e-15)
         assert weld.angle_error < 1e-15
-        scene["f"].set_base_velocity([1.0, 0.0, 0.0], [0.0, 0.0, 0.0])
-        world.step(200)
-        assert_allclose(scene["f"].links[-1].pose.position, (1.0, 0.0, 4.0), atol=5e-3)
+        world.gravity = (0.0, 0.0, 0.0)
+        world.step(50)
+        assert_allclose(scene["f"].links[-1].pose.position, (1.0, 0.0, 4.0), atol=1e-12)
 
 
 def test_constraints_of_saved_worlds_have_their_names(load, tmp_path):

@@ -6,7 +6,8 @@ from numpy.testing import assert_allclose
 from carom import World
 
 FILE = """<mujoco><option timestep=".001"/><worldbody><geom type="plane" size="9 9 .1" {plane}/>
-<body name="box" pos="0 0 .1"><freejoint/><geom type="box" size=".3 .3 .1" {box}/></body></worldbody></mujoco>"""
+<body name="box" pos="0 0 .1"><freejoint/><geom type="box" size=".3 .3 .1" {box}/></body></worldbody>
+</mujoco>"""
 
 
 def deceleration(folder, plane, box):
