@@ -65,4 +65,11 @@ TIED: dict[str, str] = {
  size=".1" pos=".3 0 0"/><body name="n" pos=".3 0 0"><joint name="two" axis="0 1 0"/><geom size=".1" pos=".2
  0 0"/></body></body></worldbody><equality><joint joint1="two" joint2="one" polycoef="0 -.5 .2 .1"/>
 </equality></mujoco>""",
+    "softly connected": f"""{_HEAD}<body name="f" pos="0 2 1"><freejoint/><geom size=".1"/></body></worldbody>
+<equality><connect body1="f" anchor="0 0 0" solref=".15 .4" solimp=".5 .8 .02"/></equality></mujoco>""",
+    "softly welded": f"""{_HEAD}<body name="m" mocap="true" pos="0 5 1"/><body name="h" pos="0 5.5 1">
+<freejoint/><geom size=".1"/></body></worldbody><equality><weld body1="m" body2="h"
+ relpose=".05 .5 .1 1 .1 .05 0" solref="-300 -20" solimp=".7 .95 .05 .4 3"/></equality></mujoco>""",
+    "softly coupled": f"""{_HEAD}<body name="l"><joint name="one" axis="0 1 0"/><geom size=".1" pos=".3 0
+ 0"/></body></worldbody><equality><joint joint1="one" polycoef="-.2" solref=".2 1"/></equality></mujoco>""",
 }

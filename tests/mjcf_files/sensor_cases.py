@@ -14,7 +14,7 @@ _BODIES = """<mujoco><option timestep="1e-7" magnetic=".1 .2 -.4"><flag contact=
 <position name="p" joint="k" kp="50"/></actuator><sensor>"""
 _PARTS = [
     *(f'<{tag} site="tip"/>' for tag in ("accelerometer", "velocimeter", "gyro", "magnetometer")),
-    *(f'<{tag} site="tip"/>' for tag in ("force", "torque")),
+    *(f'<{tag} site="{site}"/>' for site in ("tip", "one") for tag in ("force", "torque")),
     *(f'<{tag} site="one"/>' for tag in ("gyro", "velocimeter")),
     *(f'<{tag} site="free"/>' for tag in ("accelerometer", "velocimeter", "gyro")),
     '<rangefinder site="tip"/>',

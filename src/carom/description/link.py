@@ -82,6 +82,8 @@ class ContactParameters:
         damping: Contact damper [N s/m].
         inertia_scaling: Factor on the link's inertia.
         friction_anchor: Keep a position anchor for friction.
+        friction_rank: How friction is combined with that of another link, if both have a rank: the higher one
+            decides, and of equal ones the greater coefficients. 0 is none; then coefficients are multiplied.
     """
 
     lateral_friction: float | None = None
@@ -92,6 +94,7 @@ class ContactParameters:
     damping: float | None = None
     inertia_scaling: float | None = None
     friction_anchor: bool = False
+    friction_rank: int = 0
 
 
 @record

@@ -130,6 +130,7 @@ class Shapes:
     link_stiffness: RealRows  # negative: rigid
     link_contact_damping: RealRows
     link_friction_anchor: IntRows
+    link_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
     link_anisotropy: Vector3Rows  # factors on friction along the axes of the inertial frame
     link_processing_threshold: RealRows  # contacts with a larger distance are not solved [m]
 
@@ -297,6 +298,8 @@ class UserConstraints:
     user_relative_target: Reals
     user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`
     user_erp: Reals
+    user_reference: Vectors4  # of a compliant one: time constant, damping ratio, midpoint, power
+    user_impedance: Vectors4  # of a compliant one: bounds, width; see `kernels.solver.compliance`
     user_first_path: (
         Ints  # parts of the path of a tendon, of a second one, or of the frames of a transmission
     )

@@ -245,6 +245,7 @@ class LinkScratch:
     composite_inertia: Matrix3
     constraint_force: Vector3
     constraint_torque: Vector3
+    slide_torque: Vector3  # what Bullet leaves out of it, see `kernels.dynamics.feedback`
 
 
 @struct

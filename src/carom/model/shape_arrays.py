@@ -58,6 +58,7 @@ SURFACE_FIELDS = {
     "contact_stiffness": "link_stiffness",
     "contact_damping": "link_contact_damping",
     "friction_anchor": "link_friction_anchor",
+    "friction_rank": "link_friction_rank",
     "anisotropic_friction": "link_anisotropy",
     "contact_processing_threshold": "link_processing_threshold",
     "ccd_swept_sphere_radius": "shape_ccd_radius",
@@ -75,6 +76,7 @@ class Surface(Protocol):
     contact_stiffness: float
     contact_damping: float
     friction_anchor: bool
+    friction_rank: int
     collision_margin: float
     ccd_swept_sphere_radius: float
     contact_processing_threshold: float

@@ -31,6 +31,7 @@ class LinkDynamics:
         contact_stiffness: [N/m]; -1 if unset.
         contact_damping: [N s/m]; -1 if unset.
         friction_anchor: Whether friction has a position anchor.
+        friction_rank: How friction is combined, see `carom.description.ContactParameters`.
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
         contact_processing_threshold: Maximum distance at which a contact is solved [m].
@@ -64,6 +65,7 @@ class LinkDynamics:
     joint_armature: float = 0.0
     joint_stiffness: float = 0.0
     joint_spring_reference: tuple[float, ...] = ()
+    friction_rank: int = 0
 
     @classmethod
     def of(cls, link: LinkSpec) -> LinkDynamics:
@@ -79,6 +81,7 @@ class LinkDynamics:
             joint_lower_limit=link.lower,
             joint_upper_limit=link.upper,
             friction_anchor=contact.friction_anchor,
+            friction_rank=contact.friction_rank,
             collision_margin=collision_margin(link),
         )
         stated = {

@@ -44,6 +44,8 @@ _FIELDS = (
     "user_relative_target",
     "user_polynomial",
     "user_erp",
+    "user_reference",
+    "user_impedance",
     "user_pivot_a",
     "user_pivot_b",
     "user_frame_a",
@@ -106,6 +108,9 @@ class UserConstraint:
             to a site: force along its axes, per force of the actuator.
         range: Of a tendon: least and greatest length, friction. Of coupled ones: the lengths from which both
             are counted. Of a transmission to a site: torque about its axes.
+        reference: Of a compliant constraint: time constant and damping ratio, or minus stiffness and damping;
+            midpoint and power of the impedance's curve.
+        impedance: Of a compliant constraint: least and greatest impedance, and width; 0 for a rigid one.
     """
 
     id: int
@@ -132,6 +137,8 @@ class UserConstraint:
     is_wrench: bool = False
     spring: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     range: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
     @property
     def both_paths(self) -> Path:
@@ -173,6 +180,8 @@ class UserConstraint:
             self.relative_position_target,
             self.polynomial,
             self.erp,
+            self.reference,
+            self.impedance,
             self.parent_frame.position,
             self.child_frame.position,
             self.parent_frame.orientation,

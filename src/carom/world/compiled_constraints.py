@@ -9,6 +9,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BASE
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
+from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.named_constraints.tie import Connect, Weld, new_tie
 from carom.scene.tendons.tendon import TendonCoupling
 from carom.world.file_tendons import add_tendons
@@ -30,6 +31,7 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
         body, follower = joints[it.follower]
         other, leader = (None, None) if it.leader is None else joints[it.leader]
         tie = new_coupling(body, follower, leader, it.coefficients, it.name, other)
+        yield_as(tie, it.compliance)
         _put(body, tie, enabled=it.enabled)
         made.append(JointCoupling(tie))
     links = {body.spec.link(i).name: (body, i) for body in bodies for i in range(BASE, len(body.spec.links))}
@@ -40,6 +42,7 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
         else:
             second = (*links[it.second], it.second_frame)
         tie = new_tie(it.name, first, second, fixed, is_weld=it.is_weld)
+        yield_as(tie, it.compliance)
         _put(first[0], tie, enabled=it.enabled)
         made.append(Weld(tie) if it.is_weld else Connect(tie))
     if model.tendons or any(it.spec is not None and it.spec.site for it in model.actuators):

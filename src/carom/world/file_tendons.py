@@ -11,6 +11,7 @@ from carom.description.transform import compose
 from carom.layouts.codes import PathKind
 from carom.model.body_spec import BASE
 from carom.scene.actuators.actuated_joint import drives_joint
+from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.tendons.making import new_tendon, new_tendon_coupling, new_transmission
 from carom.scene.tendons.tendon import TendonCoupling
 
@@ -40,6 +41,7 @@ def add_tendons(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> li
         leader = None if it.leader is None else tendons[it.leader]
         tie = new_tendon_coupling(tendons[it.follower], leader, it.coefficients, it.name)
         tie.enabled = it.enabled
+        yield_as(tie, it.compliance)
         _put(tie.parent, tie)
         made.append(TendonCoupling(tie))
     for body in bodies:

@@ -140,6 +140,8 @@ class SavedTie:
     is_wrench: bool = False
     spring: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     range: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(slots=True)

@@ -32,7 +32,7 @@ _ACTUATORS = {
     "muscle": "force fpmax fvmax lengthrange lmax lmin range scale tausmooth timeconst vmax",
 }
 
-_EQUALITY = "active body1 body2 class name site1 site2"
+_EQUALITY = "active body1 body2 class name site1 site2 solimp solref"
 _NOT_OF_JOINTS = "cranklength cranksite slidersite body"
 
 _SENSOR = "cutoff delay interp interval name nsample"
@@ -79,7 +79,7 @@ _READ = {
     "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
     "geom": "class conaffinity condim contype density fitscale friction fromto group hfield mass material "
-    f"mesh name pos rgba shellinertia size type {_TURN}",
+    f"mesh name pos priority rgba shellinertia size type {_TURN}",
     "site": f"class fromto name pos size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize {_TURN}",
     "attach": "body frame model prefix",
@@ -90,7 +90,7 @@ _READ = {
     **{tag: f"{_ACTUATOR} {own}".strip() for tag, own in _ACTUATORS.items()},
     "connect": f"anchor {_EQUALITY}",
     "weld": f"anchor relpose {_EQUALITY}",
-    "equality": "active class",
+    "equality": "active class solimp solref",
     **dict.fromkeys(_TENDONS, _TENDON),
     "pair": "class geom1 geom2 name",
     "key": "act ctrl name qpos qvel time",
@@ -106,7 +106,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("joint", "springdamper springyield", "the joint has another spring", _YET),
     ("joint", "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET),
     ("geom", "gap margin solimp solref solmix", _SOFT, _YET),
-    ("geom", "priority", "friction is the product of both", _YET),
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
     ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
@@ -123,10 +122,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ],
     *[(tag, "armature", "it has no inertia", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
-    *[
-        (tag, "solimp solref", _RIGID, _YET)
-        for tag in ("connect", "weld", "equality", "equality/joint", "equality/tendon")
-    ],
     ("pair", "adhesion condim friction gap margin solimp solref solreffriction", _SOFT, _YET),
     ("weld", "torquescale", _RIGID, _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
@@ -160,11 +155,11 @@ _ELEMENTS = (
     *[Rule(f"default/{tag}@*", "none: the whole actuator is lost", _YET) for tag in _UNBUILT],
     *[
         Rule(f"equality/joint@{name}", "none: it has no meaning here", "another attribute counts")
-        for name in ("active", "class", "joint1", "joint2", "name", "polycoef")
+        for name in ("active", "class", "joint1", "joint2", "name", "polycoef", "solimp", "solref")
     ],
     *[
         Rule(f"equality/tendon@{name}", "none: it has no meaning here", "another attribute counts")
-        for name in ("active", "class", "tendon1", "tendon2", "name", "polycoef")
+        for name in ("active", "class", "tendon1", "tendon2", "name", "polycoef", "solimp", "solref")
     ],
     *[
         Rule(place, "none: it has no meaning here", "another attribute counts")

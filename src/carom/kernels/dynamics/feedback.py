@@ -4,8 +4,9 @@ As in Bullet it is computed in two passes: the wrench of the unconstrained motio
 second motion caused by the constraint forces alone.
 
 Bullet's second pass has terms of the velocities of the links, which are in the first pass already: its
-`State.link_reaction` is in error by the order of centripetal forces. `State.link_load` is the sum of the
-first pass and of a second one without them.
+`State.link_reaction` is in error by the order of centripetal forces. And there the forces of a prismatic
+joint's rows act on both centres of mass, which together is a torque on all links before it. `State.link_load`
+is the sum of the first pass and of a second one in which both forces act at one point.
 """
 
 import warp as wp
@@ -33,6 +34,7 @@ def clear_constraint_forces(model: Model, state: State, scratch: Scratch, world:
     for link in range(base, base + model.tree[tree].link_count):
         scratch.link[world, link].constraint_force = Vector3(0.0, 0.0, 0.0)
         scratch.link[world, link].constraint_torque = Vector3(0.0, 0.0, 0.0)
+        scratch.link[world, link].slide_torque = Vector3(0.0, 0.0, 0.0)
 
 
 @func
@@ -41,6 +43,13 @@ def add_link_force(state: State, scratch: Scratch, world: Int32, link: Int32, po
     center = wp.transform_get_translation(state.link_pose[world, link])
     scratch.link[world, link].constraint_force += force
     scratch.link[world, link].constraint_torque += wp.cross(point - center, force)
+
+
+@func
+def add_slide_torque(scratch: Scratch, world: Int32, link: Int32, parent: Int32, force: Vector3):
+    """Let a force on a slide act on its parent at the centre of mass of the link, not of the parent."""
+    arm = scratch.link[world, link].offset - scratch.link[world, parent].offset
+    scratch.link[world, parent].slide_torque -= wp.cross(arm, force)
 
 
 @func
@@ -68,6 +77,7 @@ def gather_constraint_forces(
                 linear = scratch.dof[world, dof].linear
                 scratch.link[world, link].constraint_force += linear * size
                 scratch.link[world, parent].constraint_force -= linear * size
+                add_slide_torque(scratch, world, link, parent, linear * size)
 
 
 @func
@@ -153,7 +163,7 @@ def resting_link_forces(model: Model, scratch: Scratch, world: Int32, tree: Int3
     for link in range(base, base + model.tree[tree].link_count):
         force = -scratch.link[world, link].constraint_force
         scratch.link[world, link].force = force
-        torque = -scratch.link[world, link].constraint_torque
+        torque = -(scratch.link[world, link].constraint_torque + scratch.link[world, link].slide_torque)
         scratch.link[world, link].moment = torque + wp.cross(scratch.link[world, link].offset, force)
 
 

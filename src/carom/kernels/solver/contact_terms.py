@@ -48,8 +48,19 @@ def combined_restitution(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> re
 
 
 @func
+def of_rank(rank_a: Int32, rank_b: Int32, a: real, b: real) -> real:
+    """The coefficient of the link with the higher rank, of equal ones the greater coefficient."""
+    if rank_a == rank_b:
+        return maximum(a, b)
+    return wp.where(rank_a > rank_b, a, b)
+
+
+@func
 def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector3:
-    """Combined coefficients of friction of two links: lateral, rolling, spinning."""
+    """Combined coefficients of friction of two links: lateral, rolling, spinning.
+
+    Those of links with ranks, as MuJoCo combines them: of the higher rank, or the greater ones.
+    """
     lateral_a = shapes.link_lateral_friction[world, a]
     lateral_b = shapes.link_lateral_friction[world, b]
     lateral = lateral_a * lateral_b
@@ -59,6 +70,11 @@ def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector
     spinning_a = shapes.link_spinning_friction[world, a]
     spinning_b = shapes.link_spinning_friction[world, b]
     spinning = spinning_a * lateral_b + spinning_b * lateral_a
+    rank_a, rank_b = shapes.link_friction_rank[world, a], shapes.link_friction_rank[world, b]
+    if rank_a > 0 and rank_b > 0:
+        lateral = of_rank(rank_a, rank_b, lateral_a, lateral_b)
+        rolling = of_rank(rank_a, rank_b, rolling_a, rolling_b)
+        spinning = of_rank(rank_a, rank_b, spinning_a, spinning_b)
     return Vector3(
         within_bounds(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
         within_bounds(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),

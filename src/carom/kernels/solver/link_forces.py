@@ -7,7 +7,7 @@ in no island, but its sensors measure these forces as well.
 
 import warp as wp
 
-from carom.kernels.dynamics.feedback import add_link_force
+from carom.kernels.dynamics.feedback import add_link_force, add_slide_torque
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import can_move, is_in_force, is_left_out, pushed_tree
 from carom.kernels.solver.contact_terms import impulse_on_a
@@ -136,6 +136,7 @@ def add_joint_force(model: Model, scratch: Scratch, world: Int32, link: Int32, s
     scratch.link[world, link].constraint_force += linear
     scratch.link[world, parent].constraint_torque -= angular
     scratch.link[world, parent].constraint_force -= linear
+    add_slide_torque(scratch, world, link, parent, linear)
 
 
 @func

@@ -6,6 +6,7 @@ from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, write_multiple
 from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.activity import is_in_force
+from carom.kernels.solver.compliance import is_compliant, write_compliant_row
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.rows import add_path_rows
@@ -146,16 +147,33 @@ def add_user_rows(
     directions = held_directions(state, users, world, user, axes)
 
     bound = users.user_max_impulse[user]
+    compliant = is_compliant(users, user)
+    size = error_size(users.user_kind[user], apart, turned)
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
         error = turned[axis] if axis >= 0 else wp.dot(apart, linear)
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
-        change = -velocity - error * settings.joint_erp / settings.time_step
-        write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
+        if compliant:
+            write_compliant_row(
+                settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
+                error, size, bound, real(0.5) if axis >= 0 else real(1.0),
+            )  # fmt: skip
+        else:
+            change = -velocity - error * settings.joint_erp / settings.time_step
+            write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
         row += 1
     return row, block
+
+
+@func
+def error_size(kind: Int32, apart: Vector3, turned: Vector3) -> real:
+    """Length of the errors of all rows of a constraint; angles are halved, as parts of a quaternion are."""
+    square = wp.dot(apart, apart)
+    if kind != USER_POINT_TO_POINT:
+        square += 0.25 * wp.dot(turned, turned)
+    return wp.sqrt(square)
 
 
 @func
@@ -292,9 +310,15 @@ def add_coupling_row(
             )  # fmt: skip
             inverse_mass += inverse_mass_b
             rate += rate_b
-    change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]
-    write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
+    if is_compliant(users, user):
+        write_compliant_row(
+            settings, model, scratch, users, pair_rows, world, user, row, Int32(-1) if one_tree else tree_b,
+            inverse_mass, rate, error, error, bound, real(1.0),
+        )  # fmt: skip
+    else:
+        change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
+        write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
     return row + 1, after
 
 

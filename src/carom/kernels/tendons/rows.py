@@ -11,6 +11,7 @@ from carom.kernels.dynamics.motors import unless_nan
 from carom.kernels.dynamics.rows import LEAST_INVERSE_MASS
 from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.min_max import within_bounds
+from carom.kernels.solver.compliance import is_compliant, write_compliant_row
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
@@ -130,9 +131,15 @@ def add_tendon_coupling_row(
     length = add_path(model, state, scratch, users, pair_rows, world, tree, first, second, real(1.0), block)
     inverse_mass, rate = finish_row(model, state, scratch, pair_rows, world, tree, block)
     error = length - users.user_range[user][0] - wanted
-    change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
     bound = users.user_max_impulse[user]
-    write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
+    if is_compliant(users, user):
+        write_compliant_row(
+            settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
+            error, bound, real(1.0),
+        )  # fmt: skip
+    else:
+        change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
+        write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
     return row + 1, after
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.description.compliance import Compliance
 from carom.layouts.codes import UserConstraintKind
 from carom.scene.user_constraints import UserConstraint
 
@@ -49,6 +50,11 @@ class NamedConstraint:
             impulses = world.user_constraints.impulses(self._constraint, world.arrays.state)
             result[: len(impulses)] = impulses
         return result / (world.parameters.time_step / max(1, world.parameters.substeps))
+
+
+def yield_as(constraint: UserConstraint, compliance: Compliance) -> None:
+    """Let a constraint yield instead of being rigid; before it is put into its world."""
+    constraint.reference, constraint.impedance = compliance.reference, compliance.impedance
 
 
 def constraints_of(

@@ -221,6 +221,10 @@ def _read_inertial(scope: Scope, element: Element) -> BodyInertia:
     return BodyInertia(mass, np.array(pose.position), turned_tensor(turn, tensor))
 
 
+_EQUAL_RANK = 1000
+"""Rank of friction at priority 0."""
+
+
 def _contact(scope: Scope, element: Element, earlier: ContactParameters) -> ContactParameters:
     """Friction of a body: that of its first geom that collides; another of a later one is reported."""
     context, attributes = scope.context, scope.attributes(element)
@@ -232,7 +236,9 @@ def _contact(scope: Scope, element: Element, earlier: ContactParameters) -> Cont
     )
     if not collides:
         return earlier
+    priority = int(context.number(element, attributes, "priority", 0.0))
     found = ContactParameters(
+        friction_rank=max(1, _EQUAL_RANK + priority),
         lateral_friction=sliding if dimensions > 1 else 0.0,
         spinning_friction=spinning if dimensions > 3 else None,
         rolling_friction=rolling if dimensions > 4 else None,
@@ -241,7 +247,12 @@ def _contact(scope: Scope, element: Element, earlier: ContactParameters) -> Cont
         return found
     if found != earlier:
         context.leave_out(
-            element, "it has the friction of the first geom", "a body has one", "friction", "condim"
+            element,
+            "it has the friction of the first geom",
+            "a body has one",
+            "friction",
+            "condim",
+            "priority",
         )
     return earlier
 

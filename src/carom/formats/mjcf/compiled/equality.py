@@ -7,6 +7,7 @@ from math import comb
 import numpy as np
 
 from carom.description import Pose
+from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.formats.mjcf.compiled.elements import Scope
@@ -97,7 +98,12 @@ class EqualityReader:
         name, enabled = self._name(scope, element), context.flag(element, attributes, "active", True)
         self.model.couplings.append(
             FileCoupling(
-                name, follower, leader or None, (start + constant, first, second, third, fourth), enabled
+                name,
+                follower,
+                leader or None,
+                (start + constant, first, second, third, fourth),
+                enabled,
+                _compliance(scope, element, attributes),
             )
         )
 
@@ -118,6 +124,7 @@ class EqualityReader:
                 leader or None,
                 (constant, first, second, third, fourth),
                 scope.context.flag(element, attributes, "active", True),
+                _compliance(scope, element, attributes),
             )
         )
 
@@ -157,7 +164,8 @@ class EqualityReader:
         if first[0] == _WORLD:
             first, second = second, first
         enabled = scope.context.flag(element, attributes, "active", True)
-        self.model.ties.append(FileTie(name, element.tag == "weld", *first, *second, enabled))
+        compliance = _compliance(scope, element, attributes)
+        self.model.ties.append(FileTie(name, element.tag == "weld", *first, *second, enabled, compliance))
 
     def _name(self, scope: Scope, element: Element) -> str:
         number, name = self.model.equality_count, scope.name(element)
@@ -170,6 +178,16 @@ class EqualityReader:
             )
         self._lines[name] = element.line
         return name
+
+
+def _compliance(scope: Scope, element: Element, attributes: Attributes) -> Compliance:
+    """What `solref` and `solimp` say, with MuJoCo's defaults."""
+    stated = Compliance()
+    numbers = [*stated.reference[:2], *stated.impedance[:3], *stated.reference[2:]]
+    for name, first, most in (("solref", 0, 2), ("solimp", 2, 5)):
+        given = scope.context.numbers(element, name, attributes.get(name, ""), 0, most)
+        numbers[first : first + len(given)] = given
+    return Compliance(*numbers)
 
 
 def _coefficients(scope: Scope, element: Element, attributes: Attributes) -> list[float]:

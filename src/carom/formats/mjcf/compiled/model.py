@@ -7,6 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Joint, Pose, Visual
+from carom.description.compliance import Compliance
 from carom.description.link import ContactParameters
 from carom.description.pose import IDENTITY, Vector3
 from carom.formats.mjcf.compiled.inertia import BodyInertia
@@ -161,6 +162,7 @@ class FileCoupling:
         leader: Name of the joint that it follows; None if it is held.
         coefficients: Of the polynomial in the position of the leader.
         enabled: It holds.
+        compliance: How it yields.
     """
 
     name: str
@@ -168,6 +170,7 @@ class FileCoupling:
     leader: str | None
     coefficients: tuple[float, float, float, float, float]
     enabled: bool
+    compliance: Compliance
 
 
 @record
@@ -182,6 +185,7 @@ class FileTie:
         second: Name of the other body, or `world`.
         second_frame: The frame in that of the other body.
         enabled: It holds.
+        compliance: How it yields.
     """
 
     name: str
@@ -191,6 +195,7 @@ class FileTie:
     second: str
     second_frame: Pose
     enabled: bool
+    compliance: Compliance
 
 
 @record
@@ -249,6 +254,7 @@ class FileTendonCoupling:
         leader: Name of the tendon that it follows; None if it is held.
         coefficients: Of the polynomial in what the leader is longer than at the reference.
         enabled: It holds.
+        compliance: How it yields.
     """
 
     name: str
@@ -256,6 +262,7 @@ class FileTendonCoupling:
     leader: str | None
     coefficients: tuple[float, float, float, float, float]
     enabled: bool
+    compliance: Compliance
 
 
 @record(frozen=False, eq=False)
