@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Sequence
 from functools import lru_cache
-from hashlib import blake2b
 from math import pi
 from threading import RLock
 
@@ -34,6 +33,7 @@ from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedro
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
+from carom.native.digest import blake2b
 from carom.native.trigonometry import cos, sin
 from carom.record import record
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+__all__ = ["blake2b", "source_digest"]
+
 try:
     # `hashlib` would import OpenSSL, which takes as long to load as all the rest.
     from _blake2 import blake2b

@@ -1,9 +1,9 @@
-"""Single contacts of rigid bodies, without rolling and spinning friction: their three rows.
+"""Single contacts of rigid bodies: their normal row and both rows of lateral friction.
 
 These are the same Gauss-Seidel steps as with rows over two trees (`pair_rows`), with sums in the same order.
 But all bodies have six dofs, so that sizes are known to the compiler, the rows of a contact are two pieces of
 memory, and two numbers are computed at a time: the parts of a normal row by both bodies, or both friction
-rows. Piles of balls consist of such contacts.
+rows. Piles of balls consist of such contacts. `single_torsion` has their rolling and spinning friction.
 
 If one of two bodies cannot move, its place among the delta velocities is that of the other. As its Jacobian
 and responses are zero, that changes nothing, and takes less time than to distinguish the cases.
@@ -33,8 +33,10 @@ from carom.kernels.types import (
 )
 from carom.layouts.codes import ISOTROPIC
 
-# Added to the index of a single contact, this is the code of its unit; see `units`.
+# Added to the index of a single contact, this is the code of its unit; see `units`. Another bit says that it
+# has rolling or spinning friction.
 SINGLES = 1 << 30
+TWISTING = 1 << 29
 UNBOUNDED = real(1e10)
 
 
@@ -101,8 +103,16 @@ def push_twice(
 
 
 @func
-def relax_single_normal(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
-    """Relax the normal row of a single contact; returns the change of its velocity."""
+def single_of(code: Int32) -> Int32:
+    """Index of a single contact by the code of its unit."""
+    return code & (TWISTING - 1)
+
+
+@func
+def relax_single_row(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, lower: real, upper: real
+) -> real:
+    """Relax row `single` of `PairRows.single_normal` within bounds; returns the change of its velocity."""
     place = pair_rows.single_place[world, single]
     before = pair_rows.single_impulse[world, single][0]
     velocity = normal_velocity(
@@ -113,12 +123,18 @@ def relax_single_normal(scratch: Scratch, pair_rows: PairRows, world: Int32, sin
         + pair_rows.single_normal[world, single].share
         - velocity * pair_rows.single_normal[world, single].effective_mass
     )
-    impulse = within_bounds(wanted, 0.0, UNBOUNDED)
+    impulse = within_bounds(wanted, lower, upper)
     change = impulse - before
     pair_rows.single_impulse[world, single][0] = impulse
     push(scratch.delta_velocity, world, place[0], change, pair_rows.single_normal[world, single].response_a)
     push(scratch.delta_velocity, world, place[1], change, pair_rows.single_normal[world, single].response_b)
     return change * pair_rows.single_normal[world, single].inverse_mass
+
+
+@func
+def relax_single_normal(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
+    """Relax the normal row of a single contact; returns the change of its velocity."""
+    return relax_single_row(scratch, pair_rows, world, single, 0.0, UNBOUNDED)
 
 
 @func
@@ -156,10 +172,12 @@ def push_sideways(scratch: Scratch, pair_rows: PairRows, world: Int32, single: I
 
 
 @func
-def relax_in_pyramid(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
-    """Relax one friction row of a contact, then the other; returns the larger change of their velocities."""
+def relax_in_pyramid(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, bound: real) -> real:
+    """Relax one friction row of a contact, then the other; returns the larger change of their velocities.
+
+    Each impulse is at most `bound`.
+    """
     impulses = pair_rows.single_impulse[world, single]
-    bound = impulses[3] * impulses[0]
     largest = real(0.0)
     if bound > 0.0:
         row = Int32(0)
@@ -196,15 +214,15 @@ def lateral_coupling(pair_rows: PairRows, world: Int32, single: Int32) -> real:
 
 @func
 def relax_in_cone(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, bound: real
 ) -> real:
     """Relax both friction rows of a contact at once; returns the sum of the changes of their velocities.
 
-    If friction is isotropic, the length of both changes is returned instead.
+    The length of both impulses is at most `bound`. If friction is isotropic, the length of both changes is
+    returned instead.
     """
     impulses = pair_rows.single_impulse[world, single]
     before = Vector2(impulses[1], impulses[2])
-    bound = impulses[3] * impulses[0]
     after = wanted_friction(scratch, pair_rows, world, single, before)
     if settings.cone_friction == ISOTROPIC:
         inverse_mass = pair_rows.single_lateral[world, single].inverse_mass
@@ -229,9 +247,11 @@ def relax_single_friction(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32
 ) -> real:
     """Relax the friction rows of a single contact; returns the change of their velocities."""
+    impulses = pair_rows.single_impulse[world, single]
+    bound = impulses[3] * impulses[0]
     if settings.cone_friction != 0:
-        return relax_in_cone(settings, scratch, pair_rows, world, single)
-    return relax_in_pyramid(scratch, pair_rows, world, single)
+        return relax_in_cone(settings, scratch, pair_rows, world, single, bound)
+    return relax_in_pyramid(scratch, pair_rows, world, single, bound)
 
 
 @func
@@ -260,6 +280,18 @@ def own_product(jacobian: Vector6, response: Vector6) -> real:
 
 
 @func
+def response_of_body(
+    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, jacobian: Vector6
+):
+    """Response and present velocity of a row with this Jacobian for a body that can move."""
+    velocity = real(0.0)
+    first = model.tree[tree].first_dof
+    for i in range(6):
+        velocity += jacobian[5 - i] * state.dof_velocity[world, first + 5 - i]
+    return response6(scratch, world, model.tree[tree].first_block, jacobian), velocity
+
+
+@func
 def row_of_body(
     model: Model,
     state: State,
@@ -281,10 +313,7 @@ def row_of_body(
         reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         moment = wp.cross(point - reference, direction)
         jacobian = Vector6(moment[0], moment[1], moment[2], direction[0], direction[1], direction[2])
-        response = response6(scratch, world, model.tree[tree].first_block, jacobian)
-        first = model.tree[tree].first_dof
-        for i in range(6):
-            velocity += jacobian[5 - i] * state.dof_velocity[world, first + 5 - i]
+        response, velocity = response_of_body(model, state, scratch, world, tree, jacobian)
     return jacobian, response, velocity
 
 
@@ -334,6 +363,34 @@ def write_row_of_body(
 
 
 @func
+def write_numbers_of_single(
+    pair_rows: PairRows,
+    world: Int32,
+    single: Int32,
+    row: Int32,
+    inverse_mass: real,
+    softness: real,
+    change: real,
+):
+    """Write what a row has besides its vectors; it requests a `change` of its velocity.
+
+    `row` is as for `write_row_of_body`, `inverse_mass` without softness.
+    """
+    mass = inverse_or_off(inverse_mass + softness)
+    share = mass * change
+    diagonal = 1.0 / mass if mass > 0.0 else 0.0
+    if row == 0:
+        pair_rows.single_normal[world, single].share = share
+        pair_rows.single_normal[world, single].effective_mass = mass
+        pair_rows.single_normal[world, single].inverse_mass = diagonal
+        pair_rows.single_normal[world, single].kept = 1.0 - softness * mass
+    else:
+        pair_rows.single_lateral[world, single].share[row - 1] = share
+        pair_rows.single_lateral[world, single].effective_mass[row - 1] = mass
+        pair_rows.single_lateral[world, single].inverse_mass[row - 1] = diagonal
+
+
+@func
 def write_row_of_single(
     settings: Settings,
     model: Model,
@@ -366,18 +423,8 @@ def write_row_of_single(
     softness = terms.softness if row == 0 else 0.0
     if terms.ignored != 0:
         inverse_mass = real(0.0)
-    mass = inverse_or_off(inverse_mass + softness)
-    share = mass * requested_change(settings, shapes, terms, world, row, velocity)
-    inverse_mass = 1.0 / mass if mass > 0.0 else 0.0
-    if row == 0:
-        pair_rows.single_normal[world, single].share = share
-        pair_rows.single_normal[world, single].effective_mass = mass
-        pair_rows.single_normal[world, single].inverse_mass = inverse_mass
-        pair_rows.single_normal[world, single].kept = 1.0 - softness * mass
-    else:
-        pair_rows.single_lateral[world, single].share[row - 1] = share
-        pair_rows.single_lateral[world, single].effective_mass[row - 1] = mass
-        pair_rows.single_lateral[world, single].inverse_mass[row - 1] = inverse_mass
+    change = requested_change(settings, shapes, terms, world, row, velocity)
+    write_numbers_of_single(pair_rows, world, single, row, inverse_mass, softness, change)
 
 
 @func
