@@ -8,7 +8,7 @@ import { Gizmo } from "./panel/gizmo.js";
 import { Grasp, pick } from "./input/picking.js";
 import { Handles, Hands } from "./input/handles.js";
 import { Help } from "./panel/help.js";
-import { History, nameOf } from "./time/history.js";
+import { History, isRemoval, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
 import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Legend } from "./panel/legend.js";
@@ -33,6 +33,7 @@ import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
+import { FromPage, ToPage } from "./protocol.js";
 
 /** Simulated time after which the camera is no longer moved to show added bodies [s]. */
 const SETTLED = 1;
@@ -127,49 +128,48 @@ export class App {
   makeAnswers() {
     const { scene, drawings, panel, overlays } = this;
     return {
-      title: (header) => {
+      [ToPage.TITLE]: (header) => {
         panel.showTitle(header);
         if (header.history) this.history.budget = header.history;
         if (this.memory.begin(header.title)) this.recall();
       },
-      mesh: (header, payload) => scene.addMesh(header, payload),
-      "no mesh": (header) => scene.removeMesh(header),
-      texture: (header, payload) => scene.addTexture(header, payload),
-      "no texture": (header) => scene.removeTexture(header),
-      body: (header) => this.bodiesChanged(scene.addBody(header)),
-      "no body": (header) => this.bodiesChanged(scene.removeBody(header)),
-      dynamics: (header) => scene.addDynamics(header),
-      "no dynamics": (header) => scene.removeDynamics(header),
-      layout: (header) => this.bodiesChanged((scene.layout = header)),
-      "no layout": () => {},
-      frame: (header, payload) => this.showFrame(header, payload),
-      constraints: (header) => (overlays.constraints = header.constraints),
-      "no constraints": () => (overlays.constraints = []),
-      handle: (header) => this.handles.take(header),
-      "no handle": (header) => this.handles.remove(header),
-      pyramid: (header) => (overlays.pyramid = header.corners),
-      "no pyramid": () => (overlays.pyramid = []),
-      lens: (header) => this.lenses.take(header),
-      rays: (_, payload) => overlays.takeRays(payload),
-      "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
-      previews: (header, payload) => {
+      [ToPage.MESH]: (header, payload) => scene.addMesh(header, payload),
+      [ToPage.NO_MESH]: (header) => scene.removeMesh(header),
+      [ToPage.TEXTURE]: (header, payload) => scene.addTexture(header, payload),
+      [ToPage.NO_TEXTURE]: (header) => scene.removeTexture(header),
+      [ToPage.BODY]: (header) => this.bodiesChanged(scene.addBody(header)),
+      [ToPage.NO_BODY]: (header) => this.bodiesChanged(scene.removeBody(header)),
+      [ToPage.DYNAMICS]: (header) => scene.addDynamics(header),
+      [ToPage.NO_DYNAMICS]: (header) => scene.removeDynamics(header),
+      [ToPage.LAYOUT]: (header) => this.bodiesChanged((scene.layout = header)),
+      [ToPage.NO_LAYOUT]: () => {},
+      [ToPage.FRAME]: (header, payload) => this.showFrame(header, payload),
+      [ToPage.CONSTRAINTS]: (header) => (overlays.constraints = header.constraints),
+      [ToPage.NO_CONSTRAINTS]: () => (overlays.constraints = []),
+      [ToPage.HANDLE]: (header) => this.handles.take(header),
+      [ToPage.PYRAMID]: (header) => (overlays.pyramid = header.corners),
+      [ToPage.NO_PYRAMID]: () => (overlays.pyramid = []),
+      [ToPage.LENS]: (header) => this.lenses.take(header),
+      [ToPage.RAYS]: (_, payload) => overlays.takeRays(payload),
+      [ToPage.NO_RAYS]: () => overlays.takeRays(new ArrayBuffer(0)),
+      [ToPage.PREVIEWS]: (header, payload) => {
         this.previews.take(header, payload);
         this.previews.show(this.options);
       },
-      line: (header) => drawings.add(header),
-      text: (header) => drawings.add(header),
-      points: (header, payload) => drawings.add(header, payload),
-      "no item": (header) => drawings.remove(header),
-      slider: (header) => panel.addSlider(header),
-      "no slider": (header) => panel.removeSlider(header),
-      pause: (header) => panel.showPause(header),
-      speed: (header) => panel.showSpeed(header),
-      mark: (header) => this.timeline.addMark(header),
-      "no mark": (header) => this.timeline.removeMark(header),
-      camera: (header) => {
+      [ToPage.LINE]: (header) => drawings.add(header),
+      [ToPage.TEXT]: (header) => drawings.add(header),
+      [ToPage.POINTS]: (header, payload) => drawings.add(header, payload),
+      [ToPage.NO_ITEM]: (header) => drawings.remove(header),
+      [ToPage.SLIDER]: (header) => panel.addSlider(header),
+      [ToPage.NO_SLIDER]: (header) => panel.removeSlider(header),
+      [ToPage.PAUSE]: (header) => panel.showPause(header),
+      [ToPage.SPEED]: (header) => panel.showSpeed(header),
+      [ToPage.MARK]: (header) => this.timeline.addMark(header),
+      [ToPage.NO_MARK]: (header) => this.timeline.removeMark(header),
+      [ToPage.CAMERA]: (header) => {
         if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
-      options: (header) => {
+      [ToPage.OPTIONS]: (header) => {
         this.options.take(header);
         this.scriptOptions = header;
         if (this.switchesToRecall) this.recallSwitches();
@@ -195,16 +195,16 @@ export class App {
 
   /** Adds a message to the history and, unless a past moment is shown, shows it. */
   receive(header, payload) {
-    if (header.type === "past") return this.past.take(header, payload);
+    if (header.type === ToPage.PAST) return this.past.take(header, payload);
     this.history.take(header, payload);
-    if (header.type === "frame") this.past.meet(header);
-    if (header.type === "frame") this.plotFrame(header, payload);
+    if (header.type === ToPage.FRAME) this.past.meet(header);
+    if (header.type === ToPage.FRAME) this.plotFrame(header, payload);
     const name = nameOf(header);
-    const fleeting = header.type === "frame" || (name !== null && !name.startsWith("slider"));
+    const fleeting = header.type === ToPage.FRAME || (name !== null && !name.startsWith("slider"));
     if (fleeting && !this.player.live) return;
-    if (name !== null) this.player.stageNow(name, header.type.startsWith("no ") ? null : this.history.ledger.newest(name));
+    if (name !== null) this.player.stageNow(name, isRemoval(header) ? null : this.history.ledger.newest(name));
     this.show(header, payload);
-    if (header.type === "frame") this.timeline.show();
+    if (header.type === ToPage.FRAME) this.timeline.show();
   }
 
   show(header, payload) {
@@ -313,16 +313,16 @@ export class App {
     const joints = wants.joints ? "all" : [...plotted.joints, ...(selected === null ? [] : [selected])];
     const links = [...plotted.links, ...(selected === null ? [] : [[selected, (link ?? 0) - 1]])];
     const dynamics = wants.dynamics || selected !== null;
-    this.send({ type: "want", ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links });
+    this.send({ type: FromPage.WANT, ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links });
   }
 
   tellSize() {
-    this.send({ type: "size", width: this.camera.width, height: this.camera.height });
+    this.send({ type: FromPage.SIZE, width: this.camera.width, height: this.camera.height });
   }
 
   tellVisibility() {
     this.gamepads.tell();
-    this.send({ type: "visible", visible: !document.hidden });
+    this.send({ type: FromPage.VISIBLE, visible: !document.hidden });
   }
 
   /** Data for a saved replay that are not in the recorded messages: camera and options. */
@@ -354,7 +354,7 @@ export class App {
     this.fitCanvas();
     if (this.cameraToTell) {
       this.cameraToTell = false;
-      this.send({ type: "camera", ...this.camera.state(), chosen: !this.viewpoint.undecided });
+      this.send({ type: FromPage.CAMERA, ...this.camera.state(), chosen: !this.viewpoint.undecided });
     }
     this.frames += 1;
     if (now - this.since > 500) {
@@ -365,7 +365,7 @@ export class App {
     if (!this.stale || this.renderer.lost) return;
     this.stale = false;
     if (this.options.rendering) this.drawScene();
-    if (this.awaited !== null) this.send({ type: "drawn", picture: this.awaited });
+    if (this.awaited !== null) this.send({ type: FromPage.DRAWN, picture: this.awaited });
     this.awaited = null;
   }
 

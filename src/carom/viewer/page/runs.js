@@ -1,6 +1,7 @@
 // Which run the page shows: a run that has ended stays until the user lets the next one take its place.
 
 import { choice } from "./panel/notices.js";
+import { FromPage, ToPage } from "./protocol.js";
 
 /** The choice to let each next run take the place of the last one at once, kept by the browser. */
 const AT_ONCE = "carom.nextRunAtOnce";
@@ -24,8 +25,8 @@ export class Runs {
 
   /** Takes a message of the connection, which shows it unless the run that has ended is still shown. */
   receive(header, payload) {
-    if (header.type === "title" && this.present === null) this.meet(header);
-    if (header.type === "ending") this.error = header.error;
+    if (header.type === ToPage.TITLE && this.present === null) this.meet(header);
+    if (header.type === ToPage.ENDING) this.error = header.error;
     if (this.present !== null && this.present === this.shown) this.app.receive(header, payload);
   }
 
@@ -45,7 +46,7 @@ export class Runs {
   }
 
   offer() {
-    this.app.send({ type: "visible", visible: false });
+    this.app.send({ type: FromPage.VISIBLE, visible: false });
     const always = Object.assign(document.createElement("input"), { type: "checkbox" });
     const label = document.createElement("label");
     label.append(always, "Always at once");

@@ -20,6 +20,8 @@ from zlib import compress, decompress
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.viewer.protocol import to_page
+
 FORMAT = 1
 _UINT = np.dtype("<u4")
 # What of the header of a frame is not shared by a run of frames.
@@ -39,7 +41,7 @@ class Recording:
 
     def add(self, header: dict[str, Any], payload: bytes) -> None:
         """Adds the next message."""
-        if header["type"] != "frame":
+        if header["type"] != to_page.FRAME.type:
             self._end_run()
             self._records.append({"message": header, "bytes": len(payload)})
             self._parts.append(payload)

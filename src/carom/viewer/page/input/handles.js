@@ -2,6 +2,7 @@
 // axis to rotate it, and a centre to move it in the plane that faces the viewer.
 
 import { add, dot, quaternionProduct, scale, subtract, turned } from "../view/maths.js";
+import { FromPage } from "../protocol.js";
 
 const AXES = [
   [1, 0, 0],
@@ -41,11 +42,6 @@ export class Handles {
     if (this.held?.item.handle !== header.handle) this.items.set(header.handle, { ...header });
   }
 
-  remove({ handle }) {
-    this.items.delete(handle);
-    if (this.held?.item.handle === handle) this.held = null;
-  }
-
   get busy() {
     return this.held !== null;
   }
@@ -79,7 +75,7 @@ export class Handles {
       item.position = add(from.position, shift);
     }
     const { handle, position, orientation } = item;
-    this.send({ type: "handle", handle, position, orientation });
+    this.send({ type: FromPage.HANDLE, handle, position, orientation });
   }
 
   end() {

@@ -5,6 +5,7 @@
 // left button does; two fingers zoom and shift the view.
 
 import { Pinch } from "./pinch.js";
+import { FromPage } from "../protocol.js";
 
 /** Motion of the mouse with a button down from which on it is a drag, not a click [pixels]. */
 const CLICK_PIXELS = 3;
@@ -102,6 +103,6 @@ export class Pointer {
   }
 
   tell(event, more) {
-    this.send({ type: "mouse", x: event.offsetX, y: event.offsetY, ...more });
+    this.send({ type: FromPage.MOUSE, x: event.offsetX, y: event.offsetY, ...more });
   }
 }

@@ -4,6 +4,7 @@ import { fixed, shown } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { press } from "./states.js";
 import { titlesOf } from "../view/names.js";
+import { FromPage } from "../protocol.js";
 
 const MOVABLE = /revolute|continuous|prismatic/;
 /** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
@@ -105,7 +106,7 @@ export class Bodies {
       const slider = this.sliders.get(key);
       slider.byHand = value;
       back.disabled = false;
-      this.send({ type: "drive", body, joint, mode: slider.mode, target: value });
+      this.send({ type: FromPage.DRIVE, body, joint, mode: slider.mode, target: value });
     });
     const mode = Object.assign(document.createElement("select"), { title: `What the slider of ${link.joint} sets` });
     mode.append(...MODES.map((name) => new Option(name)));
@@ -117,7 +118,7 @@ export class Bodies {
     };
     back.addEventListener("click", () => {
       release();
-      this.send({ type: "give back", body, joint });
+      this.send({ type: FromPage.GIVE_BACK, body, joint });
     });
     mode.addEventListener("change", () => {
       Object.assign(this.sliders.get(key), { mode: mode.value, byHand: null });

@@ -3,6 +3,7 @@
 import { fixed } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { unfold } from "./states.js";
+import { FromPage } from "../protocol.js";
 
 export class Panel {
   /**
@@ -24,10 +25,10 @@ export class Panel {
     this.speed = document.getElementById("speed");
     this.paused = false;
     this.pause.addEventListener("click", () => this.togglePause());
-    this.step.addEventListener("click", () => send({ type: "step" }));
-    document.getElementById("reset").addEventListener("click", () => send({ type: "reset" }));
+    this.step.addEventListener("click", () => send({ type: FromPage.STEP }));
+    document.getElementById("reset").addEventListener("click", () => send({ type: FromPage.RESET }));
     this.speed.addEventListener("change", () => {
-      send({ type: "speed", speed: this.speed.value === "" ? null : Number(this.speed.value) });
+      send({ type: FromPage.SPEED, speed: this.speed.value === "" ? null : Number(this.speed.value) });
     });
     this.fold(window.innerWidth < 420);
     this.showOptions();
@@ -45,13 +46,13 @@ export class Panel {
 
   /** Asks before the script is ended: the cross is close to the fold arrow. */
   askToClose() {
-    this.notices.ask("End the script?", "End it", "Let it run", () => this.send({ type: "close" }));
+    this.notices.ask("End the script?", "End it", "Let it run", () => this.send({ type: FromPage.CLOSE }));
   }
 
   /** Pauses or continues. It is shown at once, so that a second press before the answer undoes the first. */
   togglePause() {
     const paused = !this.paused;
-    this.send({ type: "pause", paused });
+    this.send({ type: FromPage.PAUSE, paused });
     this.showPause({ paused });
   }
 
@@ -116,13 +117,13 @@ export class Panel {
   makeChoice(message) {
     const select = document.createElement("select");
     select.append(...message.options.map((text, number) => new Option(text, number)));
-    select.addEventListener("change", () => this.send({ type: "slider", slider: message.slider, value: Number(select.value) }));
+    select.addEventListener("change", () => this.send({ type: FromPage.SLIDER, slider: message.slider, value: Number(select.value) }));
     return this.labelled("row pair", select, message, ({ value }) => (select.value = value));
   }
 
   makeBox(message) {
     const box = Object.assign(document.createElement("input"), { type: "checkbox" });
-    box.addEventListener("change", () => this.send({ type: "slider", slider: message.slider, value: Number(box.checked) }));
+    box.addEventListener("change", () => this.send({ type: FromPage.SLIDER, slider: message.slider, value: Number(box.checked) }));
     return this.labelled("check", box, message, ({ value }) => (box.checked = value !== 0));
   }
 
@@ -139,14 +140,14 @@ export class Panel {
   makeButton({ slider, name }) {
     const element = Object.assign(document.createElement("div"), { className: "slider" });
     const button = Object.assign(document.createElement("button"), { textContent: name });
-    button.addEventListener("click", () => this.send({ type: "press", slider }));
+    button.addEventListener("click", () => this.send({ type: FromPage.PRESS, slider }));
     element.append(button);
     return { element, show() {} };
   }
 
   makeSlider(message) {
     const control = makeSlider(`slider-${message.slider}`, message.name, (value) => {
-      this.send({ type: "slider", slider: message.slider, value });
+      this.send({ type: FromPage.SLIDER, slider: message.slider, value });
     });
     control.show(message);
     return control;

@@ -2,6 +2,7 @@
 // buttons, and all are moved by their titles; the browser remembers it.
 
 import { press, unfold } from "./states.js";
+import { FromPage } from "../protocol.js";
 
 const KINDS = ["rgbPreview", "depthPreview", "segmentationPreview"];
 const TITLES = ["colour", "depth", "segmentation"];
@@ -96,7 +97,7 @@ export class Previews {
     const wanted = large.some((title) => !folded.includes(title)) ? LARGE : SMALL;
     if (this.taken && wanted !== this.asked) {
       this.asked = wanted;
-      this.send({ type: "preview width", width: wanted });
+      this.send({ type: FromPage.PREVIEW_WIDTH, width: wanted });
     }
     this.put();
   }

@@ -1,6 +1,7 @@
 // The past before the page was there: fetched from the process that simulates, part by part, the newest first.
 
 import { decoded } from "./recording.js";
+import { FromPage } from "../protocol.js";
 
 export class Past {
   /**
@@ -28,7 +29,7 @@ export class Past {
 
   /** Asks for the frames before one, and what is shown with them, unless it is shown with that one and `known`. */
   ask(before, known) {
-    this.send({ type: "past", before, known });
+    this.send({ type: FromPage.PAST, before, known });
   }
 
   /** Takes a part of the past, and asks for the next one while there is room. */

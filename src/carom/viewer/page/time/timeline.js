@@ -2,6 +2,7 @@
 
 import { fixed } from "../panel/numbers.js";
 import { press, unfold } from "../panel/states.js";
+import { FromPage } from "../protocol.js";
 
 const NEAR = 8;
 
@@ -46,7 +47,7 @@ export class Timeline {
     });
     document.getElementById("back").addEventListener("click", () => player.step(-1));
     document.getElementById("forth").addEventListener("click", () => player.step(1));
-    document.getElementById("mark").addEventListener("click", () => this.send({ type: "mark" }));
+    document.getElementById("mark").addEventListener("click", () => this.send({ type: FromPage.MARK }));
     const speed = document.getElementById("playback");
     speed.addEventListener("change", () => (player.speed = Number(speed.value)));
   }
@@ -63,7 +64,7 @@ export class Timeline {
     const clock = frame?.clock ?? 0;
     button.addEventListener("click", () => this.player.seek(clock));
     button.addEventListener("dblclick", () => {
-      this.send({ type: "restore", mark });
+      this.send({ type: FromPage.RESTORE, mark });
       this.player.goLive();
     });
     this.ticks.append(button);

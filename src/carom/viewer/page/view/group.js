@@ -1,7 +1,7 @@
 // Shapes with the same meshes and texture, drawn in one call.
 
 import { Level } from "./level.js";
-import { Merged } from "./merged.js";
+import { Merged } from "./software/merged.js";
 
 export class Group {
   /**

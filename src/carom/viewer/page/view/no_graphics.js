@@ -1,6 +1,6 @@
 // What stands for the renderer in a browser without WebGL: the page shows everything but the picture.
 
-import { Pace } from "./pace.js";
+import { Pace } from "./software/pace.js";
 
 /** Stands for the context of WebGL: all its functions do nothing. */
 const NO_CONTEXT = new Proxy({}, { get: () => () => null });

@@ -5,10 +5,10 @@ import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
 import { NoGraphics } from "./no_graphics.js";
 import { Outline } from "./outline.js";
-import { Pace } from "./pace.js";
+import { Pace } from "./software/pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
-import { StillLayer } from "./still_layer.js";
+import { StillLayer } from "./software/still_layer.js";
 import { Surfaces } from "./surfaces.js";
 
 const GRID_EXTENT = 60;

@@ -1,9 +1,9 @@
 // What does not move, kept as a picture with depths. If the CPU renders, pixels are what takes time: with this picture
 // only the part of the view is drawn anew in which something moves, or its shadow.
 
-import { boundsOfLink } from "./bounds.js";
-import { dot, scale, subtract } from "./maths.js";
-import { Picture } from "./gpu.js";
+import { boundsOfLink } from "../bounds.js";
+import { dot, scale, subtract } from "../maths.js";
+import { Picture } from "../gpu.js";
 
 /** More moving links than this are not worth a box each. */
 const MOST_LINKS = 200;
