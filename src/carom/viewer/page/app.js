@@ -34,18 +34,21 @@ import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
 import { FromPage, ToPage } from "./protocol.js";
+import { element } from "./elements.js";
+
+/** @import { Notices } from "./panel/notices.js" */
 
 /** Simulated time after which the camera is no longer moved to show added bodies [s]. */
 const SETTLED = 1;
 
 export class App {
   /**
-   * @param {(message: object) => void} send sends a message to the simulation
+   * @param {(message: MessageFromPage) => void} send sends a message to the simulation
    * @param {Notices} notices
    */
   constructor(send, notices) {
     this.send = send;
-    this.canvas = document.getElementById("view");
+    this.canvas = element("view", HTMLCanvasElement);
     const labels = document.getElementById("labels");
     this.renderer = rendererFor(this.canvas);
     this.scene = new Scene(this.renderer.gl, this.renderer.byProcessor);
@@ -80,7 +83,7 @@ export class App {
     this.previews = new Previews(this.memory, send);
     this.lenses = new Lenses(this.camera, () => this.changed());
     this.quality = new Quality(this.renderer, this.memory, () => this.changed());
-    this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
+    this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (text, lasts) => notices.say(text, lasts));
     this.help = new Help();
     this.keys = new Keys(this);
     this.past.changed = () => {
@@ -103,9 +106,9 @@ export class App {
     this.awaited = null;
     this.told = 0;
     document.addEventListener("visibilitychange", () => this.tellVisibility());
-    for (const element of document.querySelectorAll("details")) {
-      element.addEventListener("toggle", () => {
-        this.memory.put("sections", { ...this.memory.get("sections"), [element.id]: element.open });
+    for (const section of document.querySelectorAll("details")) {
+      section.addEventListener("toggle", () => {
+        this.memory.put("sections", { ...this.memory.get("sections"), [section.id]: section.open });
         this.tellWants();
       });
     }
@@ -120,11 +123,16 @@ export class App {
     pointer.clicked = (x, y) => {
       const found = pick(this.scene, this.options, this.camera.eye, this.camera.ray(x, y));
       this.bodies.select(found?.body ?? null, found?.link ?? null);
-      if (found) document.getElementById("bodies").open = true;
+      if (found) element("bodies", HTMLDetailsElement).open = true;
     };
     this.pointer = pointer;
   }
 
+  /**
+   * What takes each message: all but the past, and the end of the run, which `Runs` takes.
+   *
+   * @returns {Omit<Answers, "past" | "ending">}
+   */
   makeAnswers() {
     const { scene, drawings, panel, overlays } = this;
     return {
@@ -137,11 +145,20 @@ export class App {
       [ToPage.NO_MESH]: (header) => scene.removeMesh(header),
       [ToPage.TEXTURE]: (header, payload) => scene.addTexture(header, payload),
       [ToPage.NO_TEXTURE]: (header) => scene.removeTexture(header),
-      [ToPage.BODY]: (header) => this.bodiesChanged(scene.addBody(header)),
-      [ToPage.NO_BODY]: (header) => this.bodiesChanged(scene.removeBody(header)),
+      [ToPage.BODY]: (header) => {
+        scene.addBody(header);
+        this.bodiesChanged();
+      },
+      [ToPage.NO_BODY]: (header) => {
+        scene.removeBody(header);
+        this.bodiesChanged();
+      },
       [ToPage.DYNAMICS]: (header) => scene.addDynamics(header),
       [ToPage.NO_DYNAMICS]: (header) => scene.removeDynamics(header),
-      [ToPage.LAYOUT]: (header) => this.bodiesChanged((scene.layout = header)),
+      [ToPage.LAYOUT]: (header) => {
+        scene.layout = header;
+        this.bodiesChanged();
+      },
       [ToPage.NO_LAYOUT]: () => {},
       [ToPage.FRAME]: (header, payload) => this.showFrame(header, payload),
       [ToPage.CONSTRAINTS]: (header) => (overlays.constraints = header.constraints),
@@ -236,7 +253,7 @@ export class App {
     this.readings.take(header, payload);
     this.panel.showTime(header);
     this.overlays.time = header.time;
-    if (document.getElementById("bodies").open) this.bodies.show();
+    if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.told) this.awaited = this.told = header.picture;
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.undecided = false;
     if (this.viewpoint.lookAtFirst()) this.cameraToTell = true;
@@ -270,8 +287,8 @@ export class App {
   /** Shows what the browser has kept for the script: folded sections and switches. */
   recall() {
     for (const [id, open] of Object.entries(this.memory.get("sections") ?? {})) {
-      const element = document.getElementById(id);
-      if (element) element.open = open;
+      const section = document.getElementById(id);
+      if (section instanceof HTMLDetailsElement) section.open = open;
     }
     this.quality.recall();
     this.recallSwitches();
@@ -339,7 +356,7 @@ export class App {
   }
 
   draw(now) {
-    requestAnimationFrame((now) => this.draw(now));
+    requestAnimationFrame((next) => this.draw(next));
     // While the recording is filmed, all time is for the film.
     if (this.saving.rendering) return;
     const passed = now - this.last;

@@ -141,7 +141,7 @@ export const FromPage = /** @type {const} */ ({
 export const REMOVAL = "no ";
 
 /**
- * What the history keeps messages by: the field with their number; empty for those without one.
+ * What the history keeps messages by: the field with their number; empty without one.
  *
  * @type {Readonly<Record<string, string>>}
  */
@@ -169,3 +169,6 @@ export const KEPT_BY = Object.freeze({
   [ToPage.SLIDER]: "slider",
   [ToPage.NO_SLIDER]: "slider",
 });
+
+/** Fields in which frames of the same run of a recording may differ. */
+export const OWN_OF_FRAMES = new Set(["number", "picture", "rate", "time"]);

@@ -3,6 +3,9 @@
 import { choice } from "./panel/notices.js";
 import { FromPage, ToPage } from "./protocol.js";
 
+/** @import { App } from "./app.js" */
+/** @import { Notices } from "./panel/notices.js" */
+
 /** The choice to let each next run take the place of the last one at once, kept by the browser. */
 const AT_ONCE = "carom.nextRunAtOnce";
 
@@ -13,7 +16,9 @@ export class Runs {
    * @param {() => void} reconnect closes the connection, which then opens again
    */
   constructor(app, notices, reconnect) {
-    Object.assign(this, { app, notices, reconnect });
+    this.app = app;
+    this.notices = notices;
+    this.reconnect = reconnect;
     /** The run that is shown, null before the first one. */
     this.shown = null;
     /** The run of the present connection: null until it has told its title. */

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def constants() -> str:
             "/** What the type of a message begins with that removes what another one has shown. */",
             f'export const REMOVAL = "{REMOVAL}";\n',
             "/**",
-            " * What the history keeps messages by: the field with their number; empty for those without one.",
+            " * What the history keeps messages by: the field with their number; empty without one.",
             " *",
             " * @type {Readonly<Record<string, string>>}",
             " */",
@@ -49,6 +50,8 @@ def constants() -> str:
                 if message.kept is not None
             ),
             "});\n",
+            "/** Fields in which frames of the same run of a recording may differ. */",
+            f"export const OWN_OF_FRAMES = new Set({json.dumps(sorted(to_page.OWN_OF_FRAMES))});\n",
         ]
     )
 

@@ -329,6 +329,9 @@ OPTIONS = Message(
     },
 )
 
+OWN_OF_FRAMES: frozenset[str] = frozenset({"time", "rate", "picture", "number"})
+"""Fields in which frames of the same run of a recording may differ; recordings keep the time only."""
+
 ALL: dict[str, Message] = declared(globals())
 """The messages, by the names of their constants."""
 

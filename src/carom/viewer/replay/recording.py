@@ -24,8 +24,6 @@ from carom.viewer.protocol import to_page
 
 FORMAT = 1
 _UINT = np.dtype("<u4")
-# What of the header of a frame is not shared by a run of frames.
-_OWN = frozenset({"time", "rate", "picture", "number"})
 
 
 class Recording:
@@ -46,7 +44,7 @@ class Recording:
             self._records.append({"message": header, "bytes": len(payload)})
             self._parts.append(payload)
             return
-        shared = {name: value for name, value in header.items() if name not in _OWN}
+        shared = {name: value for name, value in header.items() if name not in to_page.OWN_OF_FRAMES}
         if self._run and (shared != self._shared or len(payload) != len(self._run[0])):
             self._end_run()
         self._shared = shared

@@ -6,7 +6,7 @@ import { FromPage } from "../protocol.js";
 const STEP = 0.001;
 
 export class Gamepads {
-  /** @param {(message: object) => void} send */
+  /** @param {(message: MessageFromPage) => void} send */
   constructor(send) {
     this.send = send;
     this.begin();

@@ -4,6 +4,8 @@
 import { add, dot, quaternionProduct, scale, subtract, turned } from "../view/maths.js";
 import { FromPage } from "../protocol.js";
 
+/** @import { Camera } from "../view/camera.js" */
+
 const AXES = [
   [1, 0, 0],
   [0, 1, 0],
@@ -24,10 +26,11 @@ const NEAR = 14;
 export class Handles {
   /**
    * @param {Camera} camera
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    */
   constructor(camera, send) {
-    Object.assign(this, { camera, send });
+    this.camera = camera;
+    this.send = send;
     this.clear();
   }
 
@@ -56,7 +59,7 @@ export class Handles {
         const distance = pixel ? Math.hypot(pixel[0] - x, pixel[1] - y) : Infinity;
         if (distance >= nearest) continue;
         nearest = distance;
-        this.held = { item, ...knob, from: { position: item.position, orientation: item.orientation } };
+        this.held = { item, ...knob, start: null, from: { position: item.position, orientation: item.orientation } };
       }
     }
     if (this.held) this.held.start = this.grip(x, y);
@@ -82,7 +85,11 @@ export class Handles {
     this.held = null;
   }
 
-  /** Mouse position relative to the knob: distance along its axis, angle about it, or point in the plane. */
+  /**
+   * Mouse position relative to the knob: distance along its axis, angle about it, or point in the plane.
+   *
+   * @returns {any} a number or, to carry, a vector; null if there is none
+   */
   grip(x, y) {
     const { kind, axis, from } = this.held;
     const { eye, forward } = this.camera;

@@ -71,7 +71,10 @@ function meetsBounds({ lower, upper }, from, way, limit) {
   return enter <= leave;
 }
 
+/** @type {(quaternion: Quaternion) => Quaternion} */
 const inverse = ([x, y, z, w]) => [-x, -y, -z, w];
+
+/** @import { Quaternion } from "../view/maths.js" */
 
 /** Angle by which a body turns for a motion of the mouse [rad / pixel]. */
 const TURN_PER_PIXEL = 0.01;
@@ -79,7 +82,10 @@ const TURN_PER_PIXEL = 0.01;
 /** Grabs a body, and pulls its point in the plane that faces the viewer, or turns it. */
 export class Grasp {
   constructor(scene, camera, options, send) {
-    Object.assign(this, { scene, camera, options, send });
+    this.scene = scene;
+    this.camera = camera;
+    this.options = options;
+    this.send = send;
     this.held = null;
   }
 

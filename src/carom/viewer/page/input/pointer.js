@@ -24,7 +24,7 @@ export class Pointer {
     /** Grabs a handle or a body under the mouse; see `Hands` in handles.js. */
     this.grasp = null;
     /** Called with the pixel of a click without a drag. */
-    this.clicked = () => {};
+    this.clicked = (_x, _y) => {};
     /** Pixel where the left button was pressed, until it is known to be a click or a drag. */
     this.pressed = null;
     /** Whether the drag that begins there is to turn the body. */

@@ -6,6 +6,9 @@ import { press } from "./states.js";
 import { titlesOf } from "../view/names.js";
 import { FromPage } from "../protocol.js";
 
+/** @import { Readings } from "../view/readings.js" */
+/** @import { Scene } from "../view/scene.js" */
+
 const MOVABLE = /revolute|continuous|prismatic/;
 /** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
 const FULL_TURN = Math.PI;
@@ -20,10 +23,12 @@ export class Bodies {
   /**
    * @param {Scene} scene
    * @param {Readings} readings
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    */
   constructor(scene, readings, send) {
-    Object.assign(this, { scene, readings, send });
+    this.scene = scene;
+    this.readings = readings;
+    this.send = send;
     this.list = document.getElementById("bodies-list");
     this.card = document.getElementById("body-card");
     this.selected = null;
@@ -31,7 +36,7 @@ export class Bodies {
     this.sliders = new Map();
     this.known = "";
     /** Called with body and link (or null) when the selection changes. */
-    this.selectionChanged = () => {};
+    this.selectionChanged = (_body, _link) => {};
     /** Called when a body has been hidden or shown. */
     this.changed = () => {};
   }
@@ -43,7 +48,7 @@ export class Bodies {
     if (known === this.known) return;
     this.known = known;
     const titles = titlesOf(this.scene);
-    document.getElementById("bodies-count").textContent = bodies.length;
+    document.getElementById("bodies-count").textContent = String(bodies.length);
     this.list.replaceChildren(
       ...bodies.slice(0, MOST_LISTED).map(({ body, name }) => {
         const text = `${body}  ${titles.get(body)}`;
@@ -209,6 +214,7 @@ function numbers(values, digits) {
   return values.map((value) => fixed(value, digits)).join("  ");
 }
 
+/** @param {number[]} quaternion */
 function eulerDegrees([x, y, z, w]) {
   const roll = Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));
   const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x))));

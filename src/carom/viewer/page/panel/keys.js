@@ -2,6 +2,8 @@
 
 import { FromPage } from "../protocol.js";
 
+/** @import { App } from "../app.js" */
+
 /** Keys that switch an option. */
 const SHORTCUTS = {
   a: "bounds",

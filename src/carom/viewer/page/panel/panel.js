@@ -4,10 +4,14 @@ import { fixed } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { unfold } from "./states.js";
 import { FromPage } from "../protocol.js";
+import { element } from "../elements.js";
+
+/** @import { Notices } from "./notices.js" */
+/** @import { Options } from "./options.js" */
 
 export class Panel {
   /**
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    * @param {Options} options
    * @param {Notices} notices
    */
@@ -21,8 +25,8 @@ export class Panel {
     document.getElementById("close").addEventListener("click", () => this.askToClose());
     document.getElementById("fold").addEventListener("click", () => this.fold(!this.folded));
     this.pause = document.getElementById("pause");
-    this.step = document.getElementById("step");
-    this.speed = document.getElementById("speed");
+    this.step = element("step", HTMLButtonElement);
+    this.speed = element("speed", HTMLSelectElement);
     this.paused = false;
     this.pause.addEventListener("click", () => this.togglePause());
     this.step.addEventListener("click", () => send({ type: FromPage.STEP }));
@@ -68,7 +72,7 @@ export class Panel {
   }
 
   showSpeed({ speed }) {
-    this.speed.value = speed ?? "";
+    this.speed.value = speed === null ? "" : String(speed);
   }
 
   showTime({ time, rate }) {
@@ -94,9 +98,9 @@ export class Panel {
   }
 
   /** Puts a control where its number belongs: they arrive in the order in which they were last moved. */
-  insert(number, element) {
+  insert(number, control) {
     const later = [...this.controls.keys()].filter((other) => other > number);
-    this.sliders.insertBefore(element, later.length ? this.controls.get(Math.min(...later)).element : null);
+    this.sliders.insertBefore(control, later.length ? this.controls.get(Math.min(...later)).element : null);
   }
 
   removeSlider({ slider }) {
@@ -131,18 +135,18 @@ export class Panel {
   labelled(className, control, message, show) {
     const label = Object.assign(document.createElement("label"), { className });
     label.append(...(className === "check" ? [control, message.name] : [message.name, control]));
-    const element = Object.assign(document.createElement("div"), { className: "slider" });
-    element.append(label);
+    const root = Object.assign(document.createElement("div"), { className: "slider" });
+    root.append(label);
     show(message);
-    return { element, show };
+    return { element: root, show };
   }
 
   makeButton({ slider, name }) {
-    const element = Object.assign(document.createElement("div"), { className: "slider" });
+    const root = Object.assign(document.createElement("div"), { className: "slider" });
     const button = Object.assign(document.createElement("button"), { textContent: name });
     button.addEventListener("click", () => this.send({ type: FromPage.PRESS, slider }));
-    element.append(button);
-    return { element, show() {} };
+    root.append(button);
+    return { element: root, show() {} };
   }
 
   makeSlider(message) {

@@ -4,6 +4,8 @@
 import { press, unfold } from "./states.js";
 import { FromPage } from "../protocol.js";
 
+/** @import { Memory } from "../memory.js" */
+
 const KINDS = ["rgbPreview", "depthPreview", "segmentationPreview"];
 const TITLES = ["colour", "depth", "segmentation"];
 /** Width of images asked for, while one is enlarged and otherwise [pixels]. */
@@ -13,10 +15,11 @@ const SMALL = 200;
 export class Previews {
   /**
    * @param {Memory} memory
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    */
   constructor(memory, send) {
-    Object.assign(this, { memory, send });
+    this.memory = memory;
+    this.send = send;
     this.root = document.getElementById("previews");
     /** Titles of the folded and of the enlarged ones, and the place of the upper left corner; null for its own. */
     this.state = { folded: [], large: [], place: null };
@@ -119,7 +122,7 @@ export class Previews {
   take({ width, height }, payload) {
     const bytes = new Uint8Array(payload);
     this.figures.forEach((figure, index) => {
-      const canvas = figure.firstChild;
+      const canvas = figure.querySelector("canvas");
       [canvas.width, canvas.height] = [width, height];
       const picture = new ImageData(width, height);
       let from = index * width * height * 3;

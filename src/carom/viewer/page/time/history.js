@@ -12,16 +12,23 @@ const LEAST_INTERVAL = 1 / 60;
 /** Number of frames between two checks of the memory. */
 const TIDY_EVERY = 64;
 
+/**
+ * A frame, and its time on the history's clock [s].
+ *
+ * @typedef {{header: FrameToPage, payload: ArrayBuffer, clock: number}} Frame
+ */
+
 export class History {
   constructor(budget = BUDGET_BYTES) {
     this.budget = budget;
     /** Called with the frames that have been put before the others. */
-    this.prepended = () => {};
+    this.prepended = (_frames) => {};
     this.clear();
   }
 
   clear() {
     this.ledger = new Ledger();
+    /** @type {Frame[]} */
     this.frames = [];
     /**
      * Number of the first frame that is kept, counted from the first frame that has arrived: it grows as frames are
@@ -73,16 +80,17 @@ export class History {
   /**
    * Puts earlier frames before those that are kept.
    *
-   * @param {{header: object, payload: ArrayBuffer}[]} frames in order
+   * @param {{header: FrameToPage, payload: ArrayBuffer}[]} frames in order
    * @param {{name: string, from: number, to: number, message: object}[]} versions the messages shown with them, in
    *   order; the frames are counted as in `first`, and `to` is Infinity for what is still shown
    */
   prepend(frames, versions) {
     let next = this.frames[0];
-    const earlier = frames.slice();
-    for (let i = earlier.length - 1; i >= 0; i--) {
-      const passed = next.header.time - earlier[i].header.time;
-      earlier[i] = next = { ...earlier[i], clock: next.clock - (passed > 0 ? passed : LEAST_INTERVAL) };
+    /** @type {Frame[]} */
+    const earlier = new Array(frames.length);
+    for (let i = frames.length - 1; i >= 0; i--) {
+      const passed = next.header.time - frames[i].header.time;
+      earlier[i] = next = { ...frames[i], clock: next.clock - (passed > 0 ? passed : LEAST_INTERVAL) };
       this.bytes += next.payload.byteLength + FRAME_BYTES;
     }
     this.frames = earlier.concat(this.frames);

@@ -3,6 +3,10 @@
 import { fixed } from "../panel/numbers.js";
 import { press, unfold } from "../panel/states.js";
 import { FromPage } from "../protocol.js";
+import { element } from "../elements.js";
+
+/** @import { Player } from "./player.js" */
+/** @import { TimeWindow } from "./window.js" */
 
 const NEAR = 8;
 
@@ -10,14 +14,14 @@ export class Timeline {
   /**
    * @param {Player} player
    * @param {TimeWindow} part the part of the history that the bar spans
-   * @param {(message: object) => void} send sends a message to the simulation; does nothing in a replay
+   * @param {(message: MessageFromPage) => void} send sends a message to the simulation; does nothing in a replay
    */
   constructor(player, part, send) {
     this.player = player;
     this.part = part;
     this.send = send;
     this.root = document.getElementById("timeline");
-    this.scrubber = document.getElementById("scrub");
+    this.scrubber = element("scrub", HTMLInputElement);
     this.label = document.getElementById("moment");
     this.playing = document.getElementById("play");
     this.live = document.getElementById("live");
@@ -48,7 +52,7 @@ export class Timeline {
     document.getElementById("back").addEventListener("click", () => player.step(-1));
     document.getElementById("forth").addEventListener("click", () => player.step(1));
     document.getElementById("mark").addEventListener("click", () => this.send({ type: FromPage.MARK }));
-    const speed = document.getElementById("playback");
+    const speed = element("playback", HTMLSelectElement);
     speed.addEventListener("change", () => (player.speed = Number(speed.value)));
   }
 
@@ -58,7 +62,7 @@ export class Timeline {
 
   addMark({ mark, time }) {
     const frames = this.player.history.frames;
-    const frame = frames.findLast((frame) => frame.header.time <= time + 1e-9) ?? frames.at(-1);
+    const frame = frames.findLast(({ header }) => header.time <= time + 1e-9) ?? frames.at(-1);
     const button = Object.assign(document.createElement("button"), { className: "tick" });
     button.title = `Mark at ${time.toFixed(3)} s: click to view this state, double-click to continue the simulation from it`;
     const clock = frame?.clock ?? 0;
@@ -84,8 +88,8 @@ export class Timeline {
     const clock = player.live ? history.end : player.clock;
     if (history.count === 0) return;
     const [start, end] = this.part.range;
-    [this.scrubber.min, this.scrubber.max] = [start, Math.max(end, start + 1e-3)];
-    this.scrubber.value = clock;
+    [this.scrubber.min, this.scrubber.max] = [String(start), String(Math.max(end, start + 1e-3))];
+    this.scrubber.valueAsNumber = clock;
     const { time } = history.frames[Math.max(player.index, 0)].header;
     this.label.textContent = player.live ? `${fixed(time, 2)} s` : `${fixed(time, 3)} s, ${fixed(clock - history.end, 2)}`;
     this.playing.textContent = player.running ? "❚❚" : "▶";

@@ -11,6 +11,13 @@ import { SolidBatch } from "./arrows/solid_batch.js";
 import { StillLayer } from "./software/still_layer.js";
 import { Surfaces } from "./surfaces.js";
 
+/** @import { Options } from "../panel/options.js" */
+/** @import { Solids } from "./arrows/solids.js" */
+/** @import { Camera } from "./camera.js" */
+/** @import { Lines } from "./lines.js" */
+/** @import { Scene } from "./scene.js" */
+/** @import { Sign } from "./sign.js" */
+
 const GRID_EXTENT = 60;
 /** Distance at which objects fade into haze [m]; at least this multiple of the camera's distance. */
 const HAZE = 90;
@@ -227,7 +234,6 @@ class Renderer {
     if (this.map.wanted === wanted) return;
     this.map.dispose();
     this.map = new ShadowMap(this.gl, wanted);
-    this.map.wanted = wanted;
   }
 
   drawShadows(groups, light) {
