@@ -43,7 +43,7 @@ export function sourcesOf(scene, valueNames) {
       if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, title, index - 1, link));
       if (index > 0) groups["Force-torque sensors"].push(sensorSource(body, title, index - 1, link));
     });
-    groups.Bodies.push(bodySource(scene, body));
+    groups.Bodies.push(bodySource(body));
     groups["Contact forces"].push(contactSource(body));
   }
   for (const name of valueNames) groups.Values.push(valueSource(name));
@@ -68,7 +68,7 @@ function jointSource({ body }, name, joint, link) {
 }
 
 /** @returns {Source} */
-function bodySource(scene, { body, name, links }) {
+function bodySource({ body, name, links }) {
   const read = ({ readings, pose }) => {
     const where = pose(body, 0);
     if (!where) return null;
