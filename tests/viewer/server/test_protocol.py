@@ -51,6 +51,17 @@ def test_what_the_viewer_says_is_declared_and_all_of_it_is_said():
     }
 
 
+def test_no_header_is_made_by_hand():
+    made = [
+        f"{path.name}: {ast.unparse(node)}"
+        for path in VIEWER.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Dict)
+        and any(key is not None and ast.unparse(key) == "'type'" for key in node.keys)
+    ]
+    assert made == ["message.py: {'type': self.type, **fields}"]
+
+
 def test_the_page_takes_every_message_and_sends_every_one_that_is_declared():
     answers = next(text for path, text in PAGE.items() if path.name == "app.js")
     answered = set(re.findall(r"^ +\[ToPage\.([A-Z_]+)\]: \(", answers, re.MULTILINE))

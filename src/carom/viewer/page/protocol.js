@@ -2,7 +2,7 @@
 // src/carom/viewer/protocol, which is where to change them.
 
 /** Types of the messages to the page. */
-export const ToPage = /** @type {const} */ ({
+export const ToPage = Object.freeze(/** @type {const} */ ({
   /** The run that the page shows: the first message of a connection. */
   TITLE: "title",
   /** The script ends by an exception. */
@@ -73,10 +73,10 @@ export const ToPage = /** @type {const} */ ({
   CAMERA: "camera",
   /** The display options of the script. */
   OPTIONS: "options",
-});
+}));
 
 /** Types of the messages from the page. */
-export const FromPage = /** @type {const} */ ({
+export const FromPage = Object.freeze(/** @type {const} */ ({
   /** The user has moved a slider, or chosen from a list. */
   SLIDER: "slider",
   /** The user has clicked a button. */
@@ -135,7 +135,7 @@ export const FromPage = /** @type {const} */ ({
   RESTORE: "restore",
   /** The user ends the script's viewer. */
   CLOSE: "close",
-});
+}));
 
 /** What the type of a message begins with that removes what another one has shown. */
 export const REMOVAL = "no ";

@@ -70,11 +70,11 @@ def types() -> str:
 
 def _constants(name: str, meaning: str, messages: Mapping[str, Message]) -> Iterator[str]:
     yield f"/** {meaning} */"
-    yield f"export const {name} = /** @type {{const}} */ ({{"
+    yield f"export const {name} = Object.freeze(/** @type {{const}} */ ({{"
     for constant, message in messages.items():
         yield f"  /** {message.meaning} */"
         yield f'  {constant}: "{message.type}",'
-    yield "});\n"
+    yield "}));\n"
 
 
 def _types(direction: str, messages: Mapping[str, Message]) -> Iterator[str]:
