@@ -1,9 +1,13 @@
 """Time travel on a live page: looking back, going on, marks, reset, speed, and saving."""
 
+import json
 import re
+import struct
 import threading
 import time
+from base64 import b64decode
 from pathlib import Path
+from zlib import decompress
 
 import pytest
 from tests.patience import PATIENCE, until
@@ -162,6 +166,16 @@ def test_a_replay_is_saved_from_the_page(page: Page, ball: int, browser, tmp_pat
     assert replay.page.evaluate(last) == page.page.evaluate(last)
     assert replay.complaints == []
     replay.page.close()
+    # Frames are packed by the run, of which there is one for each set of bodies.
+    assert len(lengths_of_runs(file)) < 5 < sum(lengths_of_runs(file))
+
+
+def lengths_of_runs(replay: Path) -> list[int]:
+    """The number of frames in each run of a replay."""
+    (text,) = re.findall(r'id="recording">([^<]*)<', replay.read_text(encoding="utf-8"))
+    plain = decompress(b64decode(text))
+    (length,) = struct.unpack_from("<I", plain)
+    return [record["frames"] for record in json.loads(plain[4 : 4 + length])["records"] if "frames" in record]
 
 
 def test_a_picture_and_a_film_are_saved_from_the_page(page: Page, ball: int, tmp_path: Path):

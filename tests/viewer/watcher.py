@@ -13,6 +13,7 @@ from tests.patience import PATIENCE
 from websockets.sync.client import connect
 
 from carom.viewer.messages import decoded
+from carom.viewer.protocol import to_page
 from carom.viewer.readings import CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS
 
 
@@ -78,6 +79,7 @@ class Watcher:
     def _take(self, message: str | bytes) -> None:
         assert isinstance(message, bytes)
         header, payload = decoded(message)
+        to_page.checked(header)
         kind = header["type"]
         if kind == "frame":
             self.frame = header

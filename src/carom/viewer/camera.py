@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from carom.description.pose import Vector3
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,4 +61,4 @@ class SharedCamera:
 
     def _message(self) -> dict[str, object]:
         view = {name: getattr(self.orbit, name) for name in ("distance", "yaw", "pitch", "target")}
-        return {"type": "camera", **view, "chosen": self.chosen, "script": self._by_script}
+        return to_page.CAMERA(**view, chosen=self.chosen, script=self._by_script)

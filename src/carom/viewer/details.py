@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from carom.model.body_spec import BASE
 from carom.viewer import readings
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 from carom.viewer.rays import Rays
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ class Details:
     def _show_dynamics(self, wanted: bool) -> None:
         facts = {number: _dynamics(body) for number, body in self._world.bodies.items()} if wanted else {}
         for number in self._dynamics.keys() - facts.keys():
-            self._board.take_down(("dynamics", number), {"type": "no dynamics", "dynamics": number})
+            self._board.take_down(("dynamics", number), to_page.NO_DYNAMICS(dynamics=number))
         for number, known in facts.items():
             if self._dynamics.get(number) != known:
                 self._board.put(("dynamics", number), known)
@@ -180,7 +181,7 @@ class Details:
         constraints = _constraints(self._world) if wanted else []
         if constraints != self._constraints:
             self._constraints = constraints
-            self._board.put("constraints", {"type": "constraints", "constraints": constraints})
+            self._board.put("constraints", to_page.CONSTRAINTS(constraints=constraints))
 
 
 def _dynamics(body: Body) -> dict[str, Any]:
@@ -189,7 +190,7 @@ def _dynamics(body: Body) -> dict[str, Any]:
         dynamics = body.dynamics(link)
         inertia = [value if isfinite(value) else 0.0 for value in dynamics.inertia]
         links.append({"mass": dynamics.mass, "inertia": inertia})
-    return {"type": "dynamics", "dynamics": body.id, "body": body.id, "links": links}
+    return to_page.DYNAMICS(dynamics=body.id, body=body.id, links=links)
 
 
 def _constraints(world: World) -> list[dict[str, Any]]:

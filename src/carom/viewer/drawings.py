@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from threading import Lock
 from time import monotonic
+from typing import Any
 
 import numpy as np
 
 from carom.viewer.board import Board
 from carom.viewer.items import DebugItem, DebugLine, DebugPoints, DebugText
+from carom.viewer.protocol import to_page
 
 
 class Drawings:
@@ -31,8 +33,8 @@ class Drawings:
             self._ends.pop(number, None)
             if item.life_time > 0.0:
                 self._ends[number] = monotonic() + item.life_time
-            header, payload = _described(item)
-            self._board.put(("item", number), {**header, "item": number}, payload)
+            header, payload = _described(number, item)
+            self._board.put(("item", number), header, payload)
 
     def remove(self, number: int) -> None:
         """Removes an item; unknown numbers are ignored."""
@@ -58,17 +60,16 @@ class Drawings:
     def _remove(self, number: int) -> None:
         self.items.pop(number, None)
         self._ends.pop(number, None)
-        self._board.take_down(("item", number), {"type": "no item", "item": number})
+        self._board.take_down(("item", number), to_page.NO_ITEM(item=number))
 
 
-def _described(item: DebugItem) -> tuple[dict[str, object], bytes]:
-    header: dict[str, object] = {"body": item.parent_body, "link": item.parent_link + 1}
+def _described(number: int, item: DebugItem) -> tuple[dict[str, Any], bytes]:
+    at = {"item": number, "body": item.parent_body, "link": item.parent_link + 1}
     if isinstance(item, DebugLine):
-        line = {"type": "line", "start": item.start, "end": item.end, "colour": item.colour}
-        return {**header, **line, "width": item.width}, b""
+        return to_page.LINE(**at, start=item.start, end=item.end, colour=item.colour, width=item.width), b""
     if isinstance(item, DebugText):
-        text = {"type": "text", "text": item.text, "position": item.position, "colour": item.colour}
-        return {**header, **text, "size": item.size, "orientation": item.orientation}, b""
+        look = {"colour": item.colour, "size": item.size, "orientation": item.orientation}
+        return to_page.TEXT(**at, text=item.text, position=item.position, **look), b""
     assert isinstance(item, DebugPoints)
     payload = np.array([item.positions, item.colours], dtype="<f4").tobytes()
-    return {**header, "type": "points", "size": item.size, "count": len(item.positions)}, payload
+    return to_page.POINTS(**at, size=item.size, count=len(item.positions)), payload

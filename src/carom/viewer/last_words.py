@@ -10,6 +10,8 @@ from traceback import format_exception_only
 from typing import TYPE_CHECKING
 from weakref import WeakSet
 
+from carom.viewer.protocol import to_page
+
 if TYPE_CHECKING:
     from carom.viewer.board import Board
     from carom.viewer.server import PageServer
@@ -34,7 +36,7 @@ class LastWords:
 
     def say(self, line: str) -> None:
         """Tells the pages a line, and closes the viewer."""
-        self._board.put("ending", {"type": "ending", "error": line[:_MOST_CHARACTERS]})
+        self._board.put("ending", to_page.ENDING(error=line[:_MOST_CHARACTERS]))
         give_up = time.monotonic() + _PATIENCE
         while not self._server().has_sent(self._board.revision) and time.monotonic() < give_up:
             time.sleep(0.01)

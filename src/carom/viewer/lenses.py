@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
     from carom.camera import Camera
@@ -82,14 +83,13 @@ class Lenses:
         if not (np.isfinite(view).all() and np.isfinite(projection).all()):
             return
         self._told[number], self._due[number] = facts, now + _PERIOD
-        header = {
-            "type": "lens",
-            "lens": number,
-            "name": name or f"camera {number}",
-            "width": width,
-            "height": height,
+        header = to_page.LENS(
+            lens=number,
+            name=name or f"camera {number}",
+            width=width,
+            height=height,
             # By columns, as in WebGL.
-            "view": view.T.ravel().tolist(),
-            "projection": projection.T.ravel().tolist(),
-        }
+            view=view.T.ravel().tolist(),
+            projection=projection.T.ravel().tolist(),
+        )
         self._board.put(("lens", number), header)

@@ -2,7 +2,7 @@
 
 A message is four bytes, the length of the header as a little-endian integer; the header in UTF-8, padded by
 spaces so that the numbers start at a multiple of four; and the numbers. The header's `type` is the kind of
-message. Messages from a page are JSON texts.
+message. Messages from a page are JSON texts. `carom.viewer.protocol` declares all messages.
 """
 
 from __future__ import annotations

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
     from carom.render.image_target import RawImage
@@ -53,7 +54,7 @@ class Previews:
         small = np.s_[::every, ::every]
         pictures = [image.rgba[small][..., :3], _shades(image.depth[small]), _colours(image.label[small])]
         height, width = pictures[0].shape[:2]
-        header: dict[str, Any] = {"type": "previews", "width": width, "height": height}
+        header = to_page.PREVIEWS(width=width, height=height)
         self._board.put("previews", header, b"".join(np.ascontiguousarray(p).tobytes() for p in pictures))
         self._show_pyramid(camera)
 
@@ -63,7 +64,7 @@ class Previews:
         # A camera that does not move is shown once.
         if corners is not None and corners != self._corners:
             self._corners = corners
-            self._board.put("pyramid", {"type": "pyramid", "corners": corners})
+            self._board.put("pyramid", to_page.PYRAMID(corners=corners))
 
 
 def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
     from carom.queries.ray_cast import Points, RayTuple
@@ -39,4 +40,4 @@ class Rays:
             return
         rays = [self._cast.popleft() for _ in range(len(self._cast))]
         payload = np.array(rays, dtype="<f4").tobytes()
-        self._board.put("rays", {"type": "rays", "count": len(rays)}, payload)
+        self._board.put("rays", to_page.RAYS(count=len(rays)), payload)

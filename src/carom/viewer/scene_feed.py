@@ -14,6 +14,7 @@ from carom.render.appearance import Appearance, appearance_of
 from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
 from carom.viewer.messages import encoded
+from carom.viewer.protocol import to_page
 from carom.viewer.shapes import Assets, described
 
 if TYPE_CHECKING:
@@ -80,14 +81,13 @@ class SceneFeed:
             return None
         payload = poses[self._rows].astype("<f4").tobytes()
         time = float(self._world.time)
-        header = {
-            "type": "frame",
-            "layout": self._layout,
-            "poses": self._rows.size,
-            "time": time,
-            "rate": self._rate(time),
+        header = to_page.FRAME(
+            layout=self._layout,
+            poses=self._rows.size,
+            time=time,
+            rate=self._rate(time),
             **extras,
-        }
+        )
         if blocks:
             header["blocks"] = [[name, len(columns)] for name, columns in blocks]
             payload += b"".join(columns.astype("<f4").tobytes() for _, columns in blocks)
@@ -169,14 +169,14 @@ class SceneFeed:
             if self._described.get(body.id) != new[body.id]:
                 self._board.put(("body", body.id), new[body.id])
         for number in self._described.keys() - new.keys():
-            self._board.take_down(("body", number), {"type": "no body", "body": number})
+            self._board.take_down(("body", number), to_page.NO_BODY(body=number))
         self._described = new
         self._keep_used_assets()
         rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
         self._rows = np.concatenate([np.zeros(0, dtype=np.int64), *rows])
         self._layout += 1
         order = [[body.id, body.joint_count - BASE] for body in bodies]
-        self._board.put("layout", {"type": "layout", "layout": self._layout, "bodies": order})
+        self._board.put("layout", to_page.LAYOUT(layout=self._layout, bodies=order))
         # The bodies are kept for the comparison by id, because Python reuses the ids of deleted objects.
         self._bodies = bodies
         self._arrays = self._world.arrays

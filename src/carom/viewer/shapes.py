@@ -26,6 +26,7 @@ from carom.render.textures import NO_TEXTURE
 from carom.scene.joint_constraints import moving_links
 from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -97,12 +98,7 @@ class Assets:
             return known[1]
         number = self._number()
         self._meshes[id(mesh)] = (mesh, number)
-        header = {
-            "type": "mesh",
-            "mesh": number,
-            "vertices": len(mesh.positions),
-            "triangles": len(mesh.triangles),
-        }
+        header = to_page.MESH(mesh=number, vertices=len(mesh.positions), triangles=len(mesh.triangles))
         payload = b"".join(
             np.ascontiguousarray(array, dtype=kind).tobytes()
             for array, kind in (
@@ -124,7 +120,7 @@ class Assets:
         self._textures[id(image)] = (image, number)
         every = -(-max(image.shape[:2]) // _MAX_TEXTURE_SIDE)
         texels = image if every == 1 else image[::every, ::every]
-        header = {"type": "texture", "texture": number, "width": texels.shape[1], "height": texels.shape[0]}
+        header = to_page.TEXTURE(texture=number, width=texels.shape[1], height=texels.shape[0])
         if texels.nbytes <= _SMALL_TEXTURE:
             # The bottom row comes first, as in texture coordinates.
             payload = np.ascontiguousarray(texels[::-1]).tobytes()
@@ -135,11 +131,14 @@ class Assets:
 
     def keep_only(self, meshes: set[int], textures: set[int]) -> None:
         """Removes meshes and textures that no shape uses; both sets hold numbers."""
-        for kind, known, used in (("mesh", self._meshes, meshes), ("texture", self._textures, textures)):
+        for gone, known, used in (
+            (to_page.NO_MESH, self._meshes, meshes),
+            (to_page.NO_TEXTURE, self._textures, textures),
+        ):
             for identity, (_, number) in list(known.items()):
                 if number not in used:
                     del known[identity]
-                    self._board.take_down((kind, number), {"type": f"no {kind}", kind: number})
+                    self._board.take_down((gone.kept, number), gone(**{str(gone.kept): number}))
 
     def _number(self) -> int:
         self._next += 1
@@ -159,17 +158,16 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         if collisions:
             shapes.extend(_collisions(body, link, to_inertial, assets))
     source = body.spec.source
-    return {
-        "type": "body",
-        "body": body.id,
-        "name": body.name,
-        "file": None if source is None else source.name,
-        "path": None if source is None else "/".join(source.parts[-2:]),
-        "links": [
+    return to_page.BODY(
+        body=body.id,
+        name=body.name,
+        file=None if source is None else source.name,
+        path=None if source is None else "/".join(source.parts[-2:]),
+        links=[
             {**_link(body, link), "moves": moves} for link, moves in enumerate(moving_links(body), start=BASE)
         ],
-        "shapes": shapes,
-    }
+        shapes=shapes,
+    )
 
 
 def _colour_in_turn(body: Body, link: int) -> Rgba:

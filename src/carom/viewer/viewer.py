@@ -35,6 +35,8 @@ from carom.viewer.lenses import Lenses
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
+from carom.viewer.protocol import from_page, to_page
+from carom.viewer.protocol.message import Message
 from carom.viewer.rays import Rays
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
@@ -120,9 +122,7 @@ class Viewer:
         self.on_pause: Callable[[bool], None] = lambda paused: None
         self.on_profile: Callable[[bool], None] = lambda running: None
         self._board = Board()
-        self._board.put(
-            "title", {"type": "title", "title": title, "run": fresh_token(), "history": max(history, 0)}
-        )
+        self._board.put("title", to_page.TITLE(title=title, run=fresh_token(), history=max(history, 0)))
         self.controls: Controls = Controls(self._board)
         self.drawings: Drawings = Drawings(self._board)
         self._handles = Handles(self._board)
@@ -149,36 +149,38 @@ class Viewer:
         self._sleeping = Sleeping(world)
         self._values: dict[str, float] = {}
         self.pause(False)
-        self._answers: dict[str, Callable[[int, dict[str, Any]], None]] = {
-            "slider": self._take_slider,
-            "press": self._take_press,
-            "key": self._take_key,
-            "blur": lambda page, told: self.keyboard.release_all(page),
-            "mouse": self._take_mouse,
-            "camera": self._take_camera,
-            "size": self._take_size,
-            "visible": lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
-            "drawn": lambda page, told: self._pictures.drawn(page, int(told["picture"])),
-            "past": self._tell_past,
-            "preview width": lambda page, told: self.previews.ask(page, int(told["width"])),
-            "want": lambda page, told: self._want(page, Wish.told(told)),
-            "drive": self._take_drive,
-            "give back": self._give_back,
-            "handle": self._take_handle,
-            "sleep": lambda page, told: self._chores.add(self._sleeping.toggle),
-            "profile": lambda page, told: self.on_profile(bool(told["running"])),
-            "grasp": self._take_grasp,
-            "pull": lambda page, told: self._picking.move(page, _vector(told["target"])),
-            "turn": self._turning.turn,
-            "let go": self._let_go,
-            "gamepads": self._take_gamepads,
-            "pause": lambda page, told: self.pause(bool(told["paused"])),
-            "step": lambda page, told: self.pause_control.let_through(),
-            "speed": self._take_speed,
-            "reset": lambda page, told: self._chores.add(self._moments.reset),
-            "mark": lambda page, told: self._chores.add(self._moments.mark),
-            "restore": lambda page, told: self._chores.add(partial(self._moments.restore, int(told["mark"]))),
-            "close": lambda page, told: self._close_by_user(),
+        self._answers: dict[Message, Callable[[int, dict[str, Any]], None]] = {
+            from_page.SLIDER: self._take_slider,
+            from_page.PRESS: self._take_press,
+            from_page.KEY: self._take_key,
+            from_page.BLUR: lambda page, told: self.keyboard.release_all(page),
+            from_page.MOUSE: self._take_mouse,
+            from_page.CAMERA: self._take_camera,
+            from_page.SIZE: self._take_size,
+            from_page.VISIBLE: lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
+            from_page.DRAWN: lambda page, told: self._pictures.drawn(page, int(told["picture"])),
+            from_page.PAST: self._tell_past,
+            from_page.PREVIEW_WIDTH: lambda page, told: self.previews.ask(page, int(told["width"])),
+            from_page.WANT: lambda page, told: self._want(page, Wish.told(told)),
+            from_page.DRIVE: self._take_drive,
+            from_page.GIVE_BACK: self._give_back,
+            from_page.HANDLE: self._take_handle,
+            from_page.SLEEP: lambda page, told: self._chores.add(self._sleeping.toggle),
+            from_page.PROFILE: lambda page, told: self.on_profile(bool(told["running"])),
+            from_page.GRASP: self._take_grasp,
+            from_page.PULL: lambda page, told: self._picking.move(page, _vector(told["target"])),
+            from_page.TURN: self._turning.turn,
+            from_page.LET_GO: self._let_go,
+            from_page.GAMEPADS: self._take_gamepads,
+            from_page.PAUSE: lambda page, told: self.pause(bool(told["paused"])),
+            from_page.STEP: lambda page, told: self.pause_control.let_through(),
+            from_page.SPEED: self._take_speed,
+            from_page.RESET: lambda page, told: self._chores.add(self._moments.reset),
+            from_page.MARK: lambda page, told: self._chores.add(self._moments.mark),
+            from_page.RESTORE: lambda page, told: self._chores.add(
+                partial(self._moments.restore, int(told["mark"]))
+            ),
+            from_page.CLOSE: lambda page, told: self._close_by_user(),
         }
         if lock is None:
             self._step_lock: StepLock | None = StepLock(self)
@@ -195,7 +197,7 @@ class Viewer:
         access = Access(host, token, named)
 
         def receive(page: int, told: dict[str, Any]) -> None:
-            self._answers[told["type"]](page, told)
+            self._answers[from_page.checked(told)](page, told)
 
         unwatched = self._record if self._past.is_on else None
         self._server = PageServer(access, port, self._board, self._frame, receive, self._page_gone, unwatched)
@@ -217,7 +219,7 @@ class Viewer:
 
     def configure(self, options: dict[str, Any]) -> None:
         """Sets display options; see `Options` in `page/options.js`."""
-        self._board.put("options", {"type": "options", **options})
+        self._board.put("options", to_page.OPTIONS(**options))
 
     def pause(self, paused: bool) -> None:
         """Pauses the simulation, or continues it."""
@@ -227,7 +229,7 @@ class Viewer:
         else:
             self.pause_control.open()
         self._update_hold()
-        self._board.put("pause", {"type": "pause", "paused": paused})
+        self._board.put("pause", to_page.PAUSE(paused=paused))
         if changed:
             self.on_pause(paused)
 
@@ -239,7 +241,7 @@ class Viewer:
         """
         self.pause_control.set_speed(speed)
         self._update_hold()
-        self._board.put("speed", {"type": "speed", "speed": speed})
+        self._board.put("speed", to_page.SPEED(speed=speed))
 
     def wait_for_turn(self, *, listening: bool = False) -> bool:
         """Waits until a step may be made.

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 
+from carom.viewer.protocol import to_page
+
 DEFAULT_BYTES = 128 * 2**20
 """Memory for the past, unless another one is asked for [bytes]."""
 
@@ -16,9 +18,7 @@ _OVERHEAD = 100
 # Number of frames between two checks of the memory.
 _TIDY_EVERY = 64
 # Kinds of messages that are kept besides frames; all others are only for the present.
-_KEPT = frozenset(
-    {"layout", "constraints", "rays", "pyramid", "body", "mesh", "texture", "slider", "dynamics", "item"}
-)
+_KEPT = frozenset(message.kind for message in to_page.ALL.values()) - {None}
 
 
 @dataclass(slots=True)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from carom.viewer.board import Board
 from carom.viewer.history.history import Excerpt, History
 from carom.viewer.messages import decoded, encoded
+from carom.viewer.protocol import to_page
 from carom.viewer.replay.recording import Recording
 
 # Size of the frames in one message about the past [bytes]: a page takes it between two pictures.
@@ -55,10 +54,9 @@ def told(excerpt: Excerpt) -> bytes:
         packed.add(*decoded(version.message))
     for frame in excerpt.frames:
         packed.add(*decoded(frame))
-    header: dict[str, Any] = {
-        "type": "past",
-        "first": excerpt.first,
-        "oldest": excerpt.oldest,
-        "versions": [[version.name, version.begin, version.end] for version in excerpt.versions],
-    }
+    header = to_page.PAST(
+        first=excerpt.first,
+        oldest=excerpt.oldest,
+        versions=[[version.name, version.begin, version.end] for version in excerpt.versions],
+    )
     return encoded(header, packed.packed(level=1))

@@ -6,6 +6,7 @@ from math import isfinite
 
 from carom.viewer.board import Board
 from carom.viewer.items import Choice, Slider
+from carom.viewer.protocol import to_page
 
 
 class Controls:
@@ -27,7 +28,7 @@ class Controls:
     def remove(self, number: int) -> None:
         """Removes a slider or a button; unknown numbers are ignored."""
         self.sliders.pop(number, None)
-        self._board.take_down(("slider", number), {"type": "no slider", "slider": number})
+        self._board.take_down(("slider", number), to_page.NO_SLIDER(slider=number))
 
     def move(self, number: int, value: float) -> None:
         """Sets the value of a slider that the user has moved, clipped to its range."""
@@ -45,15 +46,13 @@ class Controls:
             self._show(number, slider)
 
     def _show(self, number: int, slider: Slider) -> None:
-        header: dict[str, object] = {
-            "type": "slider",
-            "slider": number,
-            "name": slider.name,
-            "button": slider.is_button,
-            "lower": slider.lower,
-            "upper": slider.upper,
-            "value": slider.value,
-        }
-        if isinstance(slider, Choice):
-            header["options"] = slider.options
+        header = to_page.SLIDER(
+            slider=number,
+            name=slider.name,
+            button=slider.is_button,
+            lower=slider.lower,
+            upper=slider.upper,
+            value=slider.value,
+            **({"options": slider.options} if isinstance(slider, Choice) else {}),
+        )
         self._board.put(("slider", number), header)

@@ -8,6 +8,7 @@ from functools import partial
 
 from carom.viewer.board import Board
 from carom.viewer.items import Handle
+from carom.viewer.protocol import to_page
 
 
 class Handles:
@@ -38,5 +39,5 @@ class Handles:
     def _show(self, number: int) -> None:
         handle = self._handles[number]
         position, orientation = handle.pose
-        header = {"type": "handle", "handle": number, "name": handle.name}
-        self._board.put(("handle", number), {**header, "position": position, "orientation": orientation})
+        header = to_page.HANDLE(handle=number, name=handle.name, position=position, orientation=orientation)
+        self._board.put(("handle", number), header)

@@ -8,7 +8,7 @@ import { Gizmo } from "./panel/gizmo.js";
 import { Grasp, pick } from "./input/picking.js";
 import { Handles, Hands } from "./input/handles.js";
 import { Help } from "./panel/help.js";
-import { History, nameOf } from "./time/history.js";
+import { History, isRemoval, nameOf } from "./time/history.js";
 import { Keys } from "./panel/keys.js";
 import { Labels, labelJoints, labelLinks } from "./view/labels.js";
 import { Legend } from "./panel/legend.js";
@@ -33,18 +33,22 @@ import { TimeWindow } from "./time/window.js";
 import { Toggles } from "./panel/toggles.js";
 import { trailOf } from "./time/trail.js";
 import { Viewpoint } from "./panel/viewpoint.js";
+import { FromPage, ToPage } from "./protocol.js";
+import { element } from "./elements.js";
+
+/** @import { Notices } from "./panel/notices.js" */
 
 /** Simulated time after which the camera is no longer moved to show added bodies [s]. */
 const SETTLED = 1;
 
 export class App {
   /**
-   * @param {(message: object) => void} send sends a message to the simulation
+   * @param {(message: MessageFromPage) => void} send sends a message to the simulation
    * @param {Notices} notices
    */
   constructor(send, notices) {
     this.send = send;
-    this.canvas = document.getElementById("view");
+    this.canvas = element("view", HTMLCanvasElement);
     const labels = document.getElementById("labels");
     this.renderer = rendererFor(this.canvas);
     this.scene = new Scene(this.renderer.gl, this.renderer.byProcessor);
@@ -79,7 +83,7 @@ export class App {
     this.previews = new Previews(this.memory, send);
     this.lenses = new Lenses(this.camera, () => this.changed());
     this.quality = new Quality(this.renderer, this.memory, () => this.changed());
-    this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (...told) => notices.say(...told));
+    this.saving = new Saving(this.canvas, this.history, this.player, new Shots(this), () => document.title, () => this.facts(), (text, lasts) => notices.say(text, lasts));
     this.help = new Help();
     this.keys = new Keys(this);
     this.past.changed = () => {
@@ -102,9 +106,9 @@ export class App {
     this.awaited = null;
     this.told = 0;
     document.addEventListener("visibilitychange", () => this.tellVisibility());
-    for (const element of document.querySelectorAll("details")) {
-      element.addEventListener("toggle", () => {
-        this.memory.put("sections", { ...this.memory.get("sections"), [element.id]: element.open });
+    for (const section of document.querySelectorAll("details")) {
+      section.addEventListener("toggle", () => {
+        this.memory.put("sections", { ...this.memory.get("sections"), [section.id]: section.open });
         this.tellWants();
       });
     }
@@ -119,57 +123,70 @@ export class App {
     pointer.clicked = (x, y) => {
       const found = pick(this.scene, this.options, this.camera.eye, this.camera.ray(x, y));
       this.bodies.select(found?.body ?? null, found?.link ?? null);
-      if (found) document.getElementById("bodies").open = true;
+      if (found) element("bodies", HTMLDetailsElement).open = true;
     };
     this.pointer = pointer;
   }
 
+  /**
+   * What takes each message: all but the past, and the end of the run, which `Runs` takes.
+   *
+   * @returns {Omit<Answers, "past" | "ending">}
+   */
   makeAnswers() {
     const { scene, drawings, panel, overlays } = this;
     return {
-      title: (header) => {
+      [ToPage.TITLE]: (header) => {
         panel.showTitle(header);
         if (header.history) this.history.budget = header.history;
         if (this.memory.begin(header.title)) this.recall();
       },
-      mesh: (header, payload) => scene.addMesh(header, payload),
-      "no mesh": (header) => scene.removeMesh(header),
-      texture: (header, payload) => scene.addTexture(header, payload),
-      "no texture": (header) => scene.removeTexture(header),
-      body: (header) => this.bodiesChanged(scene.addBody(header)),
-      "no body": (header) => this.bodiesChanged(scene.removeBody(header)),
-      dynamics: (header) => scene.addDynamics(header),
-      "no dynamics": (header) => scene.removeDynamics(header),
-      layout: (header) => this.bodiesChanged((scene.layout = header)),
-      "no layout": () => {},
-      frame: (header, payload) => this.showFrame(header, payload),
-      constraints: (header) => (overlays.constraints = header.constraints),
-      "no constraints": () => (overlays.constraints = []),
-      handle: (header) => this.handles.take(header),
-      "no handle": (header) => this.handles.remove(header),
-      pyramid: (header) => (overlays.pyramid = header.corners),
-      "no pyramid": () => (overlays.pyramid = []),
-      lens: (header) => this.lenses.take(header),
-      rays: (_, payload) => overlays.takeRays(payload),
-      "no rays": () => overlays.takeRays(new ArrayBuffer(0)),
-      previews: (header, payload) => {
+      [ToPage.MESH]: (header, payload) => scene.addMesh(header, payload),
+      [ToPage.NO_MESH]: (header) => scene.removeMesh(header),
+      [ToPage.TEXTURE]: (header, payload) => scene.addTexture(header, payload),
+      [ToPage.NO_TEXTURE]: (header) => scene.removeTexture(header),
+      [ToPage.BODY]: (header) => {
+        scene.addBody(header);
+        this.bodiesChanged();
+      },
+      [ToPage.NO_BODY]: (header) => {
+        scene.removeBody(header);
+        this.bodiesChanged();
+      },
+      [ToPage.DYNAMICS]: (header) => scene.addDynamics(header),
+      [ToPage.NO_DYNAMICS]: (header) => scene.removeDynamics(header),
+      [ToPage.LAYOUT]: (header) => {
+        scene.layout = header;
+        this.bodiesChanged();
+      },
+      [ToPage.NO_LAYOUT]: () => {},
+      [ToPage.FRAME]: (header, payload) => this.showFrame(header, payload),
+      [ToPage.CONSTRAINTS]: (header) => (overlays.constraints = header.constraints),
+      [ToPage.NO_CONSTRAINTS]: () => (overlays.constraints = []),
+      [ToPage.HANDLE]: (header) => this.handles.take(header),
+      [ToPage.PYRAMID]: (header) => (overlays.pyramid = header.corners),
+      [ToPage.NO_PYRAMID]: () => (overlays.pyramid = []),
+      [ToPage.LENS]: (header) => this.lenses.take(header),
+      [ToPage.RAYS]: (_, payload) => overlays.takeRays(payload),
+      [ToPage.NO_RAYS]: () => overlays.takeRays(new ArrayBuffer(0)),
+      [ToPage.PREVIEWS]: (header, payload) => {
         this.previews.take(header, payload);
         this.previews.show(this.options);
       },
-      line: (header) => drawings.add(header),
-      text: (header) => drawings.add(header),
-      points: (header, payload) => drawings.add(header, payload),
-      "no item": (header) => drawings.remove(header),
-      slider: (header) => panel.addSlider(header),
-      "no slider": (header) => panel.removeSlider(header),
-      pause: (header) => panel.showPause(header),
-      speed: (header) => panel.showSpeed(header),
-      mark: (header) => this.timeline.addMark(header),
-      "no mark": (header) => this.timeline.removeMark(header),
-      camera: (header) => {
+      [ToPage.LINE]: (header) => drawings.add(header),
+      [ToPage.TEXT]: (header) => drawings.add(header),
+      [ToPage.POINTS]: (header, payload) => drawings.add(header, payload),
+      [ToPage.NO_ITEM]: (header) => drawings.remove(header),
+      [ToPage.SLIDER]: (header) => panel.addSlider(header),
+      [ToPage.NO_SLIDER]: (header) => panel.removeSlider(header),
+      [ToPage.PAUSE]: (header) => panel.showPause(header),
+      [ToPage.SPEED]: (header) => panel.showSpeed(header),
+      [ToPage.MARK]: (header) => this.timeline.addMark(header),
+      [ToPage.NO_MARK]: (header) => this.timeline.removeMark(header),
+      [ToPage.CAMERA]: (header) => {
         if (this.viewpoint.take(header)) this.cameraToTell = true;
       },
-      options: (header) => {
+      [ToPage.OPTIONS]: (header) => {
         this.options.take(header);
         this.scriptOptions = header;
         if (this.switchesToRecall) this.recallSwitches();
@@ -195,16 +212,16 @@ export class App {
 
   /** Adds a message to the history and, unless a past moment is shown, shows it. */
   receive(header, payload) {
-    if (header.type === "past") return this.past.take(header, payload);
+    if (header.type === ToPage.PAST) return this.past.take(header, payload);
     this.history.take(header, payload);
-    if (header.type === "frame") this.past.meet(header);
-    if (header.type === "frame") this.plotFrame(header, payload);
+    if (header.type === ToPage.FRAME) this.past.meet(header);
+    if (header.type === ToPage.FRAME) this.plotFrame(header, payload);
     const name = nameOf(header);
-    const fleeting = header.type === "frame" || (name !== null && !name.startsWith("slider"));
+    const fleeting = header.type === ToPage.FRAME || (name !== null && !name.startsWith("slider"));
     if (fleeting && !this.player.live) return;
-    if (name !== null) this.player.stageNow(name, header.type.startsWith("no ") ? null : this.history.ledger.newest(name));
+    if (name !== null) this.player.stageNow(name, isRemoval(header) ? null : this.history.ledger.newest(name));
     this.show(header, payload);
-    if (header.type === "frame") this.timeline.show();
+    if (header.type === ToPage.FRAME) this.timeline.show();
   }
 
   show(header, payload) {
@@ -236,7 +253,7 @@ export class App {
     this.readings.take(header, payload);
     this.panel.showTime(header);
     this.overlays.time = header.time;
-    if (document.getElementById("bodies").open) this.bodies.show();
+    if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
     if (!header.past && header.picture !== undefined && header.picture !== this.told) this.awaited = this.told = header.picture;
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.undecided = false;
     if (this.viewpoint.lookAtFirst()) this.cameraToTell = true;
@@ -270,8 +287,8 @@ export class App {
   /** Shows what the browser has kept for the script: folded sections and switches. */
   recall() {
     for (const [id, open] of Object.entries(this.memory.get("sections") ?? {})) {
-      const element = document.getElementById(id);
-      if (element) element.open = open;
+      const section = document.getElementById(id);
+      if (section instanceof HTMLDetailsElement) section.open = open;
     }
     this.quality.recall();
     this.recallSwitches();
@@ -313,16 +330,16 @@ export class App {
     const joints = wants.joints ? "all" : [...plotted.joints, ...(selected === null ? [] : [selected])];
     const links = [...plotted.links, ...(selected === null ? [] : [[selected, (link ?? 0) - 1]])];
     const dynamics = wants.dynamics || selected !== null;
-    this.send({ type: "want", ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links });
+    this.send({ type: FromPage.WANT, ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links });
   }
 
   tellSize() {
-    this.send({ type: "size", width: this.camera.width, height: this.camera.height });
+    this.send({ type: FromPage.SIZE, width: this.camera.width, height: this.camera.height });
   }
 
   tellVisibility() {
     this.gamepads.tell();
-    this.send({ type: "visible", visible: !document.hidden });
+    this.send({ type: FromPage.VISIBLE, visible: !document.hidden });
   }
 
   /** Data for a saved replay that are not in the recorded messages: camera and options. */
@@ -339,7 +356,7 @@ export class App {
   }
 
   draw(now) {
-    requestAnimationFrame((now) => this.draw(now));
+    requestAnimationFrame((next) => this.draw(next));
     // While the recording is filmed, all time is for the film.
     if (this.saving.rendering) return;
     const passed = now - this.last;
@@ -354,7 +371,7 @@ export class App {
     this.fitCanvas();
     if (this.cameraToTell) {
       this.cameraToTell = false;
-      this.send({ type: "camera", ...this.camera.state(), chosen: !this.viewpoint.undecided });
+      this.send({ type: FromPage.CAMERA, ...this.camera.state(), chosen: !this.viewpoint.undecided });
     }
     this.frames += 1;
     if (now - this.since > 500) {
@@ -365,7 +382,7 @@ export class App {
     if (!this.stale || this.renderer.lost) return;
     this.stale = false;
     if (this.options.rendering) this.drawScene();
-    if (this.awaited !== null) this.send({ type: "drawn", picture: this.awaited });
+    if (this.awaited !== null) this.send({ type: FromPage.DRAWN, picture: this.awaited });
     this.awaited = null;
   }
 

@@ -9,7 +9,7 @@ const MOST_TOLD = 6000;
 
 export class Connection {
   /**
-   * @param {(header: object, payload: ArrayBuffer) => void} receive called with each message
+   * @param {(header: MessageToPage, payload: ArrayBuffer) => void} receive called with each message
    * @param {(connected: boolean) => void} changed called when the connection is made or lost
    */
   constructor(receive, changed) {
@@ -94,13 +94,19 @@ export class Connection {
     this.socket.close();
   }
 
+  /** @param {MessageFromPage} message */
   send(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
     else this.untold?.push(JSON.stringify(message));
   }
 }
 
-/** Header and payload of a message; src/carom/viewer/messages.py documents the format. */
+/**
+ * Header and payload of a message; src/carom/viewer/messages.py documents the format.
+ *
+ * @param {ArrayBuffer} buffer
+ * @returns {[MessageToPage, ArrayBuffer]}
+ */
 function decoded(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));

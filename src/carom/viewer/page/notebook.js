@@ -4,7 +4,7 @@
 
 (async ({ id, port, token, proxy, unreachable }) => {
   const frame = document.getElementById(id);
-  if (!frame) return;
+  if (!(frame instanceof HTMLIFrameElement)) return;
   const query = `?token=${token}`;
   const config = document.getElementById("jupyter-config-data");
   const base = config ? JSON.parse(config.textContent).baseUrl : document.body.dataset.baseUrl;

@@ -2,6 +2,8 @@
 
 import { decoded } from "./time/recording.js";
 
+/** @import { App } from "./app.js" */
+
 /**
  * @param {string} text the recording in base 64
  * @param {App} app

@@ -1,6 +1,10 @@
 // Which run the page shows: a run that has ended stays until the user lets the next one take its place.
 
 import { choice } from "./panel/notices.js";
+import { FromPage, ToPage } from "./protocol.js";
+
+/** @import { App } from "./app.js" */
+/** @import { Notices } from "./panel/notices.js" */
 
 /** The choice to let each next run take the place of the last one at once, kept by the browser. */
 const AT_ONCE = "carom.nextRunAtOnce";
@@ -12,7 +16,9 @@ export class Runs {
    * @param {() => void} reconnect closes the connection, which then opens again
    */
   constructor(app, notices, reconnect) {
-    Object.assign(this, { app, notices, reconnect });
+    this.app = app;
+    this.notices = notices;
+    this.reconnect = reconnect;
     /** The run that is shown, null before the first one. */
     this.shown = null;
     /** The run of the present connection: null until it has told its title. */
@@ -24,8 +30,8 @@ export class Runs {
 
   /** Takes a message of the connection, which shows it unless the run that has ended is still shown. */
   receive(header, payload) {
-    if (header.type === "title" && this.present === null) this.meet(header);
-    if (header.type === "ending") this.error = header.error;
+    if (header.type === ToPage.TITLE && this.present === null) this.meet(header);
+    if (header.type === ToPage.ENDING) this.error = header.error;
     if (this.present !== null && this.present === this.shown) this.app.receive(header, payload);
   }
 
@@ -45,7 +51,7 @@ export class Runs {
   }
 
   offer() {
-    this.app.send({ type: "visible", visible: false });
+    this.app.send({ type: FromPage.VISIBLE, visible: false });
     const always = Object.assign(document.createElement("input"), { type: "checkbox" });
     const label = document.createElement("label");
     label.append(always, "Always at once");

@@ -11,6 +11,7 @@ from carom.viewer.board import Board, Reader, boards
 from carom.viewer.details import Details, Wish
 from carom.viewer.messages import decoded
 from carom.viewer.notebook import replay_frame
+from carom.viewer.protocol import to_page
 from carom.viewer.replay.page import replay_of
 from carom.viewer.replay.recording import Recording
 from carom.viewer.scene_feed import SceneFeed
@@ -22,9 +23,9 @@ if TYPE_CHECKING:
 _PAGE = 1
 # Tolerance for rounding errors in sums of time steps, as a fraction of the interval between two frames.
 _EARLY = 1e-6
-# Types of messages that are recorded; the others are only for live pages.
+# Kinds of messages that are recorded (`Message.kind`); the others are only for live pages.
 _OF_BODIES = frozenset({"body", "mesh", "texture", "layout", "dynamics", "constraints"})
-_OF_SCRIPTS = frozenset({"line", "text", "points", "item", "slider"})
+_OF_SCRIPTS = frozenset({"item", "slider"})
 
 
 class ReplayRecorder:
@@ -154,12 +155,12 @@ class ReplayRecorder:
         return replay_of(self._recording.packed(title=self._title, **self._facts))
 
     def _take_from(self, reader: Reader, kept: frozenset[str]) -> None:
-        for message in reader.messages():
-            header, payload = decoded(message)
-            kind = header["type"]
-            if kind.removeprefix("no ") in kept:
+        for told in reader.messages():
+            header, payload = decoded(told)
+            message = to_page.declaration(header)
+            if message.kind in kept:
                 self._recording.add(header, payload)
-            elif kind == "options":
+            elif message is to_page.OPTIONS:
                 self._facts["options"] = header
-            elif kind == "camera" and header["chosen"]:
+            elif message is to_page.CAMERA and header["chosen"]:
                 self._facts.setdefault("camera", header)

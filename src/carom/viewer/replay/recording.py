@@ -20,10 +20,10 @@ from zlib import compress, decompress
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.viewer.protocol import to_page
+
 FORMAT = 1
 _UINT = np.dtype("<u4")
-# What of the header of a frame is not shared by a run of frames.
-_OWN = frozenset({"time", "rate", "picture", "number"})
 
 
 class Recording:
@@ -39,12 +39,12 @@ class Recording:
 
     def add(self, header: dict[str, Any], payload: bytes) -> None:
         """Adds the next message."""
-        if header["type"] != "frame":
+        if header["type"] != to_page.FRAME.type:
             self._end_run()
             self._records.append({"message": header, "bytes": len(payload)})
             self._parts.append(payload)
             return
-        shared = {name: value for name, value in header.items() if name not in _OWN}
+        shared = {name: value for name, value in header.items() if name not in to_page.OWN_OF_FRAMES}
         if self._run and (shared != self._shared or len(payload) != len(self._run[0])):
             self._end_run()
         self._shared = shared

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.errors import StateError
 from carom.viewer.board import Board
+from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -57,7 +58,7 @@ class Moments:
             self._take_down(oldest)
         state = self._world.snapshot()
         self._marks[self._next] = state
-        header = {"type": "mark", "mark": self._next, "time": float(state.time)}
+        header = to_page.MARK(mark=self._next, time=float(state.time))
         self._board.put(("mark", self._next), header)
         self._next += 1
 
@@ -74,4 +75,4 @@ class Moments:
             raise
 
     def _take_down(self, number: int) -> None:
-        self._board.take_down(("mark", number), {"type": "no mark", "mark": number})
+        self._board.take_down(("mark", number), to_page.NO_MARK(mark=number))

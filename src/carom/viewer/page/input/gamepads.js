@@ -1,10 +1,12 @@
 // Gamepads: tells the simulation their axes and buttons when these change.
 
+import { FromPage } from "../protocol.js";
+
 /** Positions are told in steps of this size: sticks are never quite at rest. */
 const STEP = 0.001;
 
 export class Gamepads {
-  /** @param {(message: object) => void} send */
+  /** @param {(message: MessageFromPage) => void} send */
   constructor(send) {
     this.send = send;
     this.begin();
@@ -21,7 +23,7 @@ export class Gamepads {
     const text = JSON.stringify(gamepads);
     if (text === this.told) return;
     this.told = text;
-    this.send({ type: "gamepads", gamepads });
+    this.send({ type: FromPage.GAMEPADS, gamepads });
   }
 }
 

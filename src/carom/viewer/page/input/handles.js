@@ -2,6 +2,9 @@
 // axis to rotate it, and a centre to move it in the plane that faces the viewer.
 
 import { add, dot, quaternionProduct, scale, subtract, turned } from "../view/maths.js";
+import { FromPage } from "../protocol.js";
+
+/** @import { Camera } from "../view/camera.js" */
 
 const AXES = [
   [1, 0, 0],
@@ -23,10 +26,11 @@ const NEAR = 14;
 export class Handles {
   /**
    * @param {Camera} camera
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    */
   constructor(camera, send) {
-    Object.assign(this, { camera, send });
+    this.camera = camera;
+    this.send = send;
     this.clear();
   }
 
@@ -39,11 +43,6 @@ export class Handles {
   take(header) {
     // While the user moves a handle, the pose that the simulation sends back is out of date.
     if (this.held?.item.handle !== header.handle) this.items.set(header.handle, { ...header });
-  }
-
-  remove({ handle }) {
-    this.items.delete(handle);
-    if (this.held?.item.handle === handle) this.held = null;
   }
 
   get busy() {
@@ -60,7 +59,7 @@ export class Handles {
         const distance = pixel ? Math.hypot(pixel[0] - x, pixel[1] - y) : Infinity;
         if (distance >= nearest) continue;
         nearest = distance;
-        this.held = { item, ...knob, from: { position: item.position, orientation: item.orientation } };
+        this.held = { item, ...knob, start: null, from: { position: item.position, orientation: item.orientation } };
       }
     }
     if (this.held) this.held.start = this.grip(x, y);
@@ -79,14 +78,18 @@ export class Handles {
       item.position = add(from.position, shift);
     }
     const { handle, position, orientation } = item;
-    this.send({ type: "handle", handle, position, orientation });
+    this.send({ type: FromPage.HANDLE, handle, position, orientation });
   }
 
   end() {
     this.held = null;
   }
 
-  /** Mouse position relative to the knob: distance along its axis, angle about it, or point in the plane. */
+  /**
+   * Mouse position relative to the knob: distance along its axis, angle about it, or point in the plane.
+   *
+   * @returns {any} a number or, to carry, a vector; null if there is none
+   */
   grip(x, y) {
     const { kind, axis, from } = this.held;
     const { eye, forward } = this.camera;

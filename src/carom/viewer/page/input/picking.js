@@ -1,6 +1,7 @@
 // Picking: finding the shape under the mouse, and pulling or turning its body.
 
 import { add, dot, quaternionProduct, scale, subtract, turned } from "../view/maths.js";
+import { FromPage } from "../protocol.js";
 
 /** The nearest shape hit by a ray: body, link, distance, and point in world and link; null without a hit. */
 export function pick(scene, options, eye, direction) {
@@ -70,7 +71,10 @@ function meetsBounds({ lower, upper }, from, way, limit) {
   return enter <= leave;
 }
 
+/** @type {(quaternion: Quaternion) => Quaternion} */
 const inverse = ([x, y, z, w]) => [-x, -y, -z, w];
+
+/** @import { Quaternion } from "../view/maths.js" */
 
 /** Angle by which a body turns for a motion of the mouse [rad / pixel]. */
 const TURN_PER_PIXEL = 0.01;
@@ -78,7 +82,10 @@ const TURN_PER_PIXEL = 0.01;
 /** Grabs a body, and pulls its point in the plane that faces the viewer, or turns it. */
 export class Grasp {
   constructor(scene, camera, options, send) {
-    Object.assign(this, { scene, camera, options, send });
+    this.scene = scene;
+    this.camera = camera;
+    this.options = options;
+    this.send = send;
     this.held = null;
   }
 
@@ -102,7 +109,7 @@ export class Grasp {
       return;
     }
     this.held = { body, link, local, target: point, depth: found.distance * dot(direction, this.camera.forward) };
-    this.send({ type: "grasp", body, link: link - 1, point: local, target: point });
+    this.send({ type: FromPage.GRASP, body, link: link - 1, point: local, target: point });
   }
 
   move(x, y) {
@@ -110,7 +117,7 @@ export class Grasp {
     const direction = this.camera.ray(x, y);
     const distance = this.held.depth / dot(direction, this.camera.forward);
     this.held.target = add(this.camera.eye, scale(direction, distance));
-    this.send({ type: "pull", target: this.held.target });
+    this.send({ type: FromPage.PULL, target: this.held.target });
   }
 
   /** Turns the body about the upward axis of the view by motions to the side, and about the other one by those up. */
@@ -122,11 +129,11 @@ export class Grasp {
     if (pixels === 0) return;
     const half = (TURN_PER_PIXEL * pixels) / 2;
     const turn = [...scale(vector, Math.sin(half) / pixels), Math.cos(half)];
-    this.send({ type: "turn", body, link: link - 1, orientation: quaternionProduct(turn, from) });
+    this.send({ type: FromPage.TURN, body, link: link - 1, orientation: quaternionProduct(turn, from) });
   }
 
   end() {
-    if (this.held) this.send({ type: "let go" });
+    if (this.held) this.send({ type: FromPage.LET_GO });
     this.held = null;
   }
 

@@ -1,5 +1,7 @@
 // Two fingers on a touch screen: they zoom by their distance and move the view by their middle.
 
+/** @import { Camera } from "../view/camera.js" */
+
 export class Pinch {
   /** @param {Camera} camera */
   constructor(camera) {

@@ -5,6 +5,7 @@
 // left button does; two fingers zoom and shift the view.
 
 import { Pinch } from "./pinch.js";
+import { FromPage } from "../protocol.js";
 
 /** Motion of the mouse with a button down from which on it is a drag, not a click [pixels]. */
 const CLICK_PIXELS = 3;
@@ -23,7 +24,7 @@ export class Pointer {
     /** Grabs a handle or a body under the mouse; see `Hands` in handles.js. */
     this.grasp = null;
     /** Called with the pixel of a click without a drag. */
-    this.clicked = () => {};
+    this.clicked = (_x, _y) => {};
     /** Pixel where the left button was pressed, until it is known to be a click or a drag. */
     this.pressed = null;
     /** Whether the drag that begins there is to turn the body. */
@@ -102,6 +103,6 @@ export class Pointer {
   }
 
   tell(event, more) {
-    this.send({ type: "mouse", x: event.offsetX, y: event.offsetY, ...more });
+    this.send({ type: FromPage.MOUSE, x: event.offsetX, y: event.offsetY, ...more });
   }
 }

@@ -4,6 +4,10 @@ import { fixed, shown } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { press } from "./states.js";
 import { titlesOf } from "../view/names.js";
+import { FromPage } from "../protocol.js";
+
+/** @import { Readings } from "../view/readings.js" */
+/** @import { Scene } from "../view/scene.js" */
 
 const MOVABLE = /revolute|continuous|prismatic/;
 /** Range of the slider of a joint without limits, to either side: revolute [rad] and prismatic [m]. */
@@ -19,10 +23,12 @@ export class Bodies {
   /**
    * @param {Scene} scene
    * @param {Readings} readings
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    */
   constructor(scene, readings, send) {
-    Object.assign(this, { scene, readings, send });
+    this.scene = scene;
+    this.readings = readings;
+    this.send = send;
     this.list = document.getElementById("bodies-list");
     this.card = document.getElementById("body-card");
     this.selected = null;
@@ -30,7 +36,7 @@ export class Bodies {
     this.sliders = new Map();
     this.known = "";
     /** Called with body and link (or null) when the selection changes. */
-    this.selectionChanged = () => {};
+    this.selectionChanged = (_body, _link) => {};
     /** Called when a body has been hidden or shown. */
     this.changed = () => {};
   }
@@ -42,7 +48,7 @@ export class Bodies {
     if (known === this.known) return;
     this.known = known;
     const titles = titlesOf(this.scene);
-    document.getElementById("bodies-count").textContent = bodies.length;
+    document.getElementById("bodies-count").textContent = String(bodies.length);
     this.list.replaceChildren(
       ...bodies.slice(0, MOST_LISTED).map(({ body, name }) => {
         const text = `${body}  ${titles.get(body)}`;
@@ -105,7 +111,7 @@ export class Bodies {
       const slider = this.sliders.get(key);
       slider.byHand = value;
       back.disabled = false;
-      this.send({ type: "drive", body, joint, mode: slider.mode, target: value });
+      this.send({ type: FromPage.DRIVE, body, joint, mode: slider.mode, target: value });
     });
     const mode = Object.assign(document.createElement("select"), { title: `What the slider of ${link.joint} sets` });
     mode.append(...MODES.map((name) => new Option(name)));
@@ -117,7 +123,7 @@ export class Bodies {
     };
     back.addEventListener("click", () => {
       release();
-      this.send({ type: "give back", body, joint });
+      this.send({ type: FromPage.GIVE_BACK, body, joint });
     });
     mode.addEventListener("change", () => {
       Object.assign(this.sliders.get(key), { mode: mode.value, byHand: null });
@@ -208,6 +214,7 @@ function numbers(values, digits) {
   return values.map((value) => fixed(value, digits)).join("  ");
 }
 
+/** @param {number[]} quaternion */
 function eulerDegrees([x, y, z, w]) {
   const roll = Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y));
   const pitch = Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x))));

@@ -6,6 +6,12 @@ import { OverlayChart } from "./overlay_chart.js";
 import { sampleAt } from "./series.js";
 import { unfold } from "./states.js";
 import { Traces } from "./traces.js";
+import { element } from "../elements.js";
+
+/** @import { Plotted } from "./traces.js" */
+/** @import { Memory } from "../memory.js" */
+/** @import { Player } from "../time/player.js" */
+/** @import { TimeWindow } from "../time/window.js" */
 
 const LEAST_HEIGHT = 110;
 /** Height of the view that is left at least [pixels]. */
@@ -17,18 +23,21 @@ const NOTCH = 1.25;
 
 export class Dock {
   /**
-   * @param {Map<string, object>} plotted the plots by key; see `plots.js`
+   * @param {Map<string, Plotted>} plotted the plots by key
    * @param {Player} player
    * @param {TimeWindow} part the part of the history that is shown
    * @param {Memory} memory
    * @param {() => void} changed called when the page has to be drawn again
    */
   constructor(plotted, player, part, memory, changed) {
-    Object.assign(this, { player, part, memory, changed });
+    this.player = player;
+    this.part = part;
+    this.memory = memory;
+    this.changed = changed;
     this.traces = new Traces(plotted);
     this.root = document.getElementById("dock");
     this.legend = document.getElementById("dock-legend");
-    this.canvas = document.getElementById("dock-chart");
+    this.canvas = element("dock-chart", HTMLCanvasElement);
     this.button = document.getElementById("dock-open");
     this.chart = new OverlayChart(this.canvas);
     this.hovered = null;
@@ -139,7 +148,7 @@ export class Dock {
     chart.draw(traces.filter((trace) => trace.shown), part.range, { shown, hovered }, timeAt);
     const at = hovered ?? shown ?? history.end;
     document.getElementById("dock-time").textContent = `${timeAt(at).toFixed(3)} s`;
-    document.getElementById("dock-all").disabled = part.zoomed === null;
+    element("dock-all", HTMLButtonElement).disabled = part.zoomed === null;
     this.fillLegend(traces, at);
   }
 

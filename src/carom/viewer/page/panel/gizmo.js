@@ -2,6 +2,8 @@
 
 import { dot } from "../view/maths.js";
 
+/** @import { Viewpoint } from "./viewpoint.js" */
+
 const SIZE = 76;
 const REACH = 27;
 const RADIUS = 8;

@@ -1,5 +1,9 @@
 // Key events: they are sent to the script, and some change the view, as in PyBullet's window.
 
+import { FromPage } from "../protocol.js";
+
+/** @import { App } from "../app.js" */
+
 /** Keys that switch an option. */
 const SHORTCUTS = {
   a: "bounds",
@@ -25,10 +29,10 @@ export class Keys {
   constructor(app) {
     this.app = app;
     this.acts = {
-      d: () => app.send({ type: "sleep" }),
+      d: () => app.send({ type: FromPage.SLEEP }),
       i: () => app.panel.togglePause(),
-      o: () => app.send({ type: "step" }),
-      p: () => app.send({ type: "profile", running: true }),
+      o: () => app.send({ type: FromPage.STEP }),
+      p: () => app.send({ type: FromPage.PROFILE, running: true }),
       F1: () => app.saving.toggleFilm(),
       "?": () => app.help.toggle(),
     };
@@ -56,7 +60,7 @@ export class Keys {
     if (key === "Escape" && this.app.help.open) return this.app.help.toggle();
     // While the view is that of a script's camera, ESC goes back to the user's own.
     if (key === "Escape" && this.app.lenses.looking) return this.app.lenses.leave();
-    this.app.send({ type: "key", key, code: event.code, down: true });
+    this.app.send({ type: FromPage.KEY, key, code: event.code, down: true });
     if (!this.app.options.shortcuts || command || event.altKey) return;
     const name = SHORTCUTS[key];
     if (name) {
@@ -68,8 +72,8 @@ export class Keys {
   }
 
   up(event) {
-    this.app.send({ type: "key", key: event.key, code: event.code, down: false });
-    if (event.key === "p") this.app.send({ type: "profile", running: false });
+    this.app.send({ type: FromPage.KEY, key: event.key, code: event.code, down: false });
+    if (event.key === "p") this.app.send({ type: FromPage.PROFILE, running: false });
   }
 
   /** What was clicked does not keep the keyboard: the script alone gets the keys, as in PyBullet's window. */
@@ -78,7 +82,7 @@ export class Keys {
   }
 
   leave() {
-    this.app.send({ type: "blur" });
-    this.app.send({ type: "profile", running: false });
+    this.app.send({ type: FromPage.BLUR });
+    this.app.send({ type: FromPage.PROFILE, running: false });
   }
 }

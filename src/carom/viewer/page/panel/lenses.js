@@ -2,13 +2,16 @@
 
 import { Lens } from "../view/lens.js";
 
+/** @import { Camera } from "../view/camera.js" */
+
 export class Lenses {
   /**
    * @param {Camera} camera
    * @param {() => void} changed called when another view is shown
    */
   constructor(camera, changed) {
-    Object.assign(this, { camera, changed });
+    this.camera = camera;
+    this.changed = changed;
     this.root = document.getElementById("lenses");
     this.frame = document.getElementById("letterbox");
     this.previews = document.getElementById("previews");

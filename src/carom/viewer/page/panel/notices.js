@@ -6,7 +6,8 @@ const BRIEF_MS = 8000;
 export class Notices {
   constructor() {
     this.root = document.getElementById("notice");
-    [this.state, this.message] = [new Row(this.root), new Row(this.root)];
+    this.state = new Row(this.root);
+    this.message = new Row(this.root);
     this.timer = null;
   }
 
@@ -41,7 +42,7 @@ export class Notices {
     const asker = document.activeElement;
     const end = () => {
       this.say(null);
-      asker?.focus({ preventScroll: true });
+      if (asker instanceof HTMLElement) asker.focus({ preventScroll: true });
     };
     const doing = choice(yes, () => {
       end();

@@ -8,6 +8,8 @@ const BOTTOM = 20;
 const AXIS = 56;
 const SHOWN = "#d0342c";
 
+/** @import { Trace } from "./traces.js" */
+
 export class OverlayChart {
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
@@ -28,7 +30,7 @@ export class OverlayChart {
   }
 
   /**
-   * @param {object[]} traces the lines that are shown; see `traces.js`
+   * @param {Trace[]} traces the lines that are shown; see `traces.js`
    * @param {[number, number]} range the moments at the left and the right edge [s]
    * @param {{shown: ?number, hovered: ?number}} moments moments that are marked by a vertical line
    * @param {(clock: number) => number} timeAt the simulated time at a moment

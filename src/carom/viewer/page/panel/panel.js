@@ -3,10 +3,15 @@
 import { fixed } from "./numbers.js";
 import { makeSlider } from "./slider.js";
 import { unfold } from "./states.js";
+import { FromPage } from "../protocol.js";
+import { element } from "../elements.js";
+
+/** @import { Notices } from "./notices.js" */
+/** @import { Options } from "./options.js" */
 
 export class Panel {
   /**
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    * @param {Options} options
    * @param {Notices} notices
    */
@@ -20,14 +25,14 @@ export class Panel {
     document.getElementById("close").addEventListener("click", () => this.askToClose());
     document.getElementById("fold").addEventListener("click", () => this.fold(!this.folded));
     this.pause = document.getElementById("pause");
-    this.step = document.getElementById("step");
-    this.speed = document.getElementById("speed");
+    this.step = element("step", HTMLButtonElement);
+    this.speed = element("speed", HTMLSelectElement);
     this.paused = false;
     this.pause.addEventListener("click", () => this.togglePause());
-    this.step.addEventListener("click", () => send({ type: "step" }));
-    document.getElementById("reset").addEventListener("click", () => send({ type: "reset" }));
+    this.step.addEventListener("click", () => send({ type: FromPage.STEP }));
+    document.getElementById("reset").addEventListener("click", () => send({ type: FromPage.RESET }));
     this.speed.addEventListener("change", () => {
-      send({ type: "speed", speed: this.speed.value === "" ? null : Number(this.speed.value) });
+      send({ type: FromPage.SPEED, speed: this.speed.value === "" ? null : Number(this.speed.value) });
     });
     this.fold(window.innerWidth < 420);
     this.showOptions();
@@ -45,13 +50,13 @@ export class Panel {
 
   /** Asks before the script is ended: the cross is close to the fold arrow. */
   askToClose() {
-    this.notices.ask("End the script?", "End it", "Let it run", () => this.send({ type: "close" }));
+    this.notices.ask("End the script?", "End it", "Let it run", () => this.send({ type: FromPage.CLOSE }));
   }
 
   /** Pauses or continues. It is shown at once, so that a second press before the answer undoes the first. */
   togglePause() {
     const paused = !this.paused;
-    this.send({ type: "pause", paused });
+    this.send({ type: FromPage.PAUSE, paused });
     this.showPause({ paused });
   }
 
@@ -67,7 +72,7 @@ export class Panel {
   }
 
   showSpeed({ speed }) {
-    this.speed.value = speed ?? "";
+    this.speed.value = speed === null ? "" : String(speed);
   }
 
   showTime({ time, rate }) {
@@ -93,9 +98,9 @@ export class Panel {
   }
 
   /** Puts a control where its number belongs: they arrive in the order in which they were last moved. */
-  insert(number, element) {
+  insert(number, control) {
     const later = [...this.controls.keys()].filter((other) => other > number);
-    this.sliders.insertBefore(element, later.length ? this.controls.get(Math.min(...later)).element : null);
+    this.sliders.insertBefore(control, later.length ? this.controls.get(Math.min(...later)).element : null);
   }
 
   removeSlider({ slider }) {
@@ -116,13 +121,13 @@ export class Panel {
   makeChoice(message) {
     const select = document.createElement("select");
     select.append(...message.options.map((text, number) => new Option(text, number)));
-    select.addEventListener("change", () => this.send({ type: "slider", slider: message.slider, value: Number(select.value) }));
+    select.addEventListener("change", () => this.send({ type: FromPage.SLIDER, slider: message.slider, value: Number(select.value) }));
     return this.labelled("row pair", select, message, ({ value }) => (select.value = value));
   }
 
   makeBox(message) {
     const box = Object.assign(document.createElement("input"), { type: "checkbox" });
-    box.addEventListener("change", () => this.send({ type: "slider", slider: message.slider, value: Number(box.checked) }));
+    box.addEventListener("change", () => this.send({ type: FromPage.SLIDER, slider: message.slider, value: Number(box.checked) }));
     return this.labelled("check", box, message, ({ value }) => (box.checked = value !== 0));
   }
 
@@ -130,23 +135,23 @@ export class Panel {
   labelled(className, control, message, show) {
     const label = Object.assign(document.createElement("label"), { className });
     label.append(...(className === "check" ? [control, message.name] : [message.name, control]));
-    const element = Object.assign(document.createElement("div"), { className: "slider" });
-    element.append(label);
+    const root = Object.assign(document.createElement("div"), { className: "slider" });
+    root.append(label);
     show(message);
-    return { element, show };
+    return { element: root, show };
   }
 
   makeButton({ slider, name }) {
-    const element = Object.assign(document.createElement("div"), { className: "slider" });
+    const root = Object.assign(document.createElement("div"), { className: "slider" });
     const button = Object.assign(document.createElement("button"), { textContent: name });
-    button.addEventListener("click", () => this.send({ type: "press", slider }));
-    element.append(button);
-    return { element, show() {} };
+    button.addEventListener("click", () => this.send({ type: FromPage.PRESS, slider }));
+    root.append(button);
+    return { element: root, show() {} };
   }
 
   makeSlider(message) {
     const control = makeSlider(`slider-${message.slider}`, message.name, (value) => {
-      this.send({ type: "slider", slider: message.slider, value });
+      this.send({ type: FromPage.SLIDER, slider: message.slider, value });
     });
     control.show(message);
     return control;

@@ -7,6 +7,11 @@ import { headerOf } from "./table.js";
 import { Readings } from "../view/readings.js";
 import { Series } from "./series.js";
 import { sourcesOf } from "./sources.js";
+import { element } from "../elements.js";
+
+/** @import { Source } from "./sources.js" */
+/** @import { Plotted } from "./traces.js" */
+/** @import { TimeWindow } from "../time/window.js" */
 
 export class Plots {
   /**
@@ -15,11 +20,18 @@ export class Plots {
    * @param {() => void} changed called when the page has to be drawn again
    */
   constructor(scene, history, player, part, memory, wantsChanged, changed) {
-    Object.assign(this, { scene, history, player, memory, wantsChanged, changed });
-    this.select = document.getElementById("joint");
+    this.scene = scene;
+    this.history = history;
+    this.player = player;
+    this.memory = memory;
+    this.wantsChanged = wantsChanged;
+    this.changed = changed;
+    this.select = element("joint", HTMLSelectElement);
     this.root = document.getElementById("charts");
+    /** @type {Map<string, Plotted>} */
     this.plotted = new Map();
     this.dock = new Dock(this.plotted, player, part, memory, changed);
+    /** @type {Map<string, Source>} */
     this.sources = new Map();
     this.valueNames = new Set();
     this.known = "";
@@ -36,13 +48,14 @@ export class Plots {
     const known = JSON.stringify(Object.values(groups).map((group) => group.map(({ key, title }) => [key, title])));
     if (known === this.known) return;
     this.known = known;
+    /** @type {[string, Source][]} */
     const present = Object.values(groups).flatMap((group) => group.map((source) => [source.key, source]));
     // Of bodies that were not there at a past moment, the plots stay.
     this.sources = new Map(this.player.live ? present : [...this.sources, ...present]);
     const options = Object.entries(groups).filter(([, group]) => group.length > 0).map(([title, group]) => {
-      const element = Object.assign(document.createElement("optgroup"), { label: title });
-      element.append(...group.slice(0, 500).map(({ key, title }) => new Option(title, key)));
-      return element;
+      const list = Object.assign(document.createElement("optgroup"), { label: title });
+      list.append(...group.slice(0, 500).map((source) => new Option(source.title, source.key)));
+      return list;
     });
     this.select.replaceChildren(new Option("Plot…", ""), ...options);
     document.getElementById("plots").hidden = this.sources.size === 0;
@@ -76,9 +89,9 @@ export class Plots {
     const root = Object.assign(document.createElement("div"), { className: "chart" });
     const header = document.createElement("header");
     const buttons = document.createElement("span");
-    for (const [text, title, act] of [
-      ["CSV", "Save these numbers", () => this.save(source.key)],
-      ["✕", "Remove", () => this.takeAway(source.key)],
+    for (const { text, title, act } of [
+      { text: "CSV", title: "Save these numbers", act: () => this.save(source.key) },
+      { text: "✕", title: "Remove", act: () => this.takeAway(source.key) },
     ]) {
       const button = Object.assign(document.createElement("button"), { textContent: text, title });
       button.addEventListener("click", act);
@@ -128,7 +141,11 @@ export class Plots {
     for (const { series } of this.plotted.values()) series.fillSoon();
   }
 
-  /** Adds plots for values that a script has begun to plot. */
+  /**
+   * Adds plots for values that a script has begun to plot.
+   *
+   * @param {FrameToPage} header
+   */
   takeNames({ values }) {
     for (const name of Object.keys(values ?? {})) this.takeName(name);
   }

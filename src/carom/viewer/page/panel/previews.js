@@ -2,6 +2,9 @@
 // buttons, and all are moved by their titles; the browser remembers it.
 
 import { press, unfold } from "./states.js";
+import { FromPage } from "../protocol.js";
+
+/** @import { Memory } from "../memory.js" */
 
 const KINDS = ["rgbPreview", "depthPreview", "segmentationPreview"];
 const TITLES = ["colour", "depth", "segmentation"];
@@ -12,10 +15,11 @@ const SMALL = 200;
 export class Previews {
   /**
    * @param {Memory} memory
-   * @param {(message: object) => void} send
+   * @param {(message: MessageFromPage) => void} send
    */
   constructor(memory, send) {
-    Object.assign(this, { memory, send });
+    this.memory = memory;
+    this.send = send;
     this.root = document.getElementById("previews");
     /** Titles of the folded and of the enlarged ones, and the place of the upper left corner; null for its own. */
     this.state = { folded: [], large: [], place: null };
@@ -96,7 +100,7 @@ export class Previews {
     const wanted = large.some((title) => !folded.includes(title)) ? LARGE : SMALL;
     if (this.taken && wanted !== this.asked) {
       this.asked = wanted;
-      this.send({ type: "preview width", width: wanted });
+      this.send({ type: FromPage.PREVIEW_WIDTH, width: wanted });
     }
     this.put();
   }
@@ -118,7 +122,7 @@ export class Previews {
   take({ width, height }, payload) {
     const bytes = new Uint8Array(payload);
     this.figures.forEach((figure, index) => {
-      const canvas = figure.firstChild;
+      const canvas = figure.querySelector("canvas");
       [canvas.width, canvas.height] = [width, height];
       const picture = new ImageData(width, height);
       let from = index * width * height * 3;

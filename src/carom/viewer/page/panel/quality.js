@@ -1,14 +1,20 @@
 // Sharp or fluent: the choice that a browser without a graphics card leaves, and why the picture is coarse.
 
+import { element } from "../elements.js";
+
+/** @import { Pace } from "../view/software/pace.js" */
+/** @import { Memory } from "../memory.js" */
+
 export class Quality {
   /**
-   * @param {Renderer} renderer
+   * @param {{byProcessor: boolean, pace: Pace}} renderer
    * @param {Memory} memory keeps the choice for the next run of the script
    * @param {() => void} changed called when the view has to be drawn again
    */
   constructor({ byProcessor, pace }, memory, changed) {
-    Object.assign(this, { pace, memory });
-    this.select = document.getElementById("sharpness");
+    this.pace = pace;
+    this.memory = memory;
+    this.select = element("sharpness", HTMLSelectElement);
     this.reason = document.getElementById("coarse");
     document.getElementById("quality").hidden = !byProcessor;
     this.select.addEventListener("change", () => {

@@ -3,17 +3,23 @@
 import { POSE_FLOATS } from "../view/scene.js";
 import { Readings } from "../view/readings.js";
 
+/** @import { Vector } from "../view/maths.js" */
+/** @import { Source } from "./sources.js" */
+/** @import { History } from "../time/history.js" */
+
 /** Number of frames that are read at once; the page draws in between. */
 const AT_ONCE = 3000;
 
 export class Series {
   /**
-   * @param {object} source see `sources.js`
+   * @param {Source} source
    * @param {History} history
    * @param {() => void} changed called when earlier samples have been read
    */
   constructor(source, history, changed) {
-    Object.assign(this, { source, history, changed });
+    this.source = source;
+    this.history = history;
+    this.changed = changed;
     this.clear();
     this.fill();
   }
@@ -68,6 +74,7 @@ export class Series {
     return values === null ? null : { clock, time: header.time, values };
   }
 
+  /** @returns {?{position: Vector, orientation: number[]}} */
   pose({ layout }, payload, body, link) {
     const start = this.startsOf(layout).get(body);
     if (start === undefined || 4 * (start + POSE_FLOATS * (link + 1)) > payload.byteLength) return null;

@@ -6,7 +6,7 @@ import { shown, stepFor } from "./numbers.js";
  * @param {string} id of the slider's element
  * @param {string} name
  * @param {(value: number) => void} moved called with the value that the user has set
- * @returns {{element: HTMLElement, show: (facts: {lower: number, upper: number, value: number}) => void}}
+ * @returns {{element: HTMLElement, show: (facts: {lower: number, upper: number, value: number}) => void, begin: () => void}}
  */
 export function makeSlider(id, name, moved) {
   const element = Object.assign(document.createElement("div"), { className: "slider" });
@@ -40,7 +40,7 @@ export function makeSlider(id, name, moved) {
     // While the user moves the slider, the value that the simulation sends back is out of date.
     if (held) return;
     span = upper - lower;
-    typed.step = stepFor(span);
+    typed.step = String(stepFor(span));
     [range.min, range.max, range.value] = [lower, upper, value];
     start ??= Number(range.value);
     read();

@@ -8,8 +8,33 @@ const AT_REST = { velocity: [0, 0, 0], rate: [0, 0, 0] };
 const UNKNOWN = { velocity: [null, null, null], rate: [null, null, null] };
 const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
 
-/** All quantities that can be plotted now: groups of sources by title. */
+/** @import { Readings } from "../view/readings.js" */
+/** @import { Vector } from "../view/maths.js" */
+
+/**
+ * A quantity that can be plotted: a row of charts, and what reads the values of their lines from a frame.
+ *
+ * @typedef {object} Source
+ * @property {string} key
+ * @property {string} title
+ * @property {{name: string, unit?: string, traces: {name: string, target?: boolean}[]}[]} charts
+ * @property {(frame: Facts) => ?(?number)[][]} read null if the frame does not have the quantity
+ * @property {{joints?: number[], links?: [number, number][], contacts?: boolean}} wants what is to be asked for
+ */
+
+/**
+ * What sources read of a frame; the pose is null where the frame has none.
+ *
+ * @typedef {{readings: Readings, pose: (body: number, link: number) => ?{position: Vector, orientation: number[]}}} Facts
+ */
+
+/**
+ * All quantities that can be plotted now: groups of sources by title.
+ *
+ * @returns {Record<string, Source[]>}
+ */
 export function sourcesOf(scene, valueNames) {
+  /** @type {Record<string, Source[]>} */
   const groups = { Joints: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
   const titles = titlesOf(scene);
   for (const body of scene.bodies.values()) {
@@ -18,13 +43,14 @@ export function sourcesOf(scene, valueNames) {
       if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, title, index - 1, link));
       if (index > 0) groups["Force-torque sensors"].push(sensorSource(body, title, index - 1, link));
     });
-    groups.Bodies.push(bodySource(scene, body));
+    groups.Bodies.push(bodySource(body));
     groups["Contact forces"].push(contactSource(body));
   }
   for (const name of valueNames) groups.Values.push(valueSource(name));
   return groups;
 }
 
+/** @returns {Source} */
 function jointSource({ body }, name, joint, link) {
   const read = ({ readings }) => {
     const row = readings.joints.get(`${body},${joint}`);
@@ -41,7 +67,8 @@ function jointSource({ body }, name, joint, link) {
   return { key: `${body},${joint}`, title: `${name} · ${link.joint}`, charts, read, wants: { joints: [body] } };
 }
 
-function bodySource(scene, { body, name, links }) {
+/** @returns {Source} */
+function bodySource({ body, name, links }) {
   const read = ({ readings, pose }) => {
     const where = pose(body, 0);
     if (!where) return null;
@@ -53,6 +80,7 @@ function bodySource(scene, { body, name, links }) {
   return { key: `body ${body}`, title: `${name} (body ${body})`, charts, read, wants: { links: [[body, -1]] } };
 }
 
+/** @returns {Source} */
 function contactSource({ body, name }) {
   const read = ({ readings }) => {
     const forces = readings.contacts.filter(({ a, b }) => a[0] === body || b[0] === body);
@@ -64,6 +92,7 @@ function contactSource({ body, name }) {
   return { key: `contact ${body}`, title: `${name} (body ${body})`, charts, read, wants: { contacts: true } };
 }
 
+/** @returns {Source} */
 function sensorSource({ body }, name, joint, link) {
   const read = ({ readings }) => {
     const row = readings.links.get(`${body},${joint}`);
@@ -73,6 +102,7 @@ function sensorSource({ body }, name, joint, link) {
   return { key: `sensor ${body},${joint}`, title: `${name} · ${link.joint}`, charts, read, wants: { links: [[body, joint]] } };
 }
 
+/** @returns {Source} */
 function valueSource(name) {
   const read = ({ readings }) => (name in readings.values ? [[readings.values[name]]] : null);
   return { key: `value ${name}`, title: name, charts: [{ name, traces: [{ name: "" }] }], read, wants: {} };

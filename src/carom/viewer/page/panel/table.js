@@ -2,10 +2,12 @@
 
 import { firstAfter } from "./series.js";
 
+/** @import { Trace } from "./traces.js" */
+
 /**
  * A table of lines over time: a row for each frame in a part of the history that has a value of any.
  *
- * @param {{title: string, unit: string, series: Series, value: (values: object) => ?number}[]} traces
+ * @param {Trace[]} traces
  * @param {[number, number]} range begin and end on the history's clock [s]
  */
 export function tableOf(traces, [from, to]) {

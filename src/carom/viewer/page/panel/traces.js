@@ -2,8 +2,37 @@
 
 const COLOURS = ["#1f77b4", "#d9482b", "#2f9e44", "#8250c4", "#c28a00", "#1aa0a8", "#d6418d", "#7f6a55", "#5b7fff", "#98a11c"];
 
+/** @import { Chart } from "./chart.js" */
+/** @import { Series } from "./series.js" */
+/** @import { Source } from "./sources.js" */
+
+/**
+ * A quantity that is plotted, with its charts, and the element that has them.
+ *
+ * @typedef {object} Plotted
+ * @property {Source} source
+ * @property {HTMLElement} root
+ * @property {Chart[]} charts
+ * @property {Series} series
+ * @property {{clock: number, time: number, values: number[][]}[]} samples
+ */
+
+/**
+ * A line of the chart; `value` reads its value from a sample's values.
+ *
+ * @typedef {object} Trace
+ * @property {string} key
+ * @property {string} title
+ * @property {string} unit
+ * @property {string} colour
+ * @property {boolean} target whether it is the target of another one, and dashed
+ * @property {Series} series
+ * @property {(values: number[][]) => ?number} value
+ * @property {boolean} shown
+ */
+
 export class Traces {
-  /** @param {Map<string, object>} plotted the plots by key; see `plots.js` */
+  /** @param {Map<string, Plotted>} plotted the plots by key */
   constructor(plotted) {
     this.plotted = plotted;
     /** Which lines are shown, by key; of new plots those of the first chart. */
@@ -11,7 +40,11 @@ export class Traces {
     this.colours = new Map();
   }
 
-  /** All lines: key, title, unit, colour, and what reads the value from a sample's values. */
+  /**
+   * All lines.
+   *
+   * @returns {Trace[]}
+   */
   get all() {
     return [...this.plotted.values()].flatMap(({ source, series }) =>
       source.charts.flatMap((chart, i) =>
@@ -36,7 +69,11 @@ export class Traces {
   }
 }
 
-/** The name of a chart without its unit, and the unit: `force [N]` has `N`. */
+/**
+ * The name of a chart without its unit, and the unit: `force [N]` has `N`.
+ *
+ * @param {{name: string, unit?: string}} chart
+ */
 function partsOf({ name, unit }) {
   const [, text, stated] = /^(.*?)(?: \[(.*)\])?$/.exec(name);
   return { text, unit: unit ?? stated ?? "" };

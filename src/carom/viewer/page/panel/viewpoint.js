@@ -3,6 +3,12 @@
 import { boundsOfBody, boundsOfScene, downToFloor } from "../view/bounds.js";
 import { PRESETS } from "../view/camera.js";
 import { fixed } from "./numbers.js";
+import { element } from "../elements.js";
+
+/** @import { Memory } from "../memory.js" */
+/** @import { Options } from "./options.js" */
+/** @import { Camera } from "../view/camera.js" */
+/** @import { Scene } from "../view/scene.js" */
 
 export class Viewpoint {
   /**
@@ -13,9 +19,13 @@ export class Viewpoint {
    * @param {() => void} moved called when the user has moved the camera
    */
   constructor(camera, scene, options, memory, moved) {
-    Object.assign(this, { camera, scene, options, memory, moved });
+    this.camera = camera;
+    this.scene = scene;
+    this.options = options;
+    this.memory = memory;
+    this.moved = moved;
     this.numbers = document.getElementById("camera-numbers");
-    this.following = document.getElementById("follow");
+    this.following = element("follow", HTMLInputElement);
     this.selection = null;
     /** Whether the page fits the scene into view, because neither script nor user has set the camera. */
     this.undecided = true;
@@ -70,8 +80,8 @@ export class Viewpoint {
   /** How much of the view the panel and the time bar cover [pixels]. */
   get insets() {
     const covered = (id, measure) => {
-      const element = document.getElementById(id);
-      return element.hidden ? 0 : measure(element.getBoundingClientRect());
+      const part = document.getElementById(id);
+      return part.hidden ? 0 : measure(part.getBoundingClientRect());
     };
     const folded = document.getElementById("panel").classList.contains("folded");
     const side = folded ? 0 : covered("panel", ({ left }) => this.camera.width - left);

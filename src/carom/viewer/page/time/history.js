@@ -1,6 +1,7 @@
 // The last frames of a simulation, and the other messages shown with them.
 
 import { Ledger, sameBytes } from "./ledger.js";
+import { KEPT_BY, REMOVAL, ToPage } from "../protocol.js";
 
 /** Maximum memory for frames and other messages [bytes]. */
 export const BUDGET_BYTES = 128 * 2 ** 20;
@@ -10,20 +11,24 @@ const FRAME_BYTES = 200;
 const LEAST_INTERVAL = 1 / 60;
 /** Number of frames between two checks of the memory. */
 const TIDY_EVERY = 64;
-/** Types of messages that the history keeps besides frames; all others are only for the live view. */
-const SINGLE = new Set(["layout", "constraints", "rays", "pyramid"]);
-const NUMBERED = { body: "body", mesh: "mesh", texture: "texture", slider: "slider", dynamics: "dynamics", line: "item", text: "item", points: "item" };
+
+/**
+ * A frame, and its time on the history's clock [s].
+ *
+ * @typedef {{header: FrameToPage, payload: ArrayBuffer, clock: number}} Frame
+ */
 
 export class History {
   constructor(budget = BUDGET_BYTES) {
     this.budget = budget;
     /** Called with the frames that have been put before the others. */
-    this.prepended = () => {};
+    this.prepended = (_frames) => {};
     this.clear();
   }
 
   clear() {
     this.ledger = new Ledger();
+    /** @type {Frame[]} */
     this.frames = [];
     /**
      * Number of the first frame that is kept, counted from the first frame that has arrived: it grows as frames are
@@ -54,11 +59,11 @@ export class History {
 
   /** Adds a message. */
   take(header, payload) {
-    if (header.type === "frame") return this.takeFrame(header, payload);
+    if (header.type === ToPage.FRAME) return this.takeFrame(header, payload);
     const name = nameOf(header);
     if (name === null) return;
     const moment = this.first + this.frames.length;
-    if (header.type.startsWith("no ")) this.ledger.remove(name, moment);
+    if (isRemoval(header)) this.ledger.remove(name, moment);
     else this.ledger.put(name, { header, payload }, moment);
   }
 
@@ -75,16 +80,17 @@ export class History {
   /**
    * Puts earlier frames before those that are kept.
    *
-   * @param {{header: object, payload: ArrayBuffer}[]} frames in order
+   * @param {{header: FrameToPage, payload: ArrayBuffer}[]} frames in order
    * @param {{name: string, from: number, to: number, message: object}[]} versions the messages shown with them, in
    *   order; the frames are counted as in `first`, and `to` is Infinity for what is still shown
    */
   prepend(frames, versions) {
     let next = this.frames[0];
-    const earlier = frames.slice();
-    for (let i = earlier.length - 1; i >= 0; i--) {
-      const passed = next.header.time - earlier[i].header.time;
-      earlier[i] = next = { ...earlier[i], clock: next.clock - (passed > 0 ? passed : LEAST_INTERVAL) };
+    /** @type {Frame[]} */
+    const earlier = new Array(frames.length);
+    for (let i = frames.length - 1; i >= 0; i--) {
+      const passed = next.header.time - frames[i].header.time;
+      earlier[i] = next = { ...frames[i], clock: next.clock - (passed > 0 ? passed : LEAST_INTERVAL) };
       this.bytes += next.payload.byteLength + FRAME_BYTES;
     }
     this.frames = earlier.concat(this.frames);
@@ -125,14 +131,18 @@ export class History {
 
 /** The name under which a message is kept; null if the message is not kept. */
 export function nameOf(header) {
-  const type = header.type.replace(/^no /, "");
-  if (SINGLE.has(type)) return type;
-  const kind = NUMBERED[type] ?? (type === "item" ? "item" : undefined);
-  return kind === undefined ? null : `${kind} ${header[kind]}`;
+  const field = KEPT_BY[header.type];
+  if (field === undefined) return null;
+  return field === "" ? header.type.replace(REMOVAL, "") : `${field} ${header[field]}`;
+}
+
+/** Whether a message removes what another one has shown. */
+export function isRemoval(header) {
+  return header.type.startsWith(REMOVAL);
 }
 
 /** The message that removes the object of a name. */
 export function removalOf(name) {
   const [kind, number] = name.split(" ");
-  return number === undefined ? { type: `no ${kind}` } : { type: `no ${kind}`, [kind]: Number(number) };
+  return number === undefined ? { type: REMOVAL + kind } : { type: REMOVAL + kind, [kind]: Number(number) };
 }

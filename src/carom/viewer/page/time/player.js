@@ -2,6 +2,8 @@
 
 import { removalOf } from "./history.js";
 
+/** @import { History } from "./history.js" */
+
 const NOTHING = new ArrayBuffer(0);
 
 export class Player {

@@ -1,5 +1,7 @@
 // Packs a history into bytes and unpacks it; src/carom/viewer/replay/recording.py documents the format.
 
+import { OWN_OF_FRAMES } from "../protocol.js";
+
 const FORMAT = 1;
 
 /** The scene messages of a history and their removals, in order of the frames they were first shown with. */
@@ -31,7 +33,7 @@ export async function encoded(history, facts, removal) {
   let run = [];
   const endRun = () => {
     if (run.length === 0) return;
-    const { time, ...shared } = run[0].header;
+    const shared = sharedPart(run[0].header);
     const floats = run[0].payload.byteLength / 4;
     records.push({ frames: run.length, floats, header: shared, times: run.map((frame) => frame.header.time) });
     parts.push(planes(run.map((frame) => new Uint32Array(frame.payload)), floats));
@@ -73,8 +75,12 @@ export async function decoded(bytes) {
 
 function sameRun(a, b) {
   if (a.payload.byteLength !== b.payload.byteLength) return false;
-  const facts = ({ time, rate, picture, ...shared }) => JSON.stringify(shared);
-  return facts(a.header) === facts(b.header);
+  return JSON.stringify(sharedPart(a.header)) === JSON.stringify(sharedPart(b.header));
+}
+
+/** What of the header of a frame the frames of a run share. */
+function sharedPart(header) {
+  return Object.fromEntries(Object.entries(header).filter(([name]) => !OWN_OF_FRAMES.has(name)));
 }
 
 /** Frames as bitwise XOR with the frame before, sorted by byte: small changes give zeros, which pack well. */

@@ -6,6 +6,10 @@ import { press } from "../panel/states.js";
 import { removalOf } from "./history.js";
 import { encoded } from "./recording.js";
 
+/** @import { History } from "./history.js" */
+/** @import { Player } from "./player.js" */
+/** @import { Shots } from "./shots.js" */
+
 const FILM_FPS = 30;
 const FILM_BITS = 8_000_000;
 const FILM_KINDS = ["video/mp4;codecs=avc1", "video/webm;codecs=vp9", "video/webm"];
@@ -20,10 +24,16 @@ export class Saving {
    * @param {Shots} shots draws pictures
    * @param {() => string} title returns the name of the files
    * @param {() => object} facts returns the further data of a replay: camera and options
-   * @param {(text: ?string) => void} say shows a notice
+   * @param {(text: ?string, lasts?: boolean) => void} say shows a notice
    */
   constructor(canvas, history, moments, shots, title, facts, say) {
-    Object.assign(this, { canvas, history, moments, shots, title, facts, say });
+    this.canvas = canvas;
+    this.history = history;
+    this.moments = moments;
+    this.shots = shots;
+    this.title = title;
+    this.facts = facts;
+    this.say = say;
     /** The page that replays a history, without one; null until it has come. */
     this.player = null;
     this.film = null;
@@ -37,7 +47,7 @@ export class Saving {
     document.getElementById("save").addEventListener("click", () => this.saveReplay());
     this.changed = () => {};
     /** Called with true when a video is started, and with false when it ends. */
-    this.filming = () => {};
+    this.filming = (_on) => {};
   }
 
   savePicture() {
@@ -86,7 +96,7 @@ export class Saving {
   }
 
   startFilm() {
-    const kind = FILM_KINDS.find((kind) => MediaRecorder.isTypeSupported(kind));
+    const kind = FILM_KINDS.find((each) => MediaRecorder.isTypeSupported(each));
     const film = new MediaRecorder(this.canvas.captureStream(FILM_FPS), { mimeType: kind, videoBitsPerSecond: FILM_BITS });
     const parts = [];
     this.filming(true);

@@ -1,5 +1,9 @@
 // Pictures of the view in any size, with its texts: not those that are on the screen, which may be coarse.
 
+import { element } from "../elements.js";
+
+/** @import { App } from "../app.js" */
+
 /** Width from which on a picture is not drawn twice as large to smooth its edges [pixels]. */
 const LARGE = 2049;
 
@@ -7,7 +11,7 @@ export class Shots {
   /** @param {App} app */
   constructor(app) {
     this.app = app;
-    this.select = document.getElementById("size");
+    this.select = element("size", HTMLSelectElement);
     this.picture = document.createElement("canvas");
   }
 
@@ -27,7 +31,7 @@ export class Shots {
     // Without a GPU edges are not smoothed.
     const finer = renderer.byProcessor && width < LARGE ? 2 : 1;
     const ratio = height / canvas.clientHeight;
-    const before = [canvas.width, canvas.height, camera.width, camera.height];
+    const before = { canvas: [canvas.width, canvas.height], camera: [camera.width, camera.height] };
     [canvas.width, canvas.height] = [width * finer, height * finer];
     camera.resize(width / ratio, height / ratio);
     renderer.pace.careful = true;
@@ -42,8 +46,8 @@ export class Shots {
       write(context, ratio);
     } finally {
       renderer.pace.careful = false;
-      [canvas.width, canvas.height] = before.slice(0, 2);
-      camera.resize(before[2], before[3]);
+      [canvas.width, canvas.height] = before.canvas;
+      camera.resize(before.camera[0], before.camera[1]);
       app.drawScene();
     }
     return picture;

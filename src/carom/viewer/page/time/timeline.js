@@ -2,6 +2,11 @@
 
 import { fixed } from "../panel/numbers.js";
 import { press, unfold } from "../panel/states.js";
+import { FromPage } from "../protocol.js";
+import { element } from "../elements.js";
+
+/** @import { Player } from "./player.js" */
+/** @import { TimeWindow } from "./window.js" */
 
 const NEAR = 8;
 
@@ -9,14 +14,14 @@ export class Timeline {
   /**
    * @param {Player} player
    * @param {TimeWindow} part the part of the history that the bar spans
-   * @param {(message: object) => void} send sends a message to the simulation; does nothing in a replay
+   * @param {(message: MessageFromPage) => void} send sends a message to the simulation; does nothing in a replay
    */
   constructor(player, part, send) {
     this.player = player;
     this.part = part;
     this.send = send;
     this.root = document.getElementById("timeline");
-    this.scrubber = document.getElementById("scrub");
+    this.scrubber = element("scrub", HTMLInputElement);
     this.label = document.getElementById("moment");
     this.playing = document.getElementById("play");
     this.live = document.getElementById("live");
@@ -46,8 +51,8 @@ export class Timeline {
     });
     document.getElementById("back").addEventListener("click", () => player.step(-1));
     document.getElementById("forth").addEventListener("click", () => player.step(1));
-    document.getElementById("mark").addEventListener("click", () => this.send({ type: "mark" }));
-    const speed = document.getElementById("playback");
+    document.getElementById("mark").addEventListener("click", () => this.send({ type: FromPage.MARK }));
+    const speed = element("playback", HTMLSelectElement);
     speed.addEventListener("change", () => (player.speed = Number(speed.value)));
   }
 
@@ -57,13 +62,13 @@ export class Timeline {
 
   addMark({ mark, time }) {
     const frames = this.player.history.frames;
-    const frame = frames.findLast((frame) => frame.header.time <= time + 1e-9) ?? frames.at(-1);
+    const frame = frames.findLast(({ header }) => header.time <= time + 1e-9) ?? frames.at(-1);
     const button = Object.assign(document.createElement("button"), { className: "tick" });
     button.title = `Mark at ${time.toFixed(3)} s: click to view this state, double-click to continue the simulation from it`;
     const clock = frame?.clock ?? 0;
     button.addEventListener("click", () => this.player.seek(clock));
     button.addEventListener("dblclick", () => {
-      this.send({ type: "restore", mark });
+      this.send({ type: FromPage.RESTORE, mark });
       this.player.goLive();
     });
     this.ticks.append(button);
@@ -83,8 +88,8 @@ export class Timeline {
     const clock = player.live ? history.end : player.clock;
     if (history.count === 0) return;
     const [start, end] = this.part.range;
-    [this.scrubber.min, this.scrubber.max] = [start, Math.max(end, start + 1e-3)];
-    this.scrubber.value = clock;
+    [this.scrubber.min, this.scrubber.max] = [String(start), String(Math.max(end, start + 1e-3))];
+    this.scrubber.valueAsNumber = clock;
     const { time } = history.frames[Math.max(player.index, 0)].header;
     this.label.textContent = player.live ? `${fixed(time, 2)} s` : `${fixed(time, 3)} s, ${fixed(clock - history.end, 2)}`;
     this.playing.textContent = player.running ? "❚❚" : "▶";

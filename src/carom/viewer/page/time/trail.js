@@ -2,6 +2,9 @@
 
 import { POSE_FLOATS } from "../view/scene.js";
 
+/** @import { History } from "./history.js" */
+/** @import { Scene } from "../view/scene.js" */
+
 /** Duration of a trail on the history's clock [s], and its maximum number of segments. */
 const SECONDS = 5;
 const MOST_PIECES = 600;

@@ -27,7 +27,7 @@ export function webm({ width, height, codec, duration }, pictures) {
   const tracks = element(ID.tracks, [element(ID.track, track)]);
   const clusters = clustersOf(pictures);
   // All numbers have eight bytes, so the size of the cues is known before the places of the clusters are.
-  let at = info.size + tracks.size + cues(clusters, 0).size;
+  let at = info.size + tracks.size + cues(clusters.map((each) => ({ ...each, at: 0 }))).size;
   for (const each of clusters) [each.at, at] = [at, at + each.element.size];
   const segment = element(ID.segment, [info, tracks, cues(clusters), ...clusters.map((each) => each.element)]);
   return new Blob([...head.parts, ...segment.parts], { type: "video/webm" });

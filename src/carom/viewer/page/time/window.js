@@ -1,5 +1,7 @@
 // The part of the history that charts and the time bar show: all of it, or what the user has zoomed into.
 
+/** @import { History } from "./history.js" */
+
 /** Least length of the part [s]. */
 const LEAST_SECONDS = 0.02;
 
@@ -12,7 +14,11 @@ export class TimeWindow {
     this.changed = () => {};
   }
 
-  /** Begin and end of the part on the history's clock [s]. */
+  /**
+   * Begin and end of the part on the history's clock [s].
+   *
+   * @returns {[number, number]}
+   */
   get range() {
     const { start, end } = this.history;
     if (this.zoomed === null) return [start, end];

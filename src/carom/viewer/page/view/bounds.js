@@ -28,8 +28,12 @@ export function boundsOfLink(scene, body, link, collisions) {
   return box[0][0] <= box[1][0] ? box : null;
 }
 
-/** Bounding box of a body, or of those of its links for which `picked` is true; without floors. */
-export function boundsOfBody(scene, body, collisions, picked = () => true) {
+/**
+ * Bounding box of a body, or of those of its links for which `picked` is true; without floors.
+ *
+ * @param {(link: number) => boolean} picked
+ */
+export function boundsOfBody(scene, body, collisions, picked = (_link) => true) {
   const box = emptyBox();
   body.links.forEach((_, link) => {
     const bounds = picked(link) && boundsOfLink(scene, body, link, collisions);
@@ -47,8 +51,14 @@ export function boundsOfScene(scene, collisions) {
   return box[0][0] <= box[1][0] ? box : null;
 }
 
-/** A box, extended to the floor that it is above, if there is one. */
-export function downToFloor(scene, [lower, upper], collisions, axis) {
+/**
+ * A box, extended to the floor that it is above, if there is one.
+ *
+ * @param {number[][]} box
+ * @returns {number[][]}
+ */
+export function downToFloor(scene, box, collisions, axis) {
+  const [lower, upper] = box;
   let ground = -Infinity;
   for (const body of scene.bodies.values()) {
     body.links.forEach((_, link) => {
@@ -60,7 +70,9 @@ export function downToFloor(scene, [lower, upper], collisions, axis) {
   return [lower.map((x, i) => (i === axis ? Math.min(x, ground) : x)), upper];
 }
 
-export function isFloor([lower, upper]) {
+/** @param {number[][]} box */
+export function isFloor(box) {
+  const [lower, upper] = box;
   return [0, 1, 2].filter((i) => upper[i] - lower[i] > FLOOR).length >= 2;
 }
 
@@ -71,7 +83,12 @@ function emptyBox() {
   ];
 }
 
-function extend([lower, upper], point) {
+/**
+ * @param {number[][]} box
+ * @param {number[]} point
+ */
+function extend(box, point) {
+  const [lower, upper] = box;
   for (let i = 0; i < 3; i++) {
     lower[i] = Math.min(lower[i], point[i]);
     upper[i] = Math.max(upper[i], point[i]);

@@ -2,6 +2,8 @@
 
 import { add, cross, dot, multiply, perspective, scale, subtract, unit, viewMatrix } from "./maths.js";
 
+/** @import { Vector } from "./maths.js" */
+
 const NEAR = 0.01;
 const FAR = 1000;
 const DEGREES_PER_PIXEL = 0.3;
@@ -28,6 +30,7 @@ export class Camera {
     this.distance = 5;
     this.yaw = 50;
     this.pitch = -35;
+    /** @type {Vector} */
     this.target = [0, 0, 0];
     /** Last position of the point that the camera follows; null if there is none. */
     this.followed = null;
@@ -100,7 +103,13 @@ export class Camera {
     if (!this.lens) return;
     this.lens.fit(this.width, this.height);
     const { eye, forward, right, up, view, fitted, matrix } = this.lens;
-    Object.assign(this, { eye, forward, right, up, view, matrix, projection: fitted });
+    this.eye = eye;
+    this.forward = forward;
+    this.right = right;
+    this.up = up;
+    this.view = view;
+    this.matrix = matrix;
+    this.projection = fitted;
     this.centre = add(eye, scale(forward, this.distance));
   }
 
@@ -117,7 +126,7 @@ export class Camera {
    */
   fit([lower, upper], { side, below } = { side: 0, below: 0 }) {
     this.lens = null;
-    this.target = lower.map((x, i) => 0.5 * (x + upper[i]));
+    this.target = scale(add(lower, upper), 0.5);
     const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
     // The vertical field of view is 90 degrees; in a tall window the horizontal one is narrower.
     const whole = Math.min(this.width, this.height);
@@ -169,6 +178,7 @@ export class Camera {
     return { eye, forward, right, up, matrix, width, height, yUp, distance, spread };
   }
 
+  /** @returns {{distance: number, yaw: number, pitch: number, target: Vector}} */
   state() {
     const { distance, yaw, pitch, target } = this;
     return { distance, yaw, pitch, target };

@@ -3,6 +3,7 @@
 import { add, turned } from "./maths.js";
 import { titlesOf } from "./names.js";
 import { Sign } from "./sign.js";
+import { ToPage } from "../protocol.js";
 
 const WORLD_AXES = [
   [1, 0, 0],
@@ -25,9 +26,9 @@ export class Drawings {
   add(header, payload) {
     this.remove(header);
     const item = { ...header };
-    if (header.type === "points") Object.assign(item, this.cloud(header, payload));
-    if (header.type === "text" && header.orientation) item.sign = new Sign(this.gl, header);
-    else if (header.type === "text") item.label = this.label(header);
+    if (header.type === ToPage.POINTS) Object.assign(item, this.cloud(header, payload));
+    if (header.type === ToPage.TEXT && header.orientation) item.sign = new Sign(this.gl, header);
+    else if (header.type === ToPage.TEXT) item.label = this.label(header);
     this.items.set(header.item, item);
     this.list();
   }
@@ -55,7 +56,7 @@ export class Drawings {
   /** Lists point clouds and signs separately, because the renderer needs them for every picture. */
   list() {
     const items = [...this.items.values()];
-    this.clouds = items.filter((item) => item.type === "points");
+    this.clouds = items.filter((item) => item.type === ToPage.POINTS);
     this.signs = items.flatMap((item) => item.sign ?? []);
   }
 
@@ -94,7 +95,7 @@ export class Drawings {
   /** Adds the lines drawn by scripts. */
   addLines(lines, scene) {
     for (const item of this.items.values()) {
-      if (item.type !== "line") continue;
+      if (item.type !== ToPage.LINE) continue;
       const pose = scene.linkPose(item.body, item.link);
       if (pose) lines.line(inFrame(pose, item.start), inFrame(pose, item.end), item.colour, item.width);
     }

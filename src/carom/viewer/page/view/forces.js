@@ -113,7 +113,7 @@ function addLimits(lines, pose, axis, { kind, limits: [lower, upper] }, position
   const now = Math.atan2(dot(hand, other), dot(hand, zero));
   const [from, to] = [lower, upper].map((at) => now + at - position);
   lines.arc(origin, axis, zero, ARC_RADIUS, from, to, LIMIT, 3);
-  for (const [angle, colour] of [[from, LIMIT], [to, LIMIT], [now, AXIS]]) {
+  for (const { angle, colour } of [{ angle: from, colour: LIMIT }, { angle: to, colour: LIMIT }, { angle: now, colour: AXIS }]) {
     const tip = add(scale(zero, ARC_RADIUS * Math.cos(angle)), scale(other, ARC_RADIUS * Math.sin(angle)));
     lines.line(origin, add(origin, tip), colour, 2);
   }

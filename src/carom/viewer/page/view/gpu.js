@@ -133,7 +133,8 @@ function distinctEdges(positions, indices) {
   return new Uint32Array([...edges.values()].filter((edge) => !edge.flat).flatMap((edge) => [edge.a, edge.b]));
 }
 
-function faceNormal(positions, [a, b, c]) {
+function faceNormal(positions, corners) {
+  const [a, b, c] = corners;
   const side = (from, to, axis) => positions[3 * to + axis] - positions[3 * from + axis];
   const [ux, uy, uz] = [0, 1, 2].map((axis) => side(a, b, axis));
   const [vx, vy, vz] = [0, 1, 2].map((axis) => side(a, c, axis));
@@ -146,6 +147,7 @@ function faceNormal(positions, [a, b, c]) {
 export class ShadowMap {
   constructor(gl, size) {
     this.gl = gl;
+    this.wanted = size;
     this.size = Math.min(size, gl.getParameter(gl.MAX_TEXTURE_SIZE), 8192);
     this.texture = gl.createTexture();
     gl.activeTexture(gl.TEXTURE1);
@@ -174,7 +176,8 @@ export class ShadowMap {
 export class Picture {
   constructor(gl) {
     this.gl = gl;
-    [this.width, this.height] = [0, 0];
+    this.width = 0;
+    this.height = 0;
     this.texture = gl.createTexture();
     this.depth = gl.createRenderbuffer();
     this.target = gl.createFramebuffer();

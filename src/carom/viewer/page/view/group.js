@@ -1,13 +1,15 @@
 // Shapes with the same meshes and texture, drawn in one call.
 
 import { Level } from "./level.js";
-import { Merged } from "./merged.js";
+import { Merged } from "./software/merged.js";
+
+/** @import { Mesh } from "./gpu.js" */
 
 export class Group {
   /**
    * @param {{mesh: Mesh, reach: number}[]} levels levels of detail, the finest first: meshes, and the maximum
    *   radius on the screen at which each is used [pixels]
-   * @param {object} shape one of the shapes
+   * @param {{texture: number, twoSided: boolean, collision?: boolean}} shape one of the shapes
    * @param {boolean} clear whether the shapes are transparent
    * @param {boolean} byProcessor whether the CPU renders, because there is no GPU
    */

@@ -5,9 +5,12 @@ import { add, multiply, scale } from "./maths.js";
 export class Lens {
   /** @param {{view: number[], projection: number[], width: number, height: number}} facts matrices by columns */
   constructor({ view, projection, width, height }) {
-    Object.assign(this, { view, projection, aspect: width / height });
+    this.view = view;
+    this.projection = projection;
+    this.aspect = width / height;
     const row = (i) => [view[i], view[4 + i], view[8 + i]];
-    [this.right, this.up] = [row(0), row(1)];
+    this.right = row(0);
+    this.up = row(1);
     this.forward = scale(row(2), -1);
     this.eye = [0, 1, 2].map((i) => -(view[4 * i] * view[12] + view[4 * i + 1] * view[13] + view[4 * i + 2] * view[14]));
   }

@@ -1,27 +1,49 @@
 // Vectors are arrays of 3, quaternions are (x, y, z, w), matrices are 4 x 4 and column-major, as in WebGL.
 
+/** @typedef {[number, number, number]} Vector */
+/** @typedef {[number, number, number, number]} Quaternion */
+
+/** @type {(a: ArrayLike<number>, b: ArrayLike<number>) => Vector} */
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+/** @type {(a: ArrayLike<number>, b: ArrayLike<number>) => Vector} */
 export const subtract = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+/** @type {(a: ArrayLike<number>, factor: number) => Vector} */
 export const scale = (a, factor) => [a[0] * factor, a[1] * factor, a[2] * factor];
+/** @type {(a: ArrayLike<number>, b: ArrayLike<number>) => number} */
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/** @type {(a: ArrayLike<number>) => number} */
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 
+/** @type {(a: ArrayLike<number>, b: ArrayLike<number>) => Vector} */
 export function cross(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
+/** @type {(a: ArrayLike<number>) => Vector} */
 export function unit(a) {
   const size = length(a);
   return size > 0 ? scale(a, 1 / size) : [0, 0, 0];
 }
 
-/** Rotates a vector by a quaternion. */
-export function turned([x, y, z, w], v) {
+/**
+ * Rotates a vector by a quaternion.
+ *
+ * @param {Iterable<number>} quaternion
+ * @param {ArrayLike<number>} v
+ */
+export function turned(quaternion, v) {
+  const [x, y, z, w] = quaternion;
   const [tx, ty, tz] = scale(cross([x, y, z], v), 2);
   return add(add(v, [w * tx, w * ty, w * tz]), cross([x, y, z], [tx, ty, tz]));
 }
 
-/** Product a b: the rotation by b, then by a. */
+/**
+ * Product a b: the rotation by b, then by a.
+ *
+ * @param {ArrayLike<number>} a
+ * @param {ArrayLike<number>} b
+ * @returns {Quaternion}
+ */
 export function quaternionProduct(a, b) {
   return [
     a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1],

@@ -34,7 +34,11 @@ const TRAIL = [0.9, 0.3, 0.55];
 
 export class Overlays {
   constructor(scene, options, readings, handles, camera) {
-    Object.assign(this, { scene, options, readings, handles, camera });
+    this.scene = scene;
+    this.options = options;
+    this.readings = readings;
+    this.handles = handles;
+    this.camera = camera;
     this.lines = new Lines();
     this.solids = new Solids();
     this.fitted = { force: new ArrowScale(), torque: new ArrowScale() };

@@ -11,7 +11,9 @@ export class Placement {
    * @param {{left: number, top: number, right: number, bottom: number}[]} covers rectangles that texts keep clear of
    */
   constructor(width, height, covers) {
-    Object.assign(this, { width, height, covers });
+    this.width = width;
+    this.height = height;
+    this.covers = covers;
     this.taken = [];
   }
 

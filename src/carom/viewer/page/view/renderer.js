@@ -5,11 +5,18 @@ import { Picture, Program, ShadowMap } from "./gpu.js";
 import { LineBatch } from "./line_batch.js";
 import { NoGraphics } from "./no_graphics.js";
 import { Outline } from "./outline.js";
-import { Pace } from "./pace.js";
+import { Pace } from "./software/pace.js";
 import { GRID, LINES, POINTS, SHADOW, SIGN, SKY, WIRE } from "./shaders.js";
 import { SolidBatch } from "./arrows/solid_batch.js";
-import { StillLayer } from "./still_layer.js";
+import { StillLayer } from "./software/still_layer.js";
 import { Surfaces } from "./surfaces.js";
+
+/** @import { Options } from "../panel/options.js" */
+/** @import { Solids } from "./arrows/solids.js" */
+/** @import { Camera } from "./camera.js" */
+/** @import { Lines } from "./lines.js" */
+/** @import { Scene } from "./scene.js" */
+/** @import { Sign } from "./sign.js" */
 
 const GRID_EXTENT = 60;
 /** Distance at which objects fade into haze [m]; at least this multiple of the camera's distance. */
@@ -227,7 +234,6 @@ class Renderer {
     if (this.map.wanted === wanted) return;
     this.map.dispose();
     this.map = new ShadowMap(this.gl, wanted);
-    this.map.wanted = wanted;
   }
 
   drawShadows(groups, light) {

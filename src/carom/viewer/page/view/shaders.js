@@ -1,6 +1,6 @@
 // The shader programs.
 
-import { quickSurface } from "./quick_surface.js";
+import { quickSurface } from "./software/quick_surface.js";
 
 /** Light, sky and haze, shared by all programs. Colours are mixed in linear light. */
 const COMMON = `

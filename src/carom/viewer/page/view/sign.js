@@ -8,7 +8,7 @@ const PIXELS = 64;
 const FONT = `600 ${Math.round(PIXELS * 0.75)}px system-ui, sans-serif`;
 
 export class Sign {
-  /** @param {object} item a text; it starts at its position and runs along its x axis, its y axis is up */
+  /** @param {TextToPage} item a text; it starts at its position and runs along its x axis, its y axis is up */
   constructor(gl, item) {
     this.gl = gl;
     this.item = item;

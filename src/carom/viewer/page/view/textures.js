@@ -6,6 +6,7 @@
  * @returns {Promise<ImageBitmap>} the image, the bottom row first
  */
 export function decodedImage({ file }, payload) {
+  /** @type {ImageBitmapOptions} */
   const options = { imageOrientation: "flipY", premultiplyAlpha: "none", colorSpaceConversion: "none" };
   return createImageBitmap(new Blob([payload], { type: file }), options);
 }

@@ -1,7 +1,7 @@
 // Small shapes merged into one large mesh. If the CPU renders, each instance costs as much as a draw call of
 // its own, far more than its few triangles.
 
-import { INSTANCE_FLOATS, Level } from "./level.js";
+import { INSTANCE_FLOATS, Level } from "../level.js";
 
 /** Meshes with more vertices are drawn as instances: copying them would cost more than it saves. */
 const MOST_VERTICES = 100;

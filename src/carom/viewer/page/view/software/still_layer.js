@@ -1,9 +1,9 @@
 // What does not move, kept as a picture with depths. If the CPU renders, pixels are what takes time: with this picture
 // only the part of the view is drawn anew in which something moves, or its shadow.
 
-import { boundsOfLink } from "./bounds.js";
-import { dot, scale, subtract } from "./maths.js";
-import { Picture } from "./gpu.js";
+import { boundsOfLink } from "../bounds.js";
+import { dot, scale, subtract } from "../maths.js";
+import { Picture } from "../gpu.js";
 
 /** More moving links than this are not worth a box each. */
 const MOST_LINKS = 200;
@@ -102,9 +102,11 @@ export class StillLayer {
   /**
    * Draws the part of the view that has changed over the last picture, after what had changed there is restored.
    *
+   * @param {number[]} window the part: x, y, width and height [pixels]
    * @param {boolean} more whether more is drawn afterwards, anywhere in the view
    */
-  compose([x, y, width, height], more, canvas, draw) {
+  compose(window, more, canvas, draw) {
+    const [x, y, width, height] = window;
     const gl = this.gl;
     const all = [0, 0, canvas.width, canvas.height];
     draw(() => {
@@ -127,7 +129,8 @@ export class StillLayer {
     this.gl.bindFramebuffer(this.gl.FRAMEBUFFER, null);
   }
 
-  copy(from, to, [x, y, width, height], what) {
+  copy(from, to, window, what) {
+    const [x, y, width, height] = window;
     const gl = this.gl;
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, from);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
@@ -151,7 +154,8 @@ function parted(scene) {
 }
 
 /** The pixels of a rectangle in clip coordinates; null if it is most of the view. */
-function pixels([left, low, right, high], { width, height }) {
+function pixels(rectangle, { width, height }) {
+  const [left, low, right, high] = rectangle;
   if (right < left) return [0, 0, 0, 0];
   const edge = (at, size, margin) => Math.round(Math.min(Math.max(((at + 1) / 2) * size + margin, 0), size));
   const [x, y] = [edge(left, width, -MARGIN), edge(low, height, -MARGIN)];

@@ -1,0 +1,203 @@
+"""The messages from a page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from carom.viewer.protocol.kinds import (
+    FLAG,
+    NUMBER,
+    QUATERNION,
+    STRING,
+    VECTOR,
+    WHOLE,
+    either,
+    listed,
+    maybe,
+    one_of,
+    record,
+    several,
+)
+from carom.viewer.protocol.message import Message, declared, needed, optional
+
+_BODY = needed(WHOLE, "Number of the body.")
+_LINK = needed(WHOLE, "Link of the body, -1 for its base.")
+_JOINT = needed(WHOLE, "Number of the joint.")
+
+SLIDER = Message(
+    "slider",
+    "The user has moved a slider, or chosen from a list.",
+    {"slider": needed(WHOLE, "Number of the slider."), "value": needed(NUMBER, "Its new value.")},
+)
+PRESS = Message("press", "The user has clicked a button.", {"slider": needed(WHOLE, "Number of the button.")})
+KEY = Message(
+    "key",
+    "The user has pressed or released a key.",
+    {
+        "key": needed(STRING, "What the key writes, as in `KeyboardEvent.key`."),
+        "code": needed(STRING, "Which key it is, as in `KeyboardEvent.code`."),
+        "down": needed(FLAG, "Whether it is pressed."),
+    },
+)
+BLUR = Message("blur", "The page has lost the keyboard: all its keys are released.", {})
+MOUSE = Message(
+    "mouse",
+    "The mouse has moved or, with a button, a button has been pressed or released.",
+    {
+        "x": needed(NUMBER, "Pixels from the left edge of the view."),
+        "y": needed(NUMBER, "Pixels from its upper edge."),
+        "button": optional(WHOLE, "0 for the left button, 1 for the middle one, 2 for the right one."),
+        "down": optional(FLAG, "Whether the button is pressed."),
+    },
+)
+CAMERA = Message(
+    "camera",
+    "The view of the page has changed.",
+    {
+        "distance": needed(NUMBER, "Distance of the eye from the target [m]."),
+        "yaw": needed(NUMBER, "Angle about the upward axis [degrees]."),
+        "pitch": needed(NUMBER, "Upward angle [degrees]; negative when the camera looks down."),
+        "target": needed(VECTOR, "The point that the camera looks at [m]."),
+        "chosen": optional(FLAG, "Whether the user has set the view, and not the page itself."),
+    },
+)
+SIZE = Message(
+    "size",
+    "The size of the view.",
+    {"width": needed(WHOLE, "Width [pixels]."), "height": needed(WHOLE, "Height [pixels].")},
+)
+VISIBLE = Message(
+    "visible",
+    "The page has come into view, or has gone out of it.",
+    {"visible": needed(FLAG, "Whether it is in view.")},
+)
+DRAWN = Message(
+    "drawn",
+    "The page has drawn a picture that the script waits for.",
+    {"picture": needed(WHOLE, "The number of the picture, from the frame.")},
+)
+PAST = Message(
+    "past",
+    "The page asks for frames of the past.",
+    {
+        "before": needed(WHOLE, "Number of the frame before which they are."),
+        "known": needed(FLAG, "Whether the page knows what was shown with that frame."),
+    },
+)
+PREVIEW_WIDTH = Message(
+    "preview width",
+    "The width of previews that the page needs.",
+    {"width": needed(NUMBER, "Width [pixels].")},
+)
+WANT = Message(
+    "want",
+    "The data besides poses that the page needs.",
+    {
+        "collisions": optional(FLAG, "Collision shapes."),
+        "contacts": optional(FLAG, "Contacts and their forces."),
+        "joints": optional(
+            either(one_of("all"), listed(WHOLE)), "Bodies whose joints are read, or all of them."
+        ),
+        "links": optional(listed(several(WHOLE, WHOLE)), "Bodies and links whose velocities are read."),
+        "dynamics": optional(FLAG, "Masses and inertias."),
+        "constraints": optional(FLAG, "Constraints of scripts."),
+        "rays": optional(FLAG, "Rays that scripts cast."),
+    },
+)
+DRIVE = Message(
+    "drive",
+    "The user drives a joint.",
+    {
+        "body": _BODY,
+        "joint": _JOINT,
+        "mode": optional(
+            one_of("position", "velocity", "torque"), "What the target is; a position if missing."
+        ),
+        "target": needed(NUMBER, "Target in units of the mode [m or rad, m/s or rad/s, N or N m]."),
+    },
+)
+GIVE_BACK = Message(
+    "give back", "The user gives a joint back to the script.", {"body": _BODY, "joint": _JOINT}
+)
+HANDLE = Message(
+    "handle",
+    "The user has moved a handle.",
+    {
+        "handle": needed(WHOLE, "Number of the handle."),
+        "position": needed(VECTOR, "Its new position in the world [m]."),
+        "orientation": needed(QUATERNION, "Its new orientation (x, y, z, w)."),
+    },
+)
+SLEEP = Message("sleep", "The user lets bodies sleep, or wakes them.", {})
+PROFILE = Message(
+    "profile",
+    "The user starts or ends a timing profile.",
+    {"running": needed(FLAG, "Whether it starts.")},
+)
+GRASP = Message(
+    "grasp",
+    "The user has grabbed a body at a point.",
+    {
+        "body": _BODY,
+        "link": _LINK,
+        "point": needed(VECTOR, "The point in the inertial frame of the link [m]."),
+        "target": needed(VECTOR, "Where it is to be, in the world [m]."),
+    },
+)
+PULL = Message(
+    "pull",
+    "The user pulls what is grabbed.",
+    {"target": needed(VECTOR, "Where the grabbed point is to be, in the world [m].")},
+)
+TURN = Message(
+    "turn",
+    "The user turns a body.",
+    {
+        "body": _BODY,
+        "link": _LINK,
+        "orientation": needed(QUATERNION, "Orientation that its inertial frame is to have (x, y, z, w)."),
+    },
+)
+LET_GO = Message("let go", "The user lets go of what is pulled or turned.", {})
+GAMEPADS = Message(
+    "gamepads",
+    "The state of the gamepads at the page's machine.",
+    {
+        "gamepads": needed(
+            listed(
+                record({"name": STRING, "axes": listed(NUMBER), "buttons": listed(NUMBER), "standard": FLAG})
+            ),
+            "All of them: see `Gamepad`.",
+        )
+    },
+)
+PAUSE = Message(
+    "pause", "The user pauses the simulation, or continues it.", {"paused": needed(FLAG, "Whether to pause.")}
+)
+STEP = Message("step", "The user lets a paused simulation make a step.", {})
+SPEED = Message(
+    "speed",
+    "The user limits the speed.",
+    {"speed": needed(maybe(NUMBER), "Simulated time / real time; null for no limit.")},
+)
+RESET = Message("reset", "The user goes back to the start state.", {})
+MARK = Message("mark", "The user marks the present state.", {})
+RESTORE = Message(
+    "restore", "The user goes back to a mark.", {"mark": needed(WHOLE, "The number of the mark.")}
+)
+CLOSE = Message("close", "The user ends the script's viewer.", {})
+
+ALL: dict[str, Message] = declared(globals())
+"""The messages, by the names of their constants."""
+
+_BY_TYPE = {message.type: message for message in ALL.values()}
+
+
+def checked(header: Mapping[str, Any]) -> Message:
+    """What declares a message that has come; `ValueError` if nothing does, or its fields are wrong."""
+    message = _BY_TYPE.get(header["type"])
+    if message is None:
+        raise ValueError(f"there is no message {str(header['type'])[:60]!r} from a page")
+    message.check(header)
+    return message
