@@ -130,7 +130,7 @@ def test_an_absent_body_keeps_its_state_until_it_comes_back() -> None:
     scene, bodies = piled()
     worlds = Worlds(scene, 2, threads=1)
     worlds.step(20)
-    panda, box = worlds[bodies["panda"]], worlds[bodies["box 4"]]
+    panda, box = worlds[bodies["panda"]], worlds[bodies["box 6"]]
     before = [panda.joint_positions[1].copy(), panda.joint_velocities[1].copy(), box.base_poses[1].copy()]
     for body in (panda, box):
         body.set_present(False, where=[1])

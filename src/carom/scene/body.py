@@ -26,10 +26,9 @@ from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.tables import NUMPY_REAL
-from carom.scene.dynamics_changes import change_dynamics, write_link
+from carom.scene.dynamics_changes import change_dynamics, set_present, write_link
 from carom.scene.handles import world_of
 from carom.scene.link_dynamics import LinkDynamics
-from carom.scene.presence import set_present
 
 if TYPE_CHECKING:
     from carom.description.actuator import Actuator

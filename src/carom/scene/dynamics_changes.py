@@ -1,4 +1,4 @@
-"""Changing the inertia, the surface or the limits of a body during the simulation."""
+"""Changing inertia, surface, limits and presence of a body during the simulation."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from carom.engine.presence import change_presence
 from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
@@ -301,3 +304,18 @@ def _set_limit_force(body: Body, joint: int, force: float) -> None:
         limit.max_impulse = impulse
         body.dynamics(joint).joint_limit_impulse = impulse
         body.world.scene_changed()
+
+
+def set_present(body: Body, present: bool) -> None:
+    """Let a body come or go, or leave it as it is; see `Body.present`."""
+    world = body.world
+    with uninterrupted:
+        world.undo.settle()
+        wanted, only = np.array([present]), np.zeros(1, dtype=np.int64)
+        change = change_presence(world.arrays, world.contact_arrays, body.rows, only, wanted)
+
+        def apply() -> None:
+            change()
+            world.scene_changed()
+
+        world.undo.at_once(apply)
