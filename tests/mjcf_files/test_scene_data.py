@@ -187,3 +187,8 @@ def test_models_are_attached_with_their_own_settings(tmp_path):
         assert arm.joints["left-j"].limits == (-1.0, 1.0)
         assert_allclose(arm.links["left-arm"].mass, 41.8879020478639)
         assert_allclose(arm.links["left-arm"].pose.position, (1, 0, 1))
+
+
+def test_fluids_are_named_as_left_out(load):
+    text = '<mujoco><option density="1.2" viscosity="0"/><worldbody/></mujoco>'
+    assert [(it.element, it.attributes) for it in load(text).ignored] == [("mujoco/option", ("density",))]

@@ -299,7 +299,7 @@ class UserConstraints:
     user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`
     user_erp: Reals
     user_reference: Vectors4  # of a compliant one: time constant, damping ratio, midpoint, power
-    user_impedance: Vectors4  # of a compliant one: bounds, width; see `kernels.solver.compliance`
+    user_impedance: Vectors4  # of a compliant one: bounds, width; see `kernels.tendons.compliance`
     user_first_path: (
         Ints  # parts of the path of a tendon, of a second one, or of the frames of a transmission
     )

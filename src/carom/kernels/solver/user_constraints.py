@@ -6,9 +6,9 @@ from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, write_multiple
 from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.activity import is_in_force
-from carom.kernels.solver.compliance import is_compliant, write_compliant_row
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
+from carom.kernels.tendons.compliance import is_compliant, write_compliant_row
 from carom.kernels.tendons.rows import add_path_rows
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import (

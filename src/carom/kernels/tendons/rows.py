@@ -11,9 +11,9 @@ from carom.kernels.dynamics.motors import unless_nan
 from carom.kernels.dynamics.rows import LEAST_INVERSE_MASS
 from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.min_max import within_bounds
-from carom.kernels.solver.compliance import is_compliant, write_compliant_row
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
+from carom.kernels.tendons.compliance import is_compliant, write_compliant_row
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 from carom.layouts.codes import USER_TENDON, USER_TENDON_COUPLING
