@@ -17,7 +17,7 @@ pytest.importorskip("warp", reason="it compiles the kernels")
 
 import warp as wp
 
-from carom.kernels.solver.single_torsion import relax_single_torsion
+from carom.kernels.solver.single_contacts import relax_single_torsion
 from carom.kernels.structs import LateralRows, NormalRow, PairRows, Scratch, Settings
 from carom.kernels.types import Index2, Int32, RealRows, Vector4, kernel, real
 from carom.layouts.codes import ROLLING_ROW, SPINNING_ROW

@@ -423,7 +423,7 @@ class NormalRow:
     effective_mass: real
     inverse_mass: real
     kept: real  # 1 - softness
-    friction: real  # coefficient, of a row of spinning friction; see `kernels.solver.single_torsion`
+    friction: real  # coefficient, of a row of spinning friction; see `kernels.solver.single_contacts`
 
 
 @struct

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
-from typing import TYPE_CHECKING
 
 from carom.native.cpu import core_count
 from carom.native.uninterrupted import uninterrupted
-
-if TYPE_CHECKING:
-    from concurrent.futures import ThreadPoolExecutor
 
 Task = Callable[[], None]
 
@@ -49,9 +46,6 @@ def _work(pending: object) -> None:
 
 @cache
 def _pool() -> ThreadPoolExecutor:
-    # Small images are drawn without threads, and this import takes longer than they do.
-    from concurrent.futures import ThreadPoolExecutor
-
     return ThreadPoolExecutor(MAX_WORKERS, thread_name_prefix="carom-render")
 
 

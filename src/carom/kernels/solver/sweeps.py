@@ -12,9 +12,9 @@ from carom.kernels.solver.single_contacts import (
     TWISTING,
     relax_single_friction,
     relax_single_normal,
+    relax_single_torsion,
     single_of,
 )
-from carom.kernels.solver.single_torsion import relax_single_torsion
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW

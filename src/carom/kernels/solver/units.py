@@ -17,8 +17,8 @@ from carom.kernels.solver.single_contacts import (
     keep_single_impulses,
     single_of,
     write_single_contact,
+    write_twisting_contact,
 )
-from carom.kernels.solver.single_torsion import write_twisting_contact
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
