@@ -7,8 +7,8 @@ rows. Piles of balls consist of such contacts.
 
 A contact with rolling or spinning friction has two places, one after the other. The first has its normal and
 lateral rows, like that of any single contact; the second has its spinning row in `single_normal` and both
-rolling rows in `single_lateral`. These are rows of the angular velocity of a relative to b, relaxed by the same
-functions. Both kinds of rows are always there; a coefficient of 0 turns them off.
+rolling rows in `single_lateral`. These are rows of the angular velocity of a relative to b; the same
+functions relax them. Both kinds of rows are always there; a coefficient of 0 turns them off.
 
 If one of two bodies cannot move, its place among the delta velocities is that of the other. As its Jacobian
 and responses are zero, that changes nothing, and takes less time than to distinguish the cases.
