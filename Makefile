@@ -150,6 +150,7 @@ quick: lint
 lint: $(VENV)/dev
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
+	$(RUN) tools/page/lint.py
 
 # What is done is noted in build/thorough; parts and their pieces are in tools/thorough/parts.py.
 thorough: $(VENV)/dev

@@ -95,5 +95,6 @@ def understood_by_pip(arguments: list[str]) -> None:
 
 def module(name: str) -> Path:
     """Where a module of the repository is, by its name."""
-    path = ROOT.joinpath(*name.split("."))
+    paths = [root.joinpath(*name.split(".")) for root in (ROOT, ROOT / "src")]
+    path = next((path for path in paths if path.is_dir()), paths[0])
     return path if path.is_dir() else path.with_suffix(".py")
