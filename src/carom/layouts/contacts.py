@@ -423,12 +423,11 @@ class NormalRow:
     effective_mass: real
     inverse_mass: real
     kept: real  # 1 - softness
-    friction: real  # coefficient, of a row of spinning friction; see `kernels.solver.single_contacts`
 
 
 @struct
 class LateralRows:
-    """The two rows of lateral or rolling friction of a single contact of rigid bodies; as `NormalRow`."""
+    """The two friction rows of a single contact of rigid bodies; as `NormalRow`."""
 
     jacobian_a: Vector12  # of the first and the second row in turn, dof by dof
     jacobian_b: Vector12
@@ -477,10 +476,10 @@ class PairRows:
     )
     unit_code: IntRows  # units of an island's sweep, in order; see `kernels.solver.units`
 
-    # Single contacts of rigid bodies; those with rolling or spinning friction have two places.
+    # Single contacts of rigid bodies.
     single_contact: IntRows
     single_place: Index2Rows  # first blocks of a and b in `delta_velocity`; of the other if one cannot move
-    single_impulse: Vector4Rows  # along the normal and both lateral directions; coefficient of friction
+    single_impulse: Vector4Rows  # along the normal and both friction directions; coefficient of friction
     single_normal: Rows[NormalRow]
     single_lateral: Rows[LateralRows]
 
