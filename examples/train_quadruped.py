@@ -21,7 +21,7 @@ from carom.vector.quadruped.quadruped import Quadruped
 
 EPISODE = 500
 GAMMA, EPOCHS, BATCH, WIDTH, ENTROPY = 0.97, 5, 1536, 128, 0.002
-RATE, LEAST_RATE, MOST_RATE = 5e-4, 1e-5, 1e-3
+RATE, MIN_RATE, MAX_RATE = 5e-4, 1e-5, 1e-3
 WANTED_MOVE = 0.01
 """KL divergence of an improvement, to which the learning rate is adapted."""
 EVERY = 20
@@ -164,7 +164,7 @@ class Learner:
             rate /= 1.5
         elif move < 0.5 * WANTED_MOVE:
             rate *= 1.2
-        self.optimiser.param_groups[0]["lr"] = min(max(rate, LEAST_RATE), MOST_RATE)
+        self.optimiser.param_groups[0]["lr"] = min(max(rate, MIN_RATE), MAX_RATE)
 
 
 def tensors(scale):

@@ -29,7 +29,7 @@ from carom.native.building.cache import alone, cache_folder
 
 ROOT = Path(__file__).parents[1]
 LIST = Path(__file__).with_name("mutations.json")
-LEAST_KILLED = 0.95
+MIN_KILLED = 0.95
 # What the native library is compiled from.
 _COMPILED = ("src/carom/kernels/", "src/carom/layouts/", "src/carom/native/source/")
 _SECONDS_TO_BUILD = 1200.0
@@ -234,7 +234,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for outcome in outcomes:
         if outcome.result not in ("killed", "timed out"):
             print(f"{outcome.result}: {outcome.mutation}")
-    sys.exit(killed < LEAST_KILLED * len(outcomes))
+    sys.exit(killed < MIN_KILLED * len(outcomes))
 
 
 def _brief(text: str) -> str:

@@ -35,7 +35,7 @@ _GENERATIONS = {
 # directions, how many of the best of them are used, their length, and the rate of learning. Each search goes
 # on where the one before scored best.
 _SEARCHES = {"Humanoid": ((10, 4, 6, 16, 8, 0.03, 0.03), (8, 10, 10, 24, 12, 0.02, 0.015))}
-_SPREAD, _LEAST_SPREAD = 1.0, 0.05
+_SPREAD, _MIN_SPREAD = 1.0, 0.05
 # Episodes of the test begin elsewhere.
 _FIRST_SEED, _SEEDS = 1000, 400
 _SCORED_SEED = 500
@@ -50,7 +50,7 @@ def _train(name: str, task: Task, env: Any) -> NDArray[np.float64]:
         seeds = (_FIRST_SEED + 2 * generation, _FIRST_SEED + 2 * generation + 1)
         scores = [sum(play(task, weights, env, env.reset, seed)[1] for seed in seeds) for weights in drawn]
         best = drawn[np.argsort(scores)[-_ELITE:]]
-        mean, spread = best.mean(axis=0), np.maximum(best.std(axis=0), _LEAST_SPREAD)
+        mean, spread = best.mean(axis=0), np.maximum(best.std(axis=0), _MIN_SPREAD)
         print(f"{name}, generation {generation}: {max(scores) / len(seeds):.1f}", flush=True)
     return mean.round(_DIGITS)
 

@@ -26,7 +26,7 @@ MOTOR_NAMES = tuple(f"motor_{leg}{side}_joint" for leg in LEG_POSITION for side 
 # Signs of the motors: on the left, reported angles are opposite to joint angles.
 _DIRECTIONS = np.array((-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0))
 _HIP_ANGLE, _KNEE_ANGLE = pi / 2, -2.1834
-_MOST_TORQUE = 3.5
+_MAX_TORQUE = 3.5
 _PD_KP = 8.0
 
 _QUARTER = pi / 4
@@ -255,7 +255,7 @@ class MinitaurBody(ABC):
             joints,
             pybullet.POSITION_CONTROL,
             targetPositions=[float(target) for target in targets],
-            forces=[_MOST_TORQUE] * count,
+            forces=[_MAX_TORQUE] * count,
             positionGains=[self._kp] * count,
             velocityGains=[self._kd] * count,
         )

@@ -12,7 +12,7 @@ import pytest
 
 import pybullet as p
 from carom import World
-from carom.layouts.contacts import MANY_RESETS, MOST_RESETS, RESETS, RESETS_SEEN
+from carom.layouts.contacts import MANY_RESETS, MAX_RESETS, RESETS, RESETS_SEEN
 from pybullet._bodies.bodies import resetBasePositionAndOrientation, resetBaseVelocity
 from pybullet._clients.clients import client_of
 from pybullet._joints.joints import resetJointState
@@ -136,9 +136,9 @@ def test_resets_are_counted_from_0_after_many():
     assert counts[RESETS] == counts[RESETS_SEEN] == 0
     # Otherwise all these bodies would count as reset whenever one is.
     assert not world.arrays.state.numpy["tree_reset"].any()
-    counts[RESETS] = MOST_RESETS
+    counts[RESETS] = MAX_RESETS
     for setter in (p.resetBaseVelocity, resetBaseVelocity):
         setter(bodies[0], [0.0, 0.0, 0.0])
-        assert counts[RESETS] == MOST_RESETS
+        assert counts[RESETS] == MAX_RESETS
     p.stepSimulation()
     assert counts[RESETS] == 0

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src"
 PAGES = ("CONTRIBUTING.md", "docs/architecture.md", "docs/solver.md")
-MOST_PLACES = 12
+MAX_PLACES = 12
 
 JOINTS = {"REVOLUTE", "CONTINUOUS", "PRISMATIC", "SPHERICAL", "PLANAR"}
 KINDS_OF_SHAPE = {"SPHERE", "BOX", "CAPSULE", "CYLINDER", "PLANE", "HULL", "TRIANGLES", "HEIGHTFIELD"}
@@ -108,7 +108,7 @@ def test_lists_of_places_are_what_the_code_says(
 
 @pytest.mark.parametrize("title", ["Adding a joint type", "Adding a collision shape"])
 def test_a_new_kind_needs_few_places(title: str):
-    assert 0 < len(places(title)) <= MOST_PLACES
+    assert 0 < len(places(title)) <= MAX_PLACES
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -24,7 +24,7 @@ INTERNAL: dict[str, set[str]] = {
         *("next_id", "constraints", "user_constraints", "unspent_time", "view", "motor", "pd"),
         *(
             "add_constraint",
-            "be_quick",
+            "prepare_poses",
             "constraints_changed",
             "link_columns",
             "link_places",

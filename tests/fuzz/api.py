@@ -35,8 +35,8 @@ ALLOWED = (p.error, TypeError, OverflowError)
 """`pybullet.error`, and what Python raises for arguments of another type and integers that are too large."""
 _SHOWN = 40
 _SCENE_LASTS = 1000
-_MOST_BODIES = 40
-_MOST_SUBSTEPS, _MOST_SWEEPS = 100, 1000
+_MAX_BODIES = 40
+_MAX_SUBSTEPS, _MAX_SWEEPS = 100, 1000
 
 
 class Fuzzer:
@@ -58,7 +58,7 @@ class Fuzzer:
     def run(self, count: int) -> None:
         """Makes so many calls; raises `Broken` at the first thing that is not as it has to be."""
         for number in range(count):
-            if number % _SCENE_LASTS == 0 or p.getNumBodies() > _MOST_BODIES:
+            if number % _SCENE_LASTS == 0 or p.getNumBodies() > _MAX_BODIES:
                 self._begin()
             self._bodies[:] = [p.getBodyUniqueId(place) for place in range(p.getNumBodies())]
             self._perform(next(self._operations))
@@ -100,7 +100,7 @@ def _lighten() -> None:
     """Take back parameters with which a step takes seconds, or a million operations would take weeks."""
     parameters = clients[0].world.parameters
     sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations
-    if parameters.substeps > _MOST_SUBSTEPS or sweeps > _MOST_SWEEPS:
+    if parameters.substeps > _MAX_SUBSTEPS or sweeps > _MAX_SWEEPS:
         p.setPhysicsEngineParameter(numSubSteps=0, numSolverIterations=50, numNonContactInnerIterations=1)
 
 

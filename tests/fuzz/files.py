@@ -35,7 +35,7 @@ from carom.world_files import container
 _DATA = Path(pybullet_data.getDataPath())
 _TEST_DATA = Path(__file__).parents[1] / "formats" / "data"
 _LARGEST = 30_000
-_MOST_SEEDS = 25
+_MAX_SEEDS = 25
 
 Load = Callable[[str], Any]
 
@@ -48,7 +48,7 @@ def _files(*patterns: str) -> list[bytes]:
         for pattern in patterns
         for file in sorted(folder.rglob(pattern))
     ]
-    return [file.read_bytes() for file in found if file.stat().st_size < _LARGEST][:_MOST_SEEDS]
+    return [file.read_bytes() for file in found if file.stat().st_size < _LARGEST][:_MAX_SEEDS]
 
 
 def _images(kind: str) -> list[bytes]:

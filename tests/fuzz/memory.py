@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-MOST_BYTES = 1 << 30
+MAX_BYTES = 1 << 30
 
 
 def check_memory() -> None:
@@ -13,7 +13,7 @@ def check_memory() -> None:
     if sys.platform == "win32":
         return
     used = _peak_on_linux() if sys.platform == "linux" else _peak()
-    assert used < MOST_BYTES, f"{used >> 20} MB of memory were used"
+    assert used < MAX_BYTES, f"{used >> 20} MB of memory were used"
 
 
 def _peak_on_linux() -> int:

@@ -29,7 +29,7 @@ OFTEN = ("stepSimulation", "stepSimulation", "stepSimulation", "loadURDF", "crea
 _BODIES = frozenset(
     {"bodyUniqueId", "objectUniqueId", "bodyA", "bodyB", "parentBodyUniqueId", "childBodyUniqueId"}
 )
-_MOST_OTHERS = 3
+_MAX_OTHERS = 3
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def _operation(name: str, calls: Calls, random: Random, places: Places, body_ids
     else:
         keywords = dict(calls.needed)
         others = list(calls.other)
-        for other in random.sample(others, min(random.randint(0, _MOST_OTHERS), len(others))):
+        for other in random.sample(others, min(random.randint(0, _MAX_OTHERS), len(others))):
             keywords |= {**calls.along.get(other, {}), other: calls.other[other]}
     keywords = {key: places.real(value) for key, value in keywords.items() if key != CLIENT}
     for key in keywords.keys() & _BODIES:

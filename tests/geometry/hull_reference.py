@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.geometry.hull import ROUNDING
-from carom.geometry.native_hull import COPLANAR, LEAST_FACES
+from carom.geometry.native_hull import COPLANAR, MIN_FACES
 from carom.native.products import dots, product
 from carom.record import record
 
@@ -254,7 +254,7 @@ def merged_loops(
             loops.append(loop)
     merged = _without_middles(loops)
     # A shape thinner than the tolerance would lose its faces.
-    return merged if len(merged) >= LEAST_FACES else [list(triangle) for triangle in triangles]
+    return merged if len(merged) >= MIN_FACES else [list(triangle) for triangle in triangles]
 
 
 def _outline(group: list[tuple[int, int, int]]) -> list[int] | None:

@@ -24,9 +24,9 @@ from pybullet._clients.clients import clients
 
 # Calls take from 50 µs to some milliseconds.
 _SHORTEST, _LONGEST = 2e-5, 4e-3
-_MOST_RINGS = 3
+_MAX_RINGS = 3
 _SCENE_LASTS = 100
-_MOST_BODIES = 60
+_MAX_BODIES = 60
 
 
 class Alarm(Exception):
@@ -50,7 +50,7 @@ class Bell:
     def wind_up(self) -> None:
         """Let it ring from now on."""
         self.rang = False
-        self.left = self._random.randint(1, _MOST_RINGS)
+        self.left = self._random.randint(1, _MAX_RINGS)
         interval = self._random.uniform(_SHORTEST, _LONGEST)
         signal.setitimer(signal.ITIMER_REAL, self._random.uniform(_SHORTEST, _LONGEST), interval)
 
@@ -70,7 +70,7 @@ def ring(seconds: float, seed: int, folder: Path) -> tuple[int, int]:
     until = monotonic() + seconds
     while monotonic() < until:
         calls += 1
-        if calls % _SCENE_LASTS == 0 or p.getNumBodies() > _MOST_BODIES:
+        if calls % _SCENE_LASTS == 0 or p.getNumBodies() > _MAX_BODIES:
             scene = build(folder)
         name = random.choice(names)
         try:

@@ -23,7 +23,7 @@ import pybullet as p
 import pybullet_data
 
 # Scenes are small, so that a step is short and calls meet often.
-MOST_BODIES = 12
+MAX_BODIES = 12
 _HANG = 60.0
 
 
@@ -123,7 +123,7 @@ class Storm:
             own = Own(random)
             while monotonic() < self._until and not self.failures:
                 self.count += 1
-                if p.getNumBodies() < MOST_BODIES and random.random() < 0.1:
+                if p.getNumBodies() < MAX_BODIES and random.random() < 0.1:
                     own.renew()
                 elif random.random() < 0.3:
                     own.check()

@@ -45,7 +45,7 @@ from carom.kernels.types import (
     real,
 )
 from carom.layouts.codes import BOX, CAPSULE, HULL, SPHERE
-from carom.layouts.contacts import MOST_CORNERS
+from carom.layouts.contacts import MAX_CORNERS
 
 # The polytope is grown until its nearest face is this near to the boundary [m].
 PRECISION = 1e-7
@@ -81,7 +81,7 @@ def penetration(
 ) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
     """Depth [m], normal from b towards a, and the deepest points of a and of b."""
     answers = np.zeros((1, 10))
-    room = 2 * MOST_CORNERS
+    room = 2 * MAX_CORNERS
     types = (Vector3, Vector3, Vector4, Index4, Index4)
     work = [wp.zeros((1, room), dtype=dtype, device="cpu") for dtype in types]
     rows = wp.array2d(answers, dtype=real, device="cpu", copy=False)

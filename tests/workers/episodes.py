@@ -23,7 +23,7 @@ import numpy as np
 
 ENVIRONMENT = "HopperBulletEnv-v0"
 METHODS = ("fork", "spawn") if sys.platform != "win32" else ("spawn",)
-MOST_GROWTH = 4_000_000
+MAX_GROWTH = 4_000_000
 """The resident size wobbles by what the allocators hold back [bytes]."""
 _STEPS = 10
 _LASTS = 250
@@ -115,14 +115,14 @@ def main() -> None:
     asked = parser.parse_args()
     alone = play(asked.episodes)
     print(f"alone: {alone}", flush=True)
-    holds = alone.growth <= MOST_GROWTH
+    holds = alone.growth <= MAX_GROWTH
     for method in asked.methods:
         start = time.perf_counter()
         played = play_beside(method, asked.workers, asked.episodes)
         same = all(it.digest == alone.digest for it in played)
         growth = max(it.growth for it in played)
         files = max(it.files for it in played)
-        holds = holds and same and growth <= MOST_GROWTH and files <= 0
+        holds = holds and same and growth <= MAX_GROWTH and files <= 0
         print(
             f"{method}: {asked.workers} workers, {asked.episodes} episodes each in "
             f"{time.perf_counter() - start:.0f} s: {'the same bits' if same else 'OTHER BITS'}, "

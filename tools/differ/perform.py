@@ -19,7 +19,7 @@ import time
 
 import pybullet as p
 
-MOST_JOINTS = 64
+MAX_JOINTS = 64
 """So many joints of a body are in `@probe`."""
 
 
@@ -168,7 +168,7 @@ def probe():
             base = [*p.getBasePositionAndOrientation(body), *p.getBaseVelocity(body)]
         except p.error:
             base = []
-        joints = range(min(p.getNumJoints(body), MOST_JOINTS))
+        joints = range(min(p.getNumJoints(body), MAX_JOINTS))
         states = [p.getJointStateMultiDof(body, joint) for joint in joints]
         reactions = [
             p.getJointState(body, joint)[2:] if len(state[0]) < 2 else state[2:4]

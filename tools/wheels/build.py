@@ -23,7 +23,7 @@ from tools.wheels.structure import read_library
 from carom.native.targets import TARGETS, Target
 
 _ROOT = Path(__file__).parents[2]
-_MOST_BYTES = 15_000_000
+_MAX_BYTES = 15_000_000
 
 
 def main() -> None:
@@ -118,8 +118,8 @@ def check_wheel(wheel: Path, target: Target) -> None:
     Raises:
         Unfit: It is too large, or something is missing, or a library is not as it should be.
     """
-    if wheel.stat().st_size > _MOST_BYTES:
-        raise Unfit(f"{wheel.name}: {wheel.stat().st_size} bytes; at most {_MOST_BYTES} are allowed")
+    if wheel.stat().st_size > _MAX_BYTES:
+        raise Unfit(f"{wheel.name}: {wheel.stat().st_size} bytes; at most {_MAX_BYTES} are allowed")
     with zipfile.ZipFile(wheel) as archive, tempfile.TemporaryDirectory() as folder:
         for level in target.shipped:
             name = f"carom/native/libraries/{target.library_name(level)}"

@@ -26,7 +26,7 @@ from carom.native.targets import this_target
 
 _ROOT = Path(__file__).parents[2]
 _OLDEST = Path(__file__).with_name("oldest.txt")
-_MOST_INSTALLED_BYTES = 150_000_000
+_MAX_INSTALLED_BYTES = 150_000_000
 # What the tests need beside what the wheel brings. The rest of them is skipped.
 _TEST_NEEDS = ("pytest", "pytest-xdist", "hypothesis", "scipy", "gymnasium")
 # What tests read besides; `src` is what is installed.
@@ -88,8 +88,8 @@ def report(wheel: Path, environment: Environment) -> None:
         f"wheel {wheel.stat().st_size / 1e6:.1f} MB, installed {size / 1e6:.1f} MB: {', '.join(names)}",
         flush=True,
     )
-    if size > _MOST_INSTALLED_BYTES:
-        raise Unfit(f"{size} bytes are installed; at most {_MOST_INSTALLED_BYTES} are allowed")
+    if size > _MAX_INSTALLED_BYTES:
+        raise Unfit(f"{size} bytes are installed; at most {_MAX_INSTALLED_BYTES} are allowed")
 
 
 def run_tests(environment: Environment, folder: Path, arguments: Sequence[str]) -> int:

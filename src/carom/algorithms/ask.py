@@ -23,7 +23,7 @@ Ask = Callable[..., tuple[float, ...]]
 
 _TYPE = np.dtype(NUMPY_REAL)
 # Calls with more arguments are slow.
-_MOST_ITEMS = 27
+_MAX_ITEMS = 27
 _SOURCE = """
 def ask(setting, {lists}):
     global seen
@@ -84,7 +84,7 @@ def asking(
 def _code(counts: tuple[int, ...]) -> CodeType:
     """Compiled code of `ask` for lists of these lengths."""
     lists = [f"list_{number}" for number in range(len(counts))]
-    if sum(counts) > _MOST_ITEMS:
+    if sum(counts) > _MAX_ITEMS:
         writing = [f"write_{number}(*list_{number})" for number in range(len(counts))]
     else:
         items = [[f"item_{number}_{k}" for k in range(count)] for number, count in enumerate(counts)]

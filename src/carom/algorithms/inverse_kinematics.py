@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 DEFAULT_ITERATIONS = 20
 DEFAULT_THRESHOLD = 1e-4
 DEFAULT_DAMPING = 0.5
-LEAST_DAMPING = 1e-9
+MIN_DAMPING = 1e-9
 _NUMBER = np.dtype(NUMPY_REAL)
 _NO_POSE = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0), dtype=NUMPY_REAL).data
 # The first of the kernel's arguments that change from call to call.
 _FIRST_OPTION = 3
-MOST_ITERATIONS = 100_000
+MAX_ITERATIONS = 100_000
 """Upper bound of iterations: more would not help, but take very long."""
 Numbers = Sequence[float] | np.ndarray
 
@@ -278,7 +278,7 @@ class _Solver:
 
     def set_damping(self, damping: Numbers | None) -> None:
         if damping is not None:
-            np.maximum(damping, LEAST_DAMPING, out=self._damping)
+            np.maximum(damping, MIN_DAMPING, out=self._damping)
         elif self._has_damping:
             self._damping.fill(DEFAULT_DAMPING)
         self._has_damping = damping is not None
@@ -311,7 +311,7 @@ class _Solver:
         """The best positions found; the options are arguments of the kernel."""
         if options != self._options:
             oriented, step, bounded, *iterations, threshold, patience = options
-            limited = (min(count, MOST_ITERATIONS) for count in iterations)
+            limited = (min(count, MAX_ITERATIONS) for count in iterations)
             arguments = (oriented, step, bounded, *limited, threshold, patience)
             for index, value in enumerate(arguments, start=_FIRST_OPTION):
                 self._launch.replace(index, value)

@@ -17,7 +17,7 @@ from carom.cluster.nodes import Failed, Failure, Node, living_nodes, unpacked
 
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"
-_MOST_LOSSES = 3
+_MAX_LOSSES = 3
 """Number of processes that may die on a node during a collection; after that the node is not used."""
 _PATIENCE = 30.0
 """Time without a result after which a warning says for which nodes the rollout is waiting [s]."""
@@ -43,7 +43,7 @@ class Returned:
 
 
 @dataclass
-class Crew:
+class ActorPool:
     """The actors of a rollout, at most one on each node.
 
     `make_env`, pickled, makes vector environments of `num_envs`; `nodes` is the maximum number, or "all", and
@@ -84,7 +84,7 @@ class Crew:
         taken = {member.node.id for member in self.members}
         for node in living_nodes(self.cpus):
             is_enough = self.nodes != _ALL and len(self.members) >= int(self.nodes)
-            if not is_enough and node.id not in taken and self._losses[node.id] < _MOST_LOSSES:
+            if not is_enough and node.id not in taken and self._losses[node.id] < _MAX_LOSSES:
                 member = Member(node, node.start(self.cpus))
                 self.members.append(member)
                 prepared = member.actor.prepare.remote(self.make_env, self.num_envs, self.max_episode_steps)

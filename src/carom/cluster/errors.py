@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from carom.errors import CaromError
 
-_MOST_NAMED = 8
+_MAX_NAMED = 8
 
 
 class ClusterError(CaromError):
@@ -47,6 +47,6 @@ def _listed(numbers: Sequence[int]) -> str:
     first, last = numbers[0], numbers[-1]
     if len(numbers) > 2 and list(numbers) == list(range(first, last + 1)):
         return f"{first} to {last}"
-    shown = ", ".join(map(str, numbers[:_MOST_NAMED]))
-    left = len(numbers) - _MOST_NAMED
+    shown = ", ".join(map(str, numbers[:_MAX_NAMED]))
+    left = len(numbers) - _MAX_NAMED
     return f"{shown} and {left} more" if left > 0 else shown

@@ -8,7 +8,7 @@ from typing import Any
 import ray  # pyright: ignore[reportMissingImports]
 
 from carom.cluster.collection import Collection, Part, Reduction, Report
-from carom.cluster.crew import Crew
+from carom.cluster.crew import ActorPool
 from carom.cluster.episode import Episode
 from carom.cluster.ledger import Ledger
 from carom.cluster.nodes import MakeEnv, Reduce, packed
@@ -68,7 +68,7 @@ class Rollouts:
         self._seed, self._attempts = seed, attempts
         self._batch_size = batch_size or num_envs_per_node
         sent = packed(make_env, "make_env")
-        self._crew = Crew(sent, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
+        self._crew = ActorPool(sent, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
 
     def collect(
         self,

@@ -13,7 +13,7 @@ from carom.native.products import determinants
 
 _EPSILON = 2.220446049250313e-16
 # With these, all digits are right.
-_PRECISION, _MOST_ROTATIONS = 1e-16, 60
+_PRECISION, _MAX_ROTATIONS = 1e-16, 60
 
 
 def diagonalize(tensor: Matrix3, threshold: float, most_steps: int) -> tuple[Vector3, Matrix3]:
@@ -64,7 +64,7 @@ def principal_axes(tensor: NDArray[np.float64]) -> tuple[NDArray[np.float64], ND
     These are the columns of a rotation (3, 3).
     """
     rows = tuple((float(a), float(b), float(c)) for a, b, c in tensor)
-    moments, axes = diagonalize((rows[0], rows[1], rows[2]), _PRECISION, _MOST_ROTATIONS)
+    moments, axes = diagonalize((rows[0], rows[1], rows[2]), _PRECISION, _MAX_ROTATIONS)
     order = np.argsort(moments, kind="stable")
     turn = np.array(axes)[:, order]
     if determinants(turn) < 0.0:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-GREATEST_SIZE = 1e15
+MAX_SIZE = 1e15
 """Size [m] up to which scripts make and scale shapes; beyond it the normals of contacts are lost."""
 
 

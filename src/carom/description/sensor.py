@@ -101,7 +101,7 @@ OF_STEPS: tuple[SensorKind, ...] = (
 )
 """Kinds that are known only just after a step."""
 SHORT_STEP = 1e-3
-MOST_SAMPLES = 100_000
+MAX_SAMPLES = 100_000
 _SITE_KINDS = tuple(SensorKind)[:8]
 _JOINT_KINDS = tuple(SensorKind)[8:16]
 _ACTUATOR_KINDS = tuple(SensorKind)[16:19]
@@ -190,9 +190,9 @@ class SensorSpec:
                 raise self._error(f"needs a {name} of 0 or more, not {getattr(self, name):g}")
         if not 0.0 < self.reach < inf:
             raise self._error(f"needs a reach greater than 0, not {self.reach:g}")
-        if not 0 <= self.samples <= MOST_SAMPLES or self.kept > MOST_SAMPLES:
+        if not 0 <= self.samples <= MAX_SAMPLES or self.kept > MAX_SAMPLES:
             raise self._error(
-                f"would keep {max(self.samples, self.kept)} measurements; {MOST_SAMPLES} are most"
+                f"would keep {max(self.samples, self.kept)} measurements; {MAX_SAMPLES} are most"
             )
         if len(self.bias) not in (0, 1, self.dim):
             raise self._error(f"has {self.dim} numbers, but its bias has {len(self.bias)}")

@@ -12,7 +12,7 @@ from carom.engine.lost_contacts import kept_rows, renumber, write_rows
 from carom.layouts.contacts import (
     CONTACT_COLUMNS,
     KNOWN,
-    MOST_RESETS,
+    MAX_RESETS,
     OVERLAPS,
     RESETS,
     RESETS_SEEN,
@@ -27,7 +27,7 @@ from carom.model.soft_arrays import SoftArrays
 from carom.native.tables import ArrayTable
 
 # Initial number of contacts in each of many worlds.
-_LEAST_CONTACTS = 4
+_MIN_CONTACTS = 4
 
 
 class ContactArrays:
@@ -48,8 +48,8 @@ class ContactArrays:
         other.contacts = self.contacts.copy(
             arrays.world_count,
             {
-                "contact": max(_LEAST_CONTACTS, self.contact_count),
-                "overlap": max(_LEAST_CONTACTS, self.overlap_count),
+                "contact": max(_MIN_CONTACTS, self.contact_count),
+                "overlap": max(_MIN_CONTACTS, self.overlap_count),
                 "count": CONTACT_COLUMNS,
             },
         )
@@ -116,7 +116,7 @@ class ContactArrays:
         kept = kept_rows(self.contacts, shapes)
         trees = [int(rows["shape_tree"][shape]) for shape in shapes]
         counts = self.contacts.numpy["count_contacts"][0]
-        resets = min(int(counts[RESETS]) + 1, MOST_RESETS)
+        resets = min(int(counts[RESETS]) + 1, MAX_RESETS)
 
         def drop() -> None:
             write_rows(self.contacts, kept)
@@ -159,7 +159,7 @@ class ContactArrays:
         numbers = self._arrays.state.numpy["tree_reset"][0]
         if not moved and abs(numbers[tree]) > counts[RESETS_SEEN]:
             return
-        count = min(int(counts[RESETS]) + 1, MOST_RESETS)
+        count = min(int(counts[RESETS]) + 1, MAX_RESETS)
         counts[RESETS] = count
         numbers[tree] = -count if moved else count
 

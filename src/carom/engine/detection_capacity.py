@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.layouts.contacts import COLUMNS, MOST_CORNERS, RADIX
+from carom.layouts.contacts import COLUMNS, MAX_CORNERS, RADIX
 
 CANDIDATES = 64
 CORNERS = 64
@@ -25,7 +25,7 @@ def scratch_capacity(shape_count: int, contact_capacity: int) -> dict[str, int]:
         "bucket": RADIX,
         "candidate": CANDIDATES,
         "polygon": CORNERS,
-        "polytope": 2 * MOST_CORNERS,
+        "polytope": 2 * MAX_CORNERS,
         "previous": 2 * contact_capacity,
         "count": COLUMNS,
     }

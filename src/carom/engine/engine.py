@@ -32,7 +32,7 @@ MOST_STEPS = 64
 # Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 16
 # Shapes of a scene in which collisions are detected with the GIL held.
-_MOST_QUICK_SHAPES = 64
+_MAX_QUICK_SHAPES = 64
 _NONE = np.zeros(0, dtype=np.int64)
 # Contacts take memory in each of many worlds: factor by which their arrays grow.
 _GROWTH_OF_MANY = 1.25
@@ -317,11 +317,11 @@ class Engine:
         In a large scene Python does it, which lets other threads run meanwhile.
         """
         detector = self._detectors[0]
-        is_small = self.contact_arrays.shapes.shape_count <= _MOST_QUICK_SHAPES
+        is_small = self.contact_arrays.shapes.shape_count <= _MAX_QUICK_SHAPES
         if is_small and self._detection_ready and self._plan and isinstance(detector, Interpreter):
             find_poses = self.workspace.structs.launch(link_poses_kernel, first_world=0)
             poses = self.arrays.state.bytes_of("link_pose")
-            quick.know_detection(detector, find_poses, poses, self.status)
+            quick.set_detection_addresses(detector, find_poses, poses, self.status)
 
     def _detect(self, worlds: np.ndarray | None = None) -> None:
         if not self._detection_ready:

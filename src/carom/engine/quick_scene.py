@@ -91,7 +91,7 @@ class QuickScene:
         self.record.placement.changes = -1
         self.record.nearest.search.function = None
 
-    def know_poses(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> TreeLaunch:
+    def set_pose_addresses(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> TreeLaunch:
         """Set the addresses that update the link poses of a body, and those of contacts and surfaces.
 
         Returns:
@@ -125,7 +125,7 @@ class QuickScene:
         self.record.tree_resets = state.tree_reset.data
         return TreeLaunch(forward_kinematics_kernel, KernelStructs(model=model, state=state))
 
-    def know_step(
+    def set_step_addresses(
         self, engine: Engine, time: c_double, observers: list[Any], parameters: EngineParameters
     ) -> None:
         """Set the addresses for steps of one substep.
@@ -148,12 +148,12 @@ class QuickScene:
         # Last: without it the other addresses are not used.
         record.run = self._run = run
 
-    def know_twists(self, launch: TreeLaunch) -> None:
+    def set_twist_addresses(self, launch: TreeLaunch) -> None:
         """Set the addresses that update the link velocities of a body."""
         self.keep(launch)
         _know(self.record.find_twists, launch)
 
-    def know_detection(
+    def set_detection_addresses(
         self, detector: Interpreter, find_poses: KernelLaunch, poses: memoryview[int], status: np.ndarray
     ) -> None:
         """Set the addresses that detect collisions.
@@ -179,7 +179,7 @@ class QuickScene:
         self._is_empty = False
         self._kept += what
 
-    def know_contacts(self, question: Question, there: int, keep: Any) -> None:
+    def set_contact_addresses(self, question: Question, there: int, keep: Any) -> None:
         """Set the addresses that list contacts.
 
         Args:

@@ -9,7 +9,7 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
 from carom.layouts.contacts import (
     LIST_FILTER,
-    MOST_CORNERS,
+    MAX_CORNERS,
     NO_LIST,
     ROW_ENTRY_VIEWS,
     ROWS_PER_PAIR,
@@ -85,7 +85,7 @@ class Workspace:
                     "face": faces,
                     "near": FACES_PER_NODE * nodes,
                     "bucket": BUCKETS,
-                    "polytope": 2 * MOST_CORNERS,
+                    "polytope": 2 * MAX_CORNERS,
                     "anchor": contact_arrays.soft.table.capacity["anchor"],
                     "dof": arrays.state.capacity["dof"],
                     "tree": arrays.model.capacity["tree"],

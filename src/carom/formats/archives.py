@@ -16,9 +16,9 @@ from carom.forks import free_in_forks
 from carom.formats.unpacking import in_use
 from carom.writing import write_whole
 
-MOST_MEMBER_BYTES = 256 << 20
-MOST_BYTES = 2 << 30
-MOST_MEMBERS = 100_000
+MAX_MEMBER_BYTES = 256 << 20
+MAX_BYTES = 2 << 30
+MAX_MEMBERS = 100_000
 """Limits on the unpacked size of a member and of all that are asked for, and on the number of members,
 against archives made to fill discs (zip bombs)."""
 
@@ -51,9 +51,9 @@ class Archive:
         try:
             with zipfile.ZipFile(path) as archive:
                 members = archive.infolist()
-                if len(members) > MOST_MEMBERS:
+                if len(members) > MAX_MEMBERS:
                     raise DescriptionError(
-                        f"it has {len(members)} members; at most {MOST_MEMBERS} are accepted", file=path
+                        f"it has {len(members)} members; at most {MAX_MEMBERS} are accepted", file=path
                     )
                 self._members = {_inside(it.filename): it for it in members if not it.is_dir()}
                 # A path may pass through a folder, as `a/../b` does.
@@ -90,13 +90,13 @@ class Archive:
         with self._lock:
             if target.exists():
                 return
-            size, left = member.file_size, MOST_BYTES - self._unpacked
+            size, left = member.file_size, MAX_BYTES - self._unpacked
             whose = f"its member {member.filename!r} has {size} bytes"
-            if size > MOST_MEMBER_BYTES:
-                problem = f"{whose}; at most {MOST_MEMBER_BYTES} are accepted"
+            if size > MAX_MEMBER_BYTES:
+                problem = f"{whose}; at most {MAX_MEMBER_BYTES} are accepted"
                 raise DescriptionError(problem, file=self.path)
             if size > left:
-                problem = f"{whose}; of the {MOST_BYTES} accepted for all members {left} are left"
+                problem = f"{whose}; of the {MAX_BYTES} accepted for all members {left} are left"
                 raise DescriptionError(problem, file=self.path)
             try:
                 with zipfile.ZipFile(self.path) as archive, archive.open(member) as stream:

@@ -14,7 +14,7 @@ from carom.native.library import library
 COPLANAR = 1e-5
 """Distance from a plane, relative to the size of the hull, up to which a vertex counts as in the plane."""
 
-LEAST_FACES = 4
+MIN_FACES = 4
 """Fewest faces that can enclose a volume."""
 
 _PARALLEL = 0.999
@@ -142,6 +142,6 @@ def _merged(
         setattr(work, name, memory.new(hull.count))
     corners, counts = np.empty(3 * triangles, np.int32), np.empty(triangles, np.int32)
     work.corners, work.counts = memory.address(corners), memory.address(counts)
-    library().symbols["carom_merge_faces"](ctypes.byref(work), _Whole(LEAST_FACES))
+    library().symbols["carom_merge_faces"](ctypes.byref(work), _Whole(MIN_FACES))
     counts = counts[: work.loop_count]
     return corners[: counts.sum()], counts

@@ -25,7 +25,7 @@ _WARP_TYPES: dict[str, Any] = {
     "float32": wp.float32,
     "float64": wp.float64,
 }
-_MOST_AXES = 4
+_MAX_AXES = 4
 # Number of axes of the arrays that `combine_kernel` takes.
 _COMBINED_AXES = 3
 _REAL = np.dtype(np.float64)
@@ -300,7 +300,7 @@ class DeviceArray(OnDevice):
         return wp.indexedarray(self.warp(), picks)
 
     def _as(self, shape: Sequence[int], strides: Sequence[int]) -> Any:
-        if len(shape) > _MOST_AXES:
+        if len(shape) > _MAX_AXES:
             raise ValueError(f"an array of {len(shape)} axes has too many")
         dtype = self.dtype
         if dtype.names is not None:

@@ -16,7 +16,7 @@ from carom.gpu.device import MODULES, Device, FineLaunch
 from carom.gpu.tables import DeviceTable, struct_of_zeros
 from carom.layouts.contacts import ROW_ENTRY_VIEWS, PairRows, Pairs
 from carom.layouts.model import ENTRY_VIEWS, Scratch
-from carom.layouts.parallel import MOST_CANDIDATES, IslandWork, PairWork, RunWork
+from carom.layouts.parallel import MAX_CANDIDATES, IslandWork, PairWork, RunWork
 from carom.layouts.soft import SoftWork
 from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
@@ -165,7 +165,7 @@ def _pair_work(extent: Extent) -> dict[str, tuple[int, ...]]:
     shapes: dict[str, tuple[int, ...]] = {
         "world_kept": (extent.worlds,),
         "pair_result": (extent.worlds, max(1, extent.pairs)),
-        "candidate": (extent.worlds, max(1, MOST_CANDIDATES * extent.pairs)),
+        "candidate": (extent.worlds, max(1, MAX_CANDIDATES * extent.pairs)),
     }
     for name in PairWork.fields:
         if name.startswith("worker_"):

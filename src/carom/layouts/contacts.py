@@ -62,7 +62,7 @@ RADIX = 256
 THERE, OVERLAPS, KNOWN, SORTED, RESETS, RESETS_SEEN = 0, 1, 2, 3, 4, 5
 CONTACT_COLUMNS = 6
 # Resets are counted from 0 again after so many, and never beyond the second number.
-MANY_RESETS, MOST_RESETS = 2**30, 2**31 - 1
+MANY_RESETS, MAX_RESETS = 2**30, 2**31 - 1
 # Place among manifolds of overlaps without a manifold.
 NO_MANIFOLD = -1
 # How near two shapes are: far; close, so that Bullet takes their bounds for overlapping, without and with a
@@ -76,7 +76,7 @@ HOLDING = 2.0
 # Maximum number of rows of a contact or a user constraint.
 ROWS_PER_PAIR = 6
 # Maximum number of vertices of EPA's polytope; it has up to twice as many faces.
-MOST_CORNERS = 64
+MAX_CORNERS = 64
 
 
 @struct

@@ -4,10 +4,10 @@
 # overflow; the same as in files.
 MAX_MAGNITUDE = 1e30
 # Squared lengths of valid quaternions: their products neither underflow nor overflow.
-LEAST_SQUARE, GREATEST_SQUARE = 1e-60, 1e60
+MIN_SQUARE, MAX_SQUARE = 1e-60, 1e60
 # Rounding error of the squared length of a unit quaternion.
 UNIT_ROUNDING = 1e-15
 # Greatest search distance, which stands for all larger ones [m].
 MAX_DISTANCE = 1e30
 # A PD drive with a smaller maximum force [N or N m] is switched off.
-LEAST_PD_FORCE = 1.1920928955078125e-07
+MIN_PD_FORCE = 1.1920928955078125e-07

@@ -17,7 +17,7 @@ from carom.layouts.types import (
 )
 
 # Maximum number of contact candidates of a pair.
-MOST_CANDIDATES = 4
+MAX_CANDIDATES = 4
 
 # What a world does in a run of steps: begin it; resume it after the steps it has done; stay as it is; or
 # continue what it is doing already.
@@ -89,7 +89,7 @@ class PairWork:
 
     world_kept: Ints  # first row of the saved contacts of the last substep, see `manifold.keep_previous`
     pair_result: Rows[PairResult]
-    candidate: Rows[Candidate]  # `MOST_CANDIDATES` for each pair
+    candidate: Rows[Candidate]  # `MAX_CANDIDATES` for each pair
 
     worker_candidate: Rows[Candidate]
     worker_polygon_a: Vector3Rows

@@ -3,7 +3,7 @@
 from carom.layouts.records import Anything, At, Bytes, Int32, Int64, KernelFunction, Read, c_record
 
 # More launches than in any program, and the number of its parts.
-MOST_LAUNCHES = 32
+MAX_LAUNCHES = 32
 PROGRAM_PARTS = 5
 
 
@@ -33,7 +33,7 @@ class WorldCall:
     substeps: At[Int32]
 
 
-@c_record(part_ends=PROGRAM_PARTS, launches=MOST_LAUNCHES)
+@c_record(part_ends=PROGRAM_PARTS, launches=MAX_LAUNCHES)
 class Program:
     """The launches of a step.
 

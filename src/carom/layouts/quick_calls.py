@@ -2,11 +2,11 @@
 
 from carom.layouts.records import Double, Int32, Int64, Kernel, Maker, Object, c_record
 
-MOST_CALLS = 192
-MOST_PARAMETERS = 26
-MOST_NUMBERS = 32
-MOST_RESULTS = 32
-MOST_GROUPS = 8
+MAX_CALLS = 192
+MAX_PARAMETERS = 26
+MAX_NUMBERS = 32
+MAX_RESULTS = 32
+MAX_GROUPS = 8
 
 # Parameters of `changeDynamics`, with their kinds.
 CHANGE_DYNAMICS = {
@@ -57,7 +57,7 @@ class Parameter:
     is_required: Int32
 
 
-@c_record(parameters=MOST_PARAMETERS, groups=MOST_GROUPS + 1)
+@c_record(parameters=MAX_PARAMETERS, groups=MAX_GROUPS + 1)
 class QuickCall:
     """A quick call.
 

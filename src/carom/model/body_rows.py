@@ -11,7 +11,7 @@ from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays, Surface
 from carom.record import record
 
-MOST_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
 """Bodies with larger rows, those of large triangle meshes, are written anew each time [bytes]."""
 
 
@@ -43,7 +43,7 @@ class BodyRows:
 
 
 def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
-    """The rows of a body, made by writing it to empty arrays; None if they are larger than `MOST_BYTES`.
+    """The rows of a body, made by writing it to empty arrays; None if they are larger than `MAX_BYTES`.
 
     The body is not soft; `surfaces` are the contact parameters of its links, the base first.
 
@@ -66,4 +66,4 @@ def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
         tuple(body.widening),
         shapes.breaking_fraction,
     )
-    return written if len(written.rows) + len(written.shape_rows) <= MOST_BYTES else None
+    return written if len(written.rows) + len(written.shape_rows) <= MAX_BYTES else None

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from carom.description import Box, Capsule, Collision, Cylinder, Mesh, Plane, Sphere
-from carom.description.geometry import GREATEST_SIZE, ConvexHull, Geometry, TriangleMesh
+from carom.description.geometry import MAX_SIZE, ConvexHull, Geometry, TriangleMesh
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse
 
@@ -24,7 +24,7 @@ def scaled_collisions(
 
     Raises:
         ValueError: A cylinder would not stay round, a kind of shape cannot be scaled, or a shape or its
-            offset would be greater than `GREATEST_SIZE`.
+            offset would be greater than `MAX_SIZE`.
     """
     scaled = []
     for collision in collisions:
@@ -32,8 +32,8 @@ def scaled_collisions(
         x, y, z = (a * b for a, b in zip(seen.position, factors, strict=True))
         frame = compose(inertial_frame, Pose((x, y, z), seen.orientation))
         geometry = _scaled(collision.geometry, factors)
-        if not max(*map(abs, frame.position), *_sizes(geometry)) <= GREATEST_SIZE:
-            raise ValueError(f"its shapes would be greater than {GREATEST_SIZE:g} m")
+        if not max(*map(abs, frame.position), *_sizes(geometry)) <= MAX_SIZE:
+            raise ValueError(f"its shapes would be greater than {MAX_SIZE:g} m")
         scaled.append(replace(collision, geometry=geometry, frame=frame))
     return tuple(scaled)
 

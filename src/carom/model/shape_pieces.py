@@ -37,7 +37,7 @@ from carom.native.digest import blake2b
 from carom.native.trigonometry import cos, sin
 from carom.record import record
 
-MOST_HULL_VERTICES = 512
+MAX_HULL_VERTICES = 512
 """Most vertices of a hull; hulls of finer meshes are simplified."""
 
 HULL_TOLERANCE = 1e-4
@@ -49,7 +49,7 @@ CYLINDER_SIDES = 32
 GRID = 10216
 """Cells across a hull of the grid on which its vertices lie."""
 
-MOST_HULLS = 2048
+MAX_HULLS = 2048
 """Most hulls that are kept, by the points they are of; with the most vertices, 120 MB."""
 
 _CACHED = 1024
@@ -147,14 +147,14 @@ def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
     made = _made_hull(points)
     with _hulls_lock:
         _hulls[key] = made
-        while len(_hulls) > MOST_HULLS:
+        while len(_hulls) > MAX_HULLS:
             _hulls.popitem(last=False)
     return made
 
 
 def _made_hull(points: NDArray[np.float64]) -> ShapePiece:
     try:
-        hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MOST_HULL_VERTICES)
+        hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
     except ValueError as problem:
         # The points are too far apart, or flat and so far apart that rounding removes the added thickness.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem

@@ -23,7 +23,7 @@ from carom.model.tree import TreeNode, depth_first
 _log = Logger(__name__)
 # Off-diagonal entries of this share of the diagonal are zero; Jacobi's method gets there in a few rotations.
 _PRECISION = 1e-17
-_MOST_ROTATIONS = 60
+_MAX_ROTATIONS = 60
 # Moments that no body has are rounding if they are wrong by less than this share.
 _ROUNDING = 1e-6
 
@@ -41,7 +41,7 @@ def written_inertia(inertial: Inertial, link_name: str) -> tuple[Vector3, Pose]:
     moments, axes = (ixx, iyy, izz), NO_ROTATION
     if ixy != 0.0 or ixz != 0.0 or iyz != 0.0:
         tensor = ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
-        moments, axes = diagonalize(tensor, _PRECISION, _MOST_ROTATIONS)
+        moments, axes = diagonalize(tensor, _PRECISION, _MAX_ROTATIONS)
     total = sum(moments)
     if min(moments) < -_ROUNDING * abs(total) or 2.0 * max(moments) > (1.0 + _ROUNDING) * total:
         _log.warning(

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from carom.layouts.gates import MOST_CLIENTS, Conduct, Guard
-from carom.layouts.quick_calls import MOST_CALLS, QuickCall
+from carom.layouts.quick_calls import MAX_CALLS, QuickCall
 from carom.native.gates import BuiltinMaker, GateLock, lock_of
 from carom.native.library import library
 from carom.native.uninterrupted import begin, end, is_our_own
@@ -57,8 +57,8 @@ class QuickCalls:
         self.gates: Any = (ctypes.c_void_p * len(self.clients)).from_address(symbols.carom_gates())
         self.is_paused: ctypes.c_int32 = ctypes.c_int32.in_dll(symbols, "carom_quick_calls_paused")
         self._symbols = symbols
-        self._calls = (QuickCall * MOST_CALLS).from_address(calls)
-        self._guards = (Guard * MOST_CALLS).from_address(guards)
+        self._calls = (QuickCall * MAX_CALLS).from_address(calls)
+        self._guards = (Guard * MAX_CALLS).from_address(guards)
         symbols.carom_quick_entry.restype = ctypes.c_void_p
         symbols.carom_meet_host.argtypes = [ctypes.py_object] * 3
         symbols.carom_meet_host(begin, end, is_our_own)

@@ -85,4 +85,4 @@ class ContactSearch:
             memory(f"report_{name}") for name in ("point_a", "point_b", "normal", "direction1", "direction2")
         ]
         contacts = self._contacts.struct()
-        self._quick.know_contacts(self._search, contacts.count_contacts.data, contacts)
+        self._quick.set_contact_addresses(self._search, contacts.count_contacts.data, contacts)

@@ -23,7 +23,7 @@ from carom.queries.quick_queries import tell_search
 _CANDIDATE = Struct(f"7{np.dtype(NUMPY_REAL).char}8x")
 _INDEX = np.dtype(np.int32)
 # Maximum number of cached queries; scripts query the same links in each step.
-_MOST_REMEMBERED = 64
+_MAX_REMEMBERED = 64
 
 
 NearestPoints = tuple[int, int, Vector3, Vector3, Vector3, float]
@@ -66,7 +66,7 @@ class PairSearch:
         """All pairs of a shape of a link of `first` and a shape of a link of `second`."""
         known = self._remembered.get((first, second))
         if known is None:
-            if len(self._remembered) >= _MOST_REMEMBERED:
+            if len(self._remembered) >= _MAX_REMEMBERED:
                 self._remembered.clear()
             known = self._remembered[first, second] = self._find_pairs(first, second)
         return known

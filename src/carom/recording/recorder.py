@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # Tolerance for rounding errors in sums of time steps, as a fraction of the interval between two pictures.
 _EARLY = 1e-6
 # Maximum number of pictures per step: the video of a longer step is cut short.
-_MOST_OF_A_STEP = 240
+_MAX_OF_A_STEP = 240
 
 
 class Film:
@@ -66,7 +66,7 @@ class Film:
         if not self.automatic or self._due > _EARLY:
             return
         picture = self._take()
-        self._due = max(self._due, 1.0 - _MOST_OF_A_STEP)
+        self._due = max(self._due, 1.0 - _MAX_OF_A_STEP)
         while self._due <= _EARLY:
             self._file.add(picture)
             self._due += 1.0

@@ -8,7 +8,7 @@ from threading import Lock
 from typing import Any
 
 from carom.remote.errors import Malformed, NoServer, ServerGone
-from carom.remote.frames import GREATEST_NUMBER, OF_CALLS, OF_RESULTS, Reader, check_size, send
+from carom.remote.frames import MAX_NUMBER, OF_CALLS, OF_RESULTS, Reader, check_size, send
 from carom.remote.handshake import TIMEOUT, enter
 from carom.remote.values import pack, unpack
 
@@ -57,7 +57,7 @@ class Connection:
         message, arrays = pack(request)
         check_size(message, arrays, OF_CALLS)
         with self._lock:
-            self._number = self._number % GREATEST_NUMBER + 1
+            self._number = self._number % MAX_NUMBER + 1
             try:
                 self._socket.settimeout(self._timeout)
                 self._send(message, arrays)

@@ -17,7 +17,7 @@ import numpy as np
 from carom.remote.errors import Malformed
 from carom.remote.values import ALIGNMENT, padded
 
-GREATEST_NUMBER = 2**32 - 1
+MAX_NUMBER = 2**32 - 1
 """Largest number of a call."""
 
 _HEADER = Struct("<IIQ")

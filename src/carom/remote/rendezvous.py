@@ -16,7 +16,7 @@ from pathlib import Path
 from carom.remote.private_folder import is_private, make_private, private_folder, write_private
 
 # Largest size of a note [bytes].
-_GREATEST_SIZE = 4096
+_MAX_SIZE = 4096
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def find(name: str) -> Note | None:
         with _path(name).open("rb") as file:
             if not is_private(os.fstat(file.fileno())):
                 return None
-            content = json.loads(file.read(_GREATEST_SIZE))
+            content = json.loads(file.read(_MAX_SIZE))
         host, port, key = content["host"], content["port"], bytes.fromhex(content["key"])
     # The note does not exist, is not JSON, or was not written by a server.
     except (OSError, ValueError, RecursionError, KeyError, TypeError):

@@ -12,7 +12,7 @@ from carom.remote.private_folder import is_private, make_private, private_folder
 
 TOKEN_BYTES = 16
 _NAME = "token"
-_GREATEST_SIZE = 64
+_MAX_SIZE = 64
 
 
 def fresh_token() -> str:
@@ -53,4 +53,4 @@ def _read(path: Path) -> str:
     with path.open("rb") as file:
         if not is_private(os.fstat(file.fileno())):
             raise RemoteError(f"{path} is not a file that only you can read; remove it.")
-        return file.read(_GREATEST_SIZE).decode("ascii", "ignore").strip()
+        return file.read(_MAX_SIZE).decode("ascii", "ignore").strip()

@@ -26,8 +26,8 @@ _ARRAY, _INTEGER, _OPAQUE = 1, 2, 3
 _PLACE = struct.Struct("<B8q")
 _MAX_DIMENSIONS = _PLACE.size // 8 - 1
 # Maximum length of an integer [bytes]: float() raises OverflowError for longer ones.
-_GREATEST_INTEGER = 256
-_GREATEST_NAME, _GREATEST_TEXT = 100, 1000
+_MAX_INTEGER = 256
+_MAX_NAME, _MAX_TEXT = 100, 1000
 _KINDS = "? i1 u1 <i2 <u2 <i4 <u4 <i8 <u8 <f2 <f4 <f8 <c8 <c16"
 _DTYPES = tuple(map(np.dtype, _KINDS.split(" ")))
 
@@ -120,9 +120,9 @@ class _Restore:
     def __call__(self, code: int, data: bytes) -> Any:
         if code == _ARRAY:
             return self._array(data)
-        if code == _INTEGER and len(data) <= _GREATEST_INTEGER:
+        if code == _INTEGER and len(data) <= _MAX_INTEGER:
             return int.from_bytes(data, "little", signed=True)
-        if code == _OPAQUE and len(data) <= 4 * (_GREATEST_NAME + _GREATEST_TEXT):
+        if code == _OPAQUE and len(data) <= 4 * (_MAX_NAME + _MAX_TEXT):
             name, _, text = data.decode("utf-8", "replace").partition("\0")
             return type(name, (Opaque,), {})(text)
         raise Malformed(f"A message holds something of the unknown kind {code}.")
@@ -143,8 +143,8 @@ class _Restore:
 
 def _integer(value: int) -> Any:
     size = value.bit_length() // 8 + 1
-    if size > _GREATEST_INTEGER:
-        value, size = (-1 if value < 0 else 1) << (8 * _GREATEST_INTEGER - 2), _GREATEST_INTEGER
+    if size > _MAX_INTEGER:
+        value, size = (-1 if value < 0 else 1) << (8 * _MAX_INTEGER - 2), _MAX_INTEGER
     return msgpack.ExtType(_INTEGER, value.to_bytes(size, "little", signed=True))
 
 
@@ -153,8 +153,8 @@ def _opaque(value: Any) -> Any:
         text = repr(value)
     except Exception:
         text = object.__repr__(value)
-    name = type(value).__name__[:_GREATEST_NAME].replace("\0", "")
-    content = f"{name}\0{text[:_GREATEST_TEXT]}"
+    name = type(value).__name__[:_MAX_NAME].replace("\0", "")
+    content = f"{name}\0{text[:_MAX_TEXT]}"
     return msgpack.ExtType(_OPAQUE, content.encode("utf-8", "replace"))
 
 

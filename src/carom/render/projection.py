@@ -10,7 +10,7 @@ from carom.native.products import length, product
 
 Matrix = NDArray[np.float64]
 
-_LEAST_DETERMINANT = 1e-300
+_MIN_DETERMINANT = 1e-300
 
 
 def to_pixels(width: int, height: int) -> Matrix:
@@ -46,7 +46,7 @@ def facing_sign(world_to_pixel: Matrix) -> float:
 
 def is_singular(matrix: Matrix) -> bool:
     """Whether a matrix is singular."""
-    return not abs(np.linalg.det(matrix)) > _LEAST_DETERMINANT
+    return not abs(np.linalg.det(matrix)) > _MIN_DETERMINANT
 
 
 def look_at(eye: Vector3 | Matrix, target: Vector3 | Matrix, up: Vector3 = (0.0, 0.0, 1.0)) -> Matrix:

@@ -13,8 +13,8 @@ from carom.render.lights import Light
 from carom.render.projection import Matrix, look_along, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
 
-LEAST_MAP_SIDE = 128
-GREATEST_MAP_SIDE = 1024
+MIN_MAP_SIDE = 128
+MAX_MAP_SIDE = 1024
 """Limits of the width and height of the shadow map of parallel light [pixels]."""
 
 LARGEST_CASTER = 50.0
@@ -72,7 +72,7 @@ def shadow_cameras(
         clips, projections = (np.repeat(matrix[None], count, axis=0) for matrix in (clip, projection))
         return ShadowCameras(clips, projections, width, height, np.full(count, _LAMP_BIAS))
     centres, radii = _casters(scene, link_to_world)
-    side = min(max(width, height, LEAST_MAP_SIDE), GREATEST_MAP_SIDE)
+    side = min(max(width, height, MIN_MAP_SIDE), MAX_MAP_SIDE)
     views = np.repeat(look_along(np.zeros(3), -direction)[None], count, axis=0)
     eyes = centres + 2.0 * radii[:, None] * direction
     views[:, :3, 3] = product(-views[:, :3, :3], eyes[:, :, None])[:, :, 0]

@@ -35,7 +35,7 @@ from carom.layouts.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
-from carom.layouts.magnitudes import LEAST_PD_FORCE
+from carom.layouts.magnitudes import MIN_PD_FORCE
 from carom.layouts.motor_commands import MODES, PD, POSITION, TORQUE, VELOCITY
 
 if TYPE_CHECKING:
@@ -224,7 +224,7 @@ class AxisMotor(JointMotor):
         elif mode == TORQUE:
             self._torques[self._dof] += force
         elif mode == PD:
-            bound = force if force >= LEAST_PD_FORCE else 0.0
+            bound = force if force >= MIN_PD_FORCE else 0.0
             _write_target(self._pd, self._row_at, self._within_limits(position), velocity, kp, kd, bound)
         else:
             super().command(mode, position, velocity, force, kp, kd, clamp)

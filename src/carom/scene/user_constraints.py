@@ -29,8 +29,8 @@ ROWS = {
     UserConstraintKind.TENDON_COUPLING: 1,
     UserConstraintKind.TRANSMISSION: 1,
 }
-_MOST_ROWS = 6
-_ROW_BYTES = 8 * _MOST_ROWS
+_MAX_ROWS = 6
+_ROW_BYTES = 8 * _MAX_ROWS
 # Fields of `carom.layouts.contacts.UserConstraints`, without the one that each world has for itself.
 _FIELDS = (
     "user_kind",
@@ -350,7 +350,7 @@ class UserConstraints:
 
     def all_impulses(self, state: ArrayTable) -> np.ndarray:
         """Impulses of all constraints in the last substep, in order of creation, shape (constraints, 6)."""
-        return np.frombuffer(self._rows_of(tuple(self._by_id), state)).reshape(-1, _MOST_ROWS)
+        return np.frombuffer(self._rows_of(tuple(self._by_id), state)).reshape(-1, _MAX_ROWS)
 
     def set_impulses(self, state: ArrayTable, impulses: np.ndarray) -> None:
         """Replace the impulses of all constraints; they are as `all_impulses` gives them.

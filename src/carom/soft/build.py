@@ -22,9 +22,9 @@ from carom.soft.topology import bending_pairs, edges_of, surface_of
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
-MOST_NODES = 1_000_000
+MAX_NODES = 1_000_000
 """Maximum number of nodes of a soft body."""
-LEAST_MASS = 1.0e-30
+MIN_MASS = 1.0e-30
 """Minimum mass of a soft body [kg]; smaller masses would overflow."""
 FARTHEST = 1.0e6
 """Largest coordinate of a node [m]."""
@@ -147,8 +147,8 @@ def _check_parameters(
         }
     if solid is not None:
         others |= {"mu": solid.mu, "lambda": solid.lam, "the damping of the solid": solid.damping}
-    if 0.0 < mass < LEAST_MASS:
-        raise DescriptionError(f"mass is {mass}; {LEAST_MASS:g} kg is the minimum", file=source)
+    if 0.0 < mass < MIN_MASS:
+        raise DescriptionError(f"mass is {mass}; {MIN_MASS:g} kg is the minimum", file=source)
     for name, value in {**positive, **others}.items():
         if not np.isfinite(value) or value < 0.0 or (value == 0.0 and name in positive):
             least = "greater than 0" if name in positive else "0 or more"
@@ -158,8 +158,8 @@ def _check_parameters(
 def _check_nodes(nodes: Floats, cells: Ints, source: Path | None) -> None:
     if not len(nodes) or not len(cells):
         raise DescriptionError("there are no nodes or no cells to simulate", file=source)
-    if len(nodes) > MOST_NODES:
-        raise DescriptionError(f"{len(nodes)} nodes are more than the {MOST_NODES} accepted", file=source)
+    if len(nodes) > MAX_NODES:
+        raise DescriptionError(f"{len(nodes)} nodes are more than the {MAX_NODES} accepted", file=source)
     if not (np.abs(nodes) <= FARTHEST).all():
         node = int(np.argmin((np.abs(nodes) <= FARTHEST).all(axis=1)))
         raise DescriptionError(f"node {node} is not finite, or farther than {FARTHEST:g} m away", file=source)

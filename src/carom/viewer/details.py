@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 _PATIENCE = 0.005
 # Interval at which masses and constraints are read [s].
 _PERIOD = 0.25
-_MOST_LINKS = 64
+_MAX_LINKS = 64
 # Readings are always recorded, so that their past can be plotted, unless there are more of them than this.
 _ALWAYS_JOINTS, _ALWAYS_LINKS, _ALWAYS_CONTACTS = 128, 64, 64
 
 
 @dataclass(frozen=True, slots=True)
-class Wish:
+class DetailRequest:
     """The data that one page, or all pages together, need.
 
     `joints` are the ids of the bodies whose joints are read, or all; `links` are bodies and links whose
@@ -43,20 +43,20 @@ class Wish:
     rays: bool = False
 
     @classmethod
-    def told(cls, told: dict[str, Any]) -> Wish:
+    def told(cls, told: dict[str, Any]) -> DetailRequest:
         """The wish in a message from a page."""
         joints = told.get("joints", [])
         return cls(
             joints="all" if joints == "all" else frozenset(int(body) for body in joints),
-            links=frozenset((int(body), int(link)) for body, link in told.get("links", [])[:_MOST_LINKS]),
+            links=frozenset((int(body), int(link)) for body, link in told.get("links", [])[:_MAX_LINKS]),
             **{
                 name: bool(told.get(name, False))
                 for name in ("collisions", "contacts", "dynamics", "constraints", "rays")
             },
         )
 
-    def __or__(self, other: Wish) -> Wish:
-        return Wish(
+    def __or__(self, other: DetailRequest) -> DetailRequest:
+        return DetailRequest(
             self.collisions or other.collisions,
             self.contacts or other.contacts,
             "all" if self.joints == "all" or other.joints == "all" else self.joints | other.joints,
@@ -67,7 +67,7 @@ class Wish:
         )
 
 
-NOTHING = Wish()
+NOTHING = DetailRequest()
 
 
 class Details:
@@ -87,16 +87,16 @@ class Details:
         self._world = world
         self._world_lock = lock
         self._board = board
-        self.wish: Wish = NOTHING
+        self.wish: DetailRequest = NOTHING
         self.rays: Rays = Rays(board)
-        self._wishes: dict[int, Wish] = {}
+        self._wishes: dict[int, DetailRequest] = {}
         self._joints = readings.JointReadings(world)
         self._last: list[tuple[str, readings.Columns]] = []
         self._due = 0.0
         self._dynamics: dict[int, dict[str, Any]] = {}
         self._constraints: list[dict[str, Any]] = []
 
-    def want(self, page: int, wish: Wish) -> None:
+    def want(self, page: int, wish: DetailRequest) -> None:
         """Sets the wish of a page."""
         if wish == NOTHING:
             self._wishes.pop(page, None)
@@ -135,7 +135,7 @@ class Details:
             self._world_lock.release()
         return self._last
 
-    def _read(self, wish: Wish) -> list[tuple[str, readings.Columns]]:
+    def _read(self, wish: DetailRequest) -> list[tuple[str, readings.Columns]]:
         blocks = []
         world = self._world
         contacts = wish.contacts

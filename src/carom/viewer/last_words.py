@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from carom.viewer.server import PageServer
 
 # Maximum length of the line on a page, and how long the end of a script waits for pages to take it [s].
-_MOST_CHARACTERS = 300
+_MAX_CHARACTERS = 300
 _PATIENCE = 0.5
 
 
@@ -36,7 +36,7 @@ class LastWords:
 
     def say(self, line: str) -> None:
         """Tells the pages a line, and closes the viewer."""
-        self._board.put("ending", to_page.ENDING(error=line[:_MOST_CHARACTERS]))
+        self._board.put("ending", to_page.ENDING(error=line[:_MAX_CHARACTERS]))
         give_up = time.monotonic() + _PATIENCE
         while not self._server().has_sent(self._board.revision) and time.monotonic() < give_up:
             time.sleep(0.01)

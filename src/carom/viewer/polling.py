@@ -22,7 +22,7 @@ _PATIENCE = 0.2
 # A page without requests for this time counts as closed [s]; browsers slow down pages in the background.
 _SILENCE = 10.0
 # Maximum length of an answer, which proxies limit [bytes]; a longer message is sent alone.
-_MOST_BYTES = 4_000_000
+_MAX_BYTES = 4_000_000
 
 
 class _Asker:
@@ -72,7 +72,7 @@ class Polling:
     @staticmethod
     def _share(waiting: deque[bytes]) -> list[bytes]:
         parts: list[bytes] = []
-        room = _MOST_BYTES
+        room = _MAX_BYTES
         while waiting and (not parts or len(waiting[0]) <= room):
             message = waiting.popleft()
             room -= len(message)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # Width of previews, unless a page that shows larger ones asks for more; and the largest width [pixels].
 _WIDTH = 200
-_MOST_WIDTH = 640
+_MAX_WIDTH = 640
 # Minimum interval between previews [s]; scripts may take hundreds of images a second.
 _PERIOD = 0.1
 # Each label rotates the hue by the golden ratio [turns], so that neighbouring labels get different colours.
@@ -38,7 +38,7 @@ class Previews:
 
     def ask(self, page: int, width: int) -> None:
         """Sets the width that a page needs at least, as far as images have it [pixels]."""
-        self._widths[page] = min(max(width, 1), _MOST_WIDTH)
+        self._widths[page] = min(max(width, 1), _MAX_WIDTH)
 
     def forget(self, page: int) -> None:
         """Drops what a page needed that has been closed."""

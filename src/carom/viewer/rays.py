@@ -14,7 +14,7 @@ from carom.viewer.protocol import to_page
 if TYPE_CHECKING:
     from carom.queries.ray_cast import Points, RayTuple
 
-_MOST_RAYS = 5000
+_MAX_RAYS = 5000
 
 
 class Rays:
@@ -27,7 +27,7 @@ class Rays:
     def __init__(self, board: Board) -> None:
         self._board = board
         self.wanted: bool = False
-        self._cast: deque[tuple[float, ...]] = deque(maxlen=_MOST_RAYS)
+        self._cast: deque[tuple[float, ...]] = deque(maxlen=_MAX_RAYS)
 
     def tell(self, starts: Points, ends: Points, hits: Sequence[RayTuple]) -> None:
         """Records rays that a script has cast, from starts to ends in the world [m], and their hits."""

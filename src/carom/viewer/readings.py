@@ -21,8 +21,8 @@ Columns = NDArray[np.float32]
 
 CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
 # Maximum number of contacts shown.
-_MOST_CONTACTS = 5000
-_GREATEST_FRICTION = 10.0
+_MAX_CONTACTS = 5000
+_MAX_FRICTION = 10.0
 
 
 def contacts(world: World) -> Columns:
@@ -33,7 +33,7 @@ def contacts(world: World) -> Columns:
         towards a (3), force along it on a [N], friction on a (3) [N], friction coefficient, distance [m].
     """
     table = world.contact_arrays.contacts.numpy
-    count = min(world.contact_arrays.contact_count, _MOST_CONTACTS)
+    count = min(world.contact_arrays.contact_count, _MAX_CONTACTS)
     if count == 0:
         return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     links = table["contact_shapes"][0, :count, 2:4].copy()
@@ -43,7 +43,7 @@ def contacts(world: World) -> Columns:
         return np.zeros((0, CONTACT_COLUMNS), dtype=np.float32)
     forces = table["contact_impulse"][0, :count] / world.parameters.substep_time
     lateral = world.contact_arrays.shapes.table.numpy["link_lateral_friction"][0]
-    coefficient = np.minimum(lateral[links[:, 0]] * lateral[links[:, 1]], _GREATEST_FRICTION)
+    coefficient = np.minimum(lateral[links[:, 0]] * lateral[links[:, 1]], _MAX_FRICTION)
     directions = (table["contact_direction1"][0, :count], table["contact_direction2"][0, :count])
     friction = sum(forces[:, 1 + i, None] * directions[i] for i in range(2))
     return np.column_stack(

@@ -15,7 +15,7 @@ from carom.remote.user_token import fresh_token, user_token
 from carom.viewer.access import Access, is_loopback
 from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
-from carom.viewer.details import NOTHING, Details, Wish
+from carom.viewer.details import NOTHING, DetailRequest, Details
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
 from carom.viewer.history.history import DEFAULT_BYTES
@@ -40,7 +40,7 @@ from carom.viewer.protocol.message import Message
 from carom.viewer.rays import Rays
 from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
-from carom.viewer.steps.chores import Chores
+from carom.viewer.steps.chores import StepQueue
 from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.sleeping import Sleeping
@@ -134,7 +134,7 @@ class Viewer:
         self._pictures = Pictures()
         self.lock: Any = RLock() if lock is None else lock
         self._world = world
-        self._chores = Chores(self.lock)
+        self._chores = StepQueue(self.lock)
         self._joint_hands = JointHands(world)
         self._moments = Moments(world, self._board)
         self._leaving = Leaving(self._close_by_user)
@@ -161,7 +161,7 @@ class Viewer:
             from_page.DRAWN: lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             from_page.PAST: self._tell_past,
             from_page.PREVIEW_WIDTH: lambda page, told: self.previews.ask(page, int(told["width"])),
-            from_page.WANT: lambda page, told: self._want(page, Wish.told(told)),
+            from_page.WANT: lambda page, told: self._want(page, DetailRequest.told(told)),
             from_page.DRIVE: self._take_drive,
             from_page.GIVE_BACK: self._give_back,
             from_page.HANDLE: self._take_handle,
@@ -534,7 +534,7 @@ class Viewer:
         if min(width, height) > 0:
             self.camera.resized(width, height)
 
-    def _want(self, page: int, wish: Wish) -> None:
+    def _want(self, page: int, wish: DetailRequest) -> None:
         self._details.want(page, wish)
         self._feed.collisions = self._details.wish.collisions
 

@@ -61,9 +61,9 @@ class PoseUpdates(ABC):
 
     def update_link_poses(self, body: Body) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
-        (self._derived.pose_launch or self.be_quick())(body.rows.tree)
+        (self._derived.pose_launch or self.prepare_poses())(body.rows.tree)
 
-    def be_quick(self) -> TreeLaunch:
+    def prepare_poses(self) -> TreeLaunch:
         """Set the addresses that the fast paths in the native library use, after a change of the scene.
 
         Returns:
@@ -71,7 +71,7 @@ class PoseUpdates(ABC):
         """
         if self._derived.pose_launch is None:
             self.contact_arrays.shapes.reserve({"link": self.arrays.model.capacity["link"]})
-            self._derived.pose_launch = self.quick.know_poses(self.arrays, self.contact_arrays)
+            self._derived.pose_launch = self.quick.set_pose_addresses(self.arrays, self.contact_arrays)
         return self._derived.pose_launch
 
     def update_soft_poses(self) -> None:
@@ -86,5 +86,5 @@ class PoseUpdates(ABC):
         """Fill `link_velocity` for the present coordinates of a body."""
         if self._derived.twist_launch is None:
             self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
-            self.quick.know_twists(self._derived.twist_launch)
+            self.quick.set_twist_addresses(self._derived.twist_launch)
         self._derived.twist_launch(body.rows.tree)

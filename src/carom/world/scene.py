@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from carom.world.compiled_constraints import NamedConstraint
     from carom.world.world import World
 
-_MOST_NAMES = 8
+_MAX_NAMES = 8
 # MJCF's cameras look along -z, with y up; those of images along z, with y down.
 _FROM_CAMERA = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
@@ -72,8 +72,8 @@ class Scene(Sequence[Body]):
             self.world.apply_parameters()
 
     def __repr__(self) -> str:
-        names = ", ".join(repr(body.name) for body in self.bodies[:_MOST_NAMES])
-        more = f" and {len(self.bodies) - _MOST_NAMES} more" if len(self.bodies) > _MOST_NAMES else ""
+        names = ", ".join(repr(body.name) for body in self.bodies[:_MAX_NAMES])
+        more = f" and {len(self.bodies) - _MAX_NAMES} more" if len(self.bodies) > _MAX_NAMES else ""
         return f"<Scene of {self.source.name} ({self.format}): {names or 'no bodies'}{more}>"
 
     @property

@@ -507,7 +507,7 @@ class World(
             self.unspent_time = 0.0
             step = self.engine.run_prepared
             if not self._substep_observers:
-                self.quick.know_step(self.engine, self._clock, self.observers, self.parameters)
+                self.quick.set_step_addresses(self.engine, self._clock, self.observers, self.parameters)
         self._derived.step = step
         return step
 

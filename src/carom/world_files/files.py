@@ -21,7 +21,7 @@ from carom.world_files.container import Blocks
 from carom.world_files.references import references
 from carom.writing import write_whole
 
-_MOST_BYTES = 1 << 30
+_MAX_BYTES = 1 << 30
 
 
 class FileTable:
@@ -60,13 +60,13 @@ class FileTable:
 
 def _with_references(path: Path) -> dict[Path, bytes]:
     """Content of a file, and of the existing files it refers to, directly or through others."""
-    contents = {path: read_bounded(path, _MOST_BYTES)[0]}
+    contents = {path: read_bounded(path, _MAX_BYTES)[0]}
     waiting = [path]
     while waiting:
         source = waiting.pop()
         for other in references(source, contents[source]):
             if other not in contents and other.drive == path.drive:
-                contents[other] = read_bounded(other, _MOST_BYTES)[0]
+                contents[other] = read_bounded(other, _MAX_BYTES)[0]
                 waiting.append(other)
     return contents
 

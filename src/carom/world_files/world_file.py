@@ -42,7 +42,7 @@ from carom.scene.user_data import UserDatum
 from carom.version import __version__
 from carom.world_files.bullet_state import refuse_to_load, restore_bullet
 from carom.world_files.check import check_body, check_finite
-from carom.world_files.container import MOST_BYTES, packed, unpacked
+from carom.world_files.container import MAX_BYTES, packed, unpacked
 from carom.world_files.files import restored
 from carom.world_files.records import Reader, Writer
 from carom.world_files.saved_state import check_arrays, read_state, state_of, write_state
@@ -218,7 +218,7 @@ def save_world(world: World, path: Path, parts: Parts) -> None:
 
 def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
-    data, _ = read_bounded(path, MOST_BYTES)
+    data, _ = read_bounded(path, MAX_BYTES)
     refuse_to_load(data, path)
     with _guarded(path):
         document, reader, saved = _read(data, path)
@@ -252,7 +252,7 @@ def restore_world(
         DescriptionError: The file cannot be used; the world is as it was.
         StateError: The world has other bodies; it is as it was.
     """
-    data, _ = read_bounded(path, MOST_BYTES)
+    data, _ = read_bounded(path, MAX_BYTES)
     if is_bullet(data):
         restore_bullet(world, data, path, maximal=maximal, update_poses=update_poses)
         return

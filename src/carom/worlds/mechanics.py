@@ -12,7 +12,7 @@ from carom.algorithms.inverse_kinematics import (
     DEFAULT_DAMPING,
     DEFAULT_ITERATIONS,
     DEFAULT_THRESHOLD,
-    LEAST_DAMPING,
+    MIN_DAMPING,
 )
 from carom.checks import Array
 from carom.description.transform import conjugate, rotate
@@ -230,7 +230,7 @@ class AlgorithmBatch(Batch):
             "end_position": given(positions, (number, 3), "positions"),
             "end_rotation": given(turns, (number, 4), "orientations"),
             "start": self._joints(worlds, start, "start"),
-            "damping": np.maximum(given(softness, dofs, "damping"), LEAST_DAMPING),
+            "damping": np.maximum(given(softness, dofs, "damping"), MIN_DAMPING),
             "lower": np.where(crossed, -np.inf, lowest),
             "upper": np.where(crossed, np.inf, highest),
             "range": given(ranges if resting and ranges is not None else 0.0, dofs, "ranges"),

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from carom.camera import Camera
     from carom.gpu.device import Device
 
-_MOST_NAMED = 8
+_MAX_NAMED = 8
 """Maximum number of worlds named in a warning when several halt."""
 
 
@@ -185,14 +185,14 @@ class Worlds(ContactQueries, Closed):
         self.halted[worlds] = True
         self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
         names = {batch.rows.tree: batch.name for batch in self}
-        for world in worlds[:_MOST_NAMED].tolist():
+        for world in worlds[:_MAX_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
             warnings.warn(
                 f"world {world} is halted: its body {name!r} has a velocity that is not finite",
                 SimulationWarning,
                 stacklevel=4,
             )
-        if len(worlds) > _MOST_NAMED:
+        if len(worlds) > _MAX_NAMED:
             warnings.warn(f"{len(worlds)} worlds are halted", SimulationWarning, stacklevel=4)
 
     def detect_collisions(self) -> None:

@@ -242,7 +242,7 @@ def changeDynamics(
         access = client.bodies[body.id]
         if "mass" in changes.values:
             access.weighed(link)
-        client.world.be_quick()
+        client.world.prepare_poses()
 
 
 @exported

@@ -40,7 +40,7 @@ _TIME_STEP = sys.intern("time_step")
 _JOINT_COUNT, _NAMES = sys.intern("joint_count"), sys.intern("_encoded_names")
 _FIRST_ROOM = 16
 # Python handles bodies whose id is not less than this.
-_MOST_ROOM = 1 << 20
+_MAX_ROOM = 1 << 20
 
 
 class QuickBodies:
@@ -88,7 +88,7 @@ class QuickBodies:
         It does if the body is soft, if external forces act twice on it, and if its id is too high.
         """
         body = access.body
-        if body.spec.soft is not None or access.acts_twice or body.id >= _MOST_ROOM:
+        if body.spec.soft is not None or access.acts_twice or body.id >= _MAX_ROOM:
             return
         state = body.world.arrays.state.struct()
         row = body.first_link

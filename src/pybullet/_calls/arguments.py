@@ -14,14 +14,14 @@ from math import hypot, inf, isfinite, nan
 from operator import index
 from typing import Any, NoReturn, SupportsFloat
 
-from carom.layouts.magnitudes import GREATEST_SQUARE, LEAST_SQUARE, MAX_MAGNITUDE
+from carom.layouts.magnitudes import MAX_MAGNITUDE, MAX_SQUARE, MIN_SQUARE
 from pybullet._calls.errors import fail
 
 _ONLY_INTEGERS = frozenset((int,))
 # Types whose lengths are certainly those of what is read.
 _PLAIN = frozenset((list, tuple, range))
-_LEAST_INT, _GREATEST_INT = -(2**31), 2**31 - 1
-MOST_ITEMS = 1 << 24
+_MIN_INT, _MAX_INT = -(2**31), 2**31 - 1
+MAX_ITEMS = 1 << 24
 """Greatest length of sequences whose length no other argument determines."""
 # Greatest length of lists of joints or links that getters and setters take as they are.
 _MANY = 1 << 16
@@ -35,15 +35,15 @@ Vectors = Iterable[Vector]
 
 def integer(value: Any, name: str) -> int:
     """A signed 32-bit integer; raises `TypeError` or, if it needs more bits, `OverflowError` for others."""
-    if type(value) is int and _LEAST_INT <= value <= _GREATEST_INT:
+    if type(value) is int and _MIN_INT <= value <= _MAX_INT:
         return value
     try:
         number = index(value)
     except TypeError as problem:
         raise TypeError(f"{problem} ({name})") from None
-    if number > _GREATEST_INT:
+    if number > _MAX_INT:
         raise OverflowError(f"signed integer is greater than maximum ({name})")
-    if number < _LEAST_INT:
+    if number < _MIN_INT:
         raise OverflowError(f"signed integer is less than minimum ({name})")
     return number
 
@@ -53,7 +53,7 @@ def real(value: Any, name: str, problem: str = "") -> float:
     kind = type(value)
     if kind is float and isfinite(value):
         return value
-    if kind is int and -_GREATEST_INT <= value <= _GREATEST_INT:
+    if kind is int and -_MAX_INT <= value <= _MAX_INT:
         return float(value)
     number = _as_float(value, name)
     if not isfinite(number):
@@ -133,7 +133,7 @@ def numbers(values: Any, problem: str, name: str) -> tuple[float, ...]:
         except (TypeError, ValueError):
             pass
     result = array("d")
-    count = _checked_length(values, problem, name, MOST_ITEMS)
+    count = _checked_length(values, problem, name, MAX_ITEMS)
     try:
         result.extend(islice(values, count))
     except TypeError:
@@ -178,7 +178,7 @@ def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float,
     """A quaternion (x, y, z, w) that can be normalised; raises `pybullet.error` for others."""
     x, y, z, w = vector4(values, problem, name)
     squared = x * x + y * y + z * z + w * w
-    if not LEAST_SQUARE < squared < GREATEST_SQUARE:
+    if not MIN_SQUARE < squared < MAX_SQUARE:
         _refuse_rotation((x, y, z, w), problem, name)
     return x, y, z, w
 
@@ -186,7 +186,7 @@ def rotation(values: Any, problem: str, name: str) -> tuple[float, float, float,
 def check_rotation(values: Sequence[float], problem: str, name: str) -> None:
     """Raises `pybullet.error` for a quaternion (x, y, z, w) that cannot be normalised."""
     x, y, z, w = values
-    if not LEAST_SQUARE < x * x + y * y + z * z + w * w < GREATEST_SQUARE:
+    if not MIN_SQUARE < x * x + y * y + z * z + w * w < MAX_SQUARE:
         _refuse_rotation(values, problem, name)
 
 
@@ -238,7 +238,7 @@ def length(values: Any, problem: str, name: str) -> int:
     try:
         return len(values)
     except OverflowError:
-        fail(problem, f"{name} has more than {MOST_ITEMS} items, which are too many.")
+        fail(problem, f"{name} has more than {MAX_ITEMS} items, which are too many.")
     except (TypeError, ValueError):
         hint = "; it has no length: pass a list" if hasattr(values, "__next__") else ""
         fail(problem, f"{name} is {values!r}{hint}.")
@@ -251,7 +251,7 @@ def _checked_length(values: Any, problem: str, name: str, most: int) -> int:
     return count
 
 
-def sequence(values: Any, problem: str, name: str, most: int = MOST_ITEMS) -> tuple[Any, ...]:
+def sequence(values: Any, problem: str, name: str, most: int = MAX_ITEMS) -> tuple[Any, ...]:
     """The items of any sequence of at most `most`; raises `pybullet.error` if `values` is none."""
     count = _checked_length(values, problem, name, most)
     try:

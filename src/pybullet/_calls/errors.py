@@ -29,7 +29,7 @@ logger = Logger("pybullet")
 
 # Places in scripts that were warned, with the message; not more, since scripts can make lines without end.
 _warned: set[tuple[str, int, str]] = set()
-_MOST_WARNED = 10_000
+_MAX_WARNED = 10_000
 
 
 @cache
@@ -45,7 +45,7 @@ def warn_once_here(message: str) -> None:
         frame = frame.f_back
     place = frame.f_code.co_filename, frame.f_lineno, message
     if place not in _warned:
-        if len(_warned) >= _MOST_WARNED:
+        if len(_warned) >= _MAX_WARNED:
             _warned.clear()
         _warned.add(place)
         logger.warning("%s", message)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pybullet._calls.arguments import MOST_ITEMS, sequence
+from pybullet._calls.arguments import MAX_ITEMS, sequence
 from pybullet._calls.errors import fail
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ _DEEPEST = 4
 
 
 def nested(
-    values: Any, problem: str, name: str, most: int = MOST_ITEMS
+    values: Any, problem: str, name: str, most: int = MAX_ITEMS
 ) -> tuple[Any, ...] | NDArray[np.generic]:
     """The items of sequences of sequences, as tuples or arrays, which hold at most `most` items in all.
 

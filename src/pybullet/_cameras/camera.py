@@ -29,7 +29,7 @@ __all__ = ["getCameraImage"]
 
 _FAILED = "getCameraImage failed."
 # Shorter directions of the light have no length in floating-point numbers [m].
-_LEAST_LENGTH = 1e-30
+_MIN_LENGTH = 1e-30
 _BODY_BITS = (1 << 24) - 1
 _COEFFICIENTS = {
     "lightDistance": "distance",
@@ -186,7 +186,7 @@ def _changed_light(light: Light, given: Mapping[str, Any]) -> Light:
     shadow = integer(given["shadow"], "shadow")
     if has_length(given["lightDirection"], 3, "lightDirection"):
         changes["direction"] = vector3(given["lightDirection"], _FAILED, "lightDirection")
-        if hypot(*changes["direction"]) < _LEAST_LENGTH:
+        if hypot(*changes["direction"]) < _MIN_LENGTH:
             fail(_FAILED, f"lightDirection has length {hypot(*changes['direction']):g}.")
     if has_length(given["lightColor"], 3, "lightColor"):
         changes["colour"] = vector3(given["lightColor"], _FAILED, "lightColor")

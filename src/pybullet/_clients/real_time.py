@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
 # Maximum delay of a world that cannot keep up, or of a process that was suspended [s].
-_GREATEST_LAG = 0.1
+_MAX_LAG = 0.1
 # Interval between updates, unless the time step is longer [s].
 _PERIOD = 1.0 / 240.0
 
@@ -30,7 +30,7 @@ class Pace:
 
     def steps_due(self, now: float, time_step: float) -> int:
         """Number of steps of `time_step` [s] due at a time of the clock [s]; they then count as done."""
-        earliest = now - max(_GREATEST_LAG, time_step)
+        earliest = now - max(_MAX_LAG, time_step)
         if self._simulated_until < earliest:
             self._simulated_until = earliest
         count = int((now - self._simulated_until) / time_step)

@@ -20,7 +20,7 @@ from pybullet._calls.options import Target
 KEY_VARIABLE = "CAROM_SERVER_KEY"
 """Environment variable with the key of a server."""
 
-_LEAST_KEY, _MOST_KEY = 16, 4096
+_MIN_KEY, _MAX_KEY = 16, 4096
 _LOOPBACK = "127.0.0.1"
 _FOR_EVER, _A_MINUTE = 1e30, 60.0
 _SHARED_MEMORY, _GRAPHICS, _TCP, _UDP = "shared-memory", "graphics", "tcp", "udp"
@@ -128,7 +128,7 @@ def _given_key(target: Target) -> bytes | None:
         try:
             # A device may have no end.
             with open(file, encoding="utf-8") as stream:
-                return _fit(stream.read(_MOST_KEY), file)
+                return _fit(stream.read(_MAX_KEY), file)
         except (OSError, UnicodeError) as problem:
             fail("Cannot read the key of the physics server:", f"{problem}.")
     text = os.environ.get(KEY_VARIABLE)
@@ -157,8 +157,6 @@ def _own_key(target: Target, bind: str) -> bytes:
 
 def _fit(text: str, origin: str) -> bytes:
     key = text.strip().encode()
-    if len(key) < _LEAST_KEY:
-        fail(
-            "The key of the physics server is too short.", f"{origin} has less than {_LEAST_KEY} characters."
-        )
+    if len(key) < _MIN_KEY:
+        fail("The key of the physics server is too short.", f"{origin} has less than {_MIN_KEY} characters.")
     return key

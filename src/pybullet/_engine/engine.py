@@ -32,11 +32,11 @@ _WORK = {
     "solver_iterations": ("numSolverIterations", 1_000_000),
     "noncontact_inner_iterations": ("numNonContactInnerIterations", 10_000),
 }
-_MOST_WORK = 10_000_000
+_MAX_WORK = 10_000_000
 # `enableConeFriction` of Carom alone.
 _ISOTROPIC = 2
 # Forces are computed as impulses divided by the time step [s], which must not be too small.
-_LEAST_TIME_STEP = 1e-12
+_MIN_TIME_STEP = 1e-12
 
 
 # In both kinds of world, soft bodies use the material parameters of `loadSoftBody`.
@@ -407,17 +407,17 @@ def _check_work(client: Client, changes: dict[str, Any]) -> None:
         if value > greatest:
             fail(f"{argument} has to be at most {greatest}, not {value}.")
         product *= max(value, 1)
-    if product > _MOST_WORK:
+    if product > _MAX_WORK:
         stated = " x ".join(argument for argument, _ in _WORK.values())
-        fail(f"{stated} would be {product}; it has to be at most {_MOST_WORK}.")
+        fail(f"{stated} would be {product}; it has to be at most {_MAX_WORK}.")
 
 
 def _set_time_step(client: Client, value: Any, name: str) -> None:
     time_step = quantity(value, name)
     if time_step <= 0.0:
         fail(f"{name} has to be greater than 0, not {time_step}.")
-    if time_step < _LEAST_TIME_STEP:
-        fail(f"{name} has to be at least {_LEAST_TIME_STEP:g} s, not {time_step:g} s.")
+    if time_step < _MIN_TIME_STEP:
+        fail(f"{name} has to be at least {_MIN_TIME_STEP:g} s, not {time_step:g} s.")
     _change(client, time_step=time_step)
     client.time_step = time_step
 

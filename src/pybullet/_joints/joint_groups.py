@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pybullet._clients.clients import Client
 
 # Maximum number of cached groups of a body.
-_MOST_GROUPS = 64
+_MAX_GROUPS = 64
 
 
 class JointGroup:
@@ -83,7 +83,7 @@ class JointGroups(dict[tuple[int, ...], JointGroup]):
         joints = [self._joints[index] for index in indices]
         axes = [joint for joint in joints if isinstance(joint, AxisJoint)]
         group = AxisGroup(self._client, axes) if axes and len(axes) == len(joints) else JointGroup()
-        if len(self) >= _MOST_GROUPS:
+        if len(self) >= _MAX_GROUPS:
             self.clear()
         self[indices] = group
         return group

@@ -23,7 +23,7 @@ __all__ = ["loadMJCF", "loadSDF"]
 
 _CANNOT_LOAD_SDF = "Cannot load SDF file."
 _CANNOT_LOAD_MJCF = "Couldn't load .mjcf file."
-_MOST_BODIES = 512
+_MAX_BODIES = 512
 
 
 @exported
@@ -135,6 +135,6 @@ def _load(
         bodies = read(client.search())
     except CaromError as error:
         fail(problem, str(error))
-    if len(bodies) > _MOST_BODIES:
-        fail(f"SDF exceeds body capacity: {len(bodies)} > {_MOST_BODIES}")
+    if len(bodies) > _MAX_BODIES:
+        fail(f"SDF exceeds body capacity: {len(bodies)} > {_MAX_BODIES}")
     return add_bodies(client, bodies, problem, replace(load, count=len(bodies)), maximal=maximal)

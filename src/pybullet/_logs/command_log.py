@@ -41,7 +41,7 @@ stepSimulation unloadPlugin unsupportedChangeScaling
 COMMANDS = frozenset(_NAMES.split())
 """Functions that a log records: those that change the results of later steps or queries."""
 
-_MOST_BYTES = 1 << 29
+_MAX_BYTES = 1 << 29
 _HEADER = struct.Struct("<8s2I")
 _MAGIC, _VERSION = b"\x89CALOG\r\n", 1
 _CHECK = struct.Struct("<I")
@@ -119,7 +119,7 @@ def replay(number: int, client: Client, path: Path) -> None:
             performed.
     """
     try:
-        data, _ = read_bounded(path, _MOST_BYTES)
+        data, _ = read_bounded(path, _MAX_BYTES)
     except DescriptionError as problem:
         raise ValueError(str(problem)) from problem
     content = memoryview(data)

@@ -21,7 +21,7 @@ __all__ = ["startStateLogging", "stopStateLogging", "submitProfileTiming"]
 
 _DEFAULT_ROOM = 12
 # A body with this many joints could not be simulated at a useful speed.
-_MOST_ROOM = 10_000
+_MAX_ROOM = 10_000
 
 
 @exported
@@ -86,8 +86,8 @@ def startStateLogging(
     given = () if objectUniqueIds is None else sequence(objectUniqueIds, problem, "objectUniqueIds")
     bodies = [integer(body, "objectUniqueIds") for body in given]
     room, flags = integer(maxLogDof, "maxLogDof"), integer(logFlags, "logFlags")
-    if room > _MOST_ROOM:
-        fail(problem, f"maxLogDof is {room}; at most {_MOST_ROOM} are possible.")
+    if room > _MAX_ROOM:
+        fail(problem, f"maxLogDof is {room}; at most {_MAX_ROOM} are possible.")
     sides = (
         (integer(bodyUniqueIdA, "bodyUniqueIdA"), integer(linkIndexA, "linkIndexA")),
         (integer(bodyUniqueIdB, "bodyUniqueIdB"), integer(linkIndexB, "linkIndexB")),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Collision, Heightfield, Visual
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from pybullet._calls.arguments import MOST_ITEMS
+from pybullet._calls.arguments import MAX_ITEMS
 from pybullet._calls.errors import fail
 from pybullet._calls.nested import nested
 
@@ -31,7 +31,7 @@ def heights_from_data(values: Any, rows: int, columns: int, problem: str) -> NDA
     import numpy as np
 
     try:
-        given = nested(values, problem, "heightfieldData", max(rows * columns, MOST_ITEMS))
+        given = nested(values, problem, "heightfieldData", max(rows * columns, MAX_ITEMS))
         flat = np.array(given, dtype=np.float64).reshape(-1)
     except (TypeError, ValueError):
         fail(problem, "heightfieldData has to be a sequence of numbers.")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
-from carom.description.geometry import GREATEST_SIZE
+from carom.description.geometry import MAX_SIZE
 from carom.description.pose import Vector3
 from carom.formats.shipped import advice
 from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real
@@ -60,8 +60,8 @@ def primitive(
 
 
 def _check_size(is_allowed: bool, greatest: float, problem: str, particulars: str) -> None:
-    if not is_allowed or greatest > GREATEST_SIZE:
-        fail(problem, f"{particulars} It has to be from 0 to {GREATEST_SIZE:g} m.")
+    if not is_allowed or greatest > MAX_SIZE:
+        fail(problem, f"{particulars} It has to be from 0 to {MAX_SIZE:g} m.")
 
 
 def scale_of(values: Any, problem: str) -> Vector3:

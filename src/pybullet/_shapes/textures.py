@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from carom.errors import DescriptionError
-from pybullet._calls.arguments import MOST_ITEMS, Vector, integer, text
+from pybullet._calls.arguments import MAX_ITEMS, Vector, integer, text
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import VISUAL_SHAPE_DOUBLE_SIDED
 from pybullet._calls.errors import fail, logger
@@ -213,7 +213,7 @@ def _pixels(values: Any, columns: int, rows: int) -> NDArray[np.uint8]:
     if isinstance(values, (bytes, bytearray, memoryview)):
         flat = np.frombuffer(values, dtype=np.uint8)
     else:
-        most = max(4 * columns * rows, MOST_ITEMS)
+        most = max(4 * columns * rows, MAX_ITEMS)
         try:
             flat = np.asarray(nested(values, _BAD_TEXTURE, "pixels", most))
         except ValueError as problem:

@@ -22,7 +22,7 @@ _FAILED = "vhacd failed."
 _DEFAULT_CONCAVITY, _DEFAULT_THRESHOLD = 0.001, 0.05
 _DEFAULT_RESOLUTION, _DEFAULT_GRID = 1_000_000, 50
 _DEFAULT_VERTICES = 64
-_THRESHOLDS, _GRIDS, _LEAST_VERTICES = (0.01, 1.0), (20, 100), 4
+_THRESHOLDS, _GRIDS, _MIN_VERTICES = (0.01, 1.0), (20, 100), 4
 # Arguments without effect.
 _NUMBERS_OF_VHACD = ("alpha", "beta", "gamma", "minVolumePerCH")
 _INTEGERS_OF_VHACD = (
@@ -111,7 +111,7 @@ def vhacd(
         grid=_DEFAULT_GRID
         if voxels < 0
         else round(_within((voxels / _DEFAULT_RESOLUTION) ** (1 / 3) * _DEFAULT_GRID, _GRIDS)),
-        most_vertices=_DEFAULT_VERTICES if corners < 0 else max(corners, _LEAST_VERTICES),
+        most_vertices=_DEFAULT_VERTICES if corners < 0 else max(corners, _MIN_VERTICES),
         align=aligned > 0,
     )
     try:

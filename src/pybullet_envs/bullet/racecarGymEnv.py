@@ -19,7 +19,7 @@ __all__ = [
     "RacecarGymEnv",
 ]
 
-_MOST_STEPS = 1000
+_MAX_STEPS = 1000
 _LOCK = 0.6
 
 
@@ -111,7 +111,7 @@ class RacecarGymEnv(UrdfEnv):
         return self._p.getBasePositionAndOrientation(self._racecar.racecarUniqueId)[0]
 
     def _termination(self) -> bool:
-        return self._envStepCounter > _MOST_STEPS
+        return self._envStepCounter > _MAX_STEPS
 
     def _reward(self) -> float:
         points = self._p.getClosestPoints(self._racecar.racecarUniqueId, self._ballUniqueId, 10000)

@@ -14,7 +14,7 @@ from tests.surface.scene import ARM, CRATE, build
 
 import pybullet as p
 
-_MOST_READ = 1000
+_MAX_READ = 1000
 _VAST = 10**12
 # They end the scene, wait for somebody, or ask for libraries.
 _LEFT_OUT = {"connect", "disconnect", "vhacd", "setTimeOut", "renderImage"}
@@ -36,7 +36,7 @@ class Endless:
 
     def __next__(self) -> Any:
         self._read += 1
-        if self._read > _MOST_READ:
+        if self._read > _MAX_READ:
             raise ReadTooMuch
         return self._item
 
@@ -51,7 +51,7 @@ class Vast:
         return self._length
 
     def __getitem__(self, place: int) -> float:
-        if place > _MOST_READ:
+        if place > _MAX_READ:
             raise ReadTooMuch
         return 0.0
 

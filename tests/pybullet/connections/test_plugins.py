@@ -92,7 +92,7 @@ def test_members_may_have_so_many_bytes(
         bomb.writestr("small.urdf", (DATA / "cartpole.urdf").read_text())
         bomb.writestr("big.urdf", bytes(100_000))
         bomb.writestr("big.png", bytes(100_000))
-    monkeypatch.setattr(archives, "MOST_MEMBER_BYTES", 99_999)
+    monkeypatch.setattr(archives, "MAX_MEMBER_BYTES", 99_999)
     plugin = p.loadPlugin("fileIOPlugin")
     assert p.executePluginCommand(plugin, str(tmp_path / "bomb.zip"), [p.AddFileIOAction, p.ZipFileIO]) == 1
     assert found("small.urdf")
@@ -104,8 +104,8 @@ def test_members_may_have_so_many_bytes(
     with pytest.raises(p.error, match=stated.format("urdf")):
         p.loadMJCF("big.urdf")
     assert _members_on_disk() == {"small.urdf"}
-    monkeypatch.setattr(archives, "MOST_MEMBER_BYTES", 100_000)
-    monkeypatch.setattr(archives, "MOST_BYTES", 100_000)
+    monkeypatch.setattr(archives, "MAX_MEMBER_BYTES", 100_000)
+    monkeypatch.setattr(archives, "MAX_BYTES", 100_000)
     with pytest.raises(p.error, match=r"of the 100000 accepted for all members \d+ are left"):
         p.loadURDF("big.urdf")
 

@@ -21,7 +21,7 @@ from carom.native.products import length, product
 from carom.native.trigonometry import cos, sin
 
 # Most numbers for each vertex in a source, and most indices for each corner in a primitive.
-_MOST_COLUMNS = 1000
+_MAX_COLUMNS = 1000
 MAX_PARTS = 4096
 """Most geometries a scene may show."""
 
@@ -192,8 +192,8 @@ class ColladaReader:
     def _count(self, element: Element, name: str, default: str, least: int) -> int:
         """A small whole number in an attribute."""
         value = self.numbers(element, element.attributes.get(name, default), 1)[0]
-        if not least <= value <= _MOST_COLUMNS:
-            raise self.error(element, f"{name} has to be from {least} to {_MOST_COLUMNS}")
+        if not least <= value <= _MAX_COLUMNS:
+            raise self.error(element, f"{name} has to be from {least} to {_MAX_COLUMNS}")
         return int(value)
 
     def _integers(self, element: Element) -> NDArray[np.int64]:

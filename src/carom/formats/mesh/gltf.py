@@ -23,10 +23,10 @@ from carom.native.products import determinants, product
 _MAGIC = b"glTF"
 _HEADER, _CHUNK = 12, 8
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
-_MOST_BYTES = 512 << 20
-_MOST_NODES = 10_000
+_MAX_BYTES = 512 << 20
+_MAX_NODES = 10_000
 _DEEPEST = 100
-_MOST_CORNERS = 30_000_000
+_MAX_CORNERS = 30_000_000
 _NUMBERS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 _UNREAD = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
@@ -96,8 +96,8 @@ class _Gltf:
 
     def _node(self, index: int, above: NDArray[np.float64], depth: int, parts: list[MeshPart]) -> None:
         self.nodes += 1
-        if depth > _DEEPEST or self.nodes > _MOST_NODES:
-            raise self._error(f"more than {_MOST_NODES} nodes, or nested deeper than {_DEEPEST}")
+        if depth > _DEEPEST or self.nodes > _MAX_NODES:
+            raise self._error(f"more than {_MAX_NODES} nodes, or nested deeper than {_DEEPEST}")
         node = self.root["nodes"][_index(index)]
         pose = product(above, _matrix(node))
         if "mesh" in node:
@@ -122,8 +122,8 @@ class _Gltf:
         else:
             corners = np.arange(len(positions), dtype=np.int64)
         self.corners += 3 * len(corners)
-        if self.corners > _MOST_CORNERS:
-            raise self._error(f"more than {_MOST_CORNERS // 3} triangles")
+        if self.corners > _MAX_CORNERS:
+            raise self._error(f"more than {_MAX_CORNERS // 3} triangles")
         if len(corners) and not 0 <= corners.min() <= corners.max() < len(positions):
             raise self._error("a triangle has a vertex that does not exist")
         triangles = _triangles(corners, mode)
@@ -142,7 +142,7 @@ class _Gltf:
         number = np.dtype(_NUMBERS[accessor["componentType"]])
         width, count = _WIDTHS[accessor["type"]], _index(accessor["count"])
         if "bufferView" not in accessor:
-            return np.zeros((min(count, _MOST_CORNERS), width))
+            return np.zeros((min(count, _MAX_CORNERS), width))
         view = self.root["bufferViews"][_index(accessor["bufferView"])]
         size = number.itemsize * width
         stride = _index(view.get("byteStride", size)) or size
@@ -172,7 +172,7 @@ class _Gltf:
                 path = self.file.parent / uri
                 if not path.resolve().is_relative_to(self.file.parent.resolve()):
                     raise self._error(f"buffer {uri[:60]!r} is not in the folder of the file")
-                self.buffers[index], _ = read_bounded(path, _MOST_BYTES)
+                self.buffers[index], _ = read_bounded(path, _MAX_BYTES)
         return self.buffers[index]
 
 

@@ -21,12 +21,12 @@ from carom.formats.files import read_bounded
 
 MAX_FILE_BYTES = 256 << 20
 """Largest file that is read."""
-MOST_CELLS = 20_000_000
+MAX_CELLS = 20_000_000
 """Most points or cells that a file may declare."""
 TETRAHEDRON = 10
 """VTK's cell type of tetrahedra."""
 # VTK's largest cell with a fixed number of corners has 27; polyhedra may have more.
-_MOST_CORNERS = 10_000
+_MAX_CORNERS = 10_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,8 +118,8 @@ class _Sections:
 
     def _cell(self) -> NDArray[np.int64]:
         (length,) = self._numbers(1, int, "length of a cell").tolist()
-        if not 1 <= length <= _MOST_CORNERS:
-            raise self._wrong(f"a cell has from 1 to {_MOST_CORNERS} corners, not {length}")
+        if not 1 <= length <= _MAX_CORNERS:
+            raise self._wrong(f"a cell has from 1 to {_MAX_CORNERS} corners, not {length}")
         return self._numbers(length, int, "index")
 
     def _kinds(self) -> NDArray[np.int64] | None:
@@ -142,8 +142,8 @@ class _Sections:
             count = int(word)
         except ValueError:
             count = -1
-        if not 0 <= count <= MOST_CELLS:
-            raise self._wrong(f"{section} needs a number from 0 to {MOST_CELLS}")
+        if not 0 <= count <= MAX_CELLS:
+            raise self._wrong(f"{section} needs a number from 0 to {MAX_CELLS}")
         return count
 
     def _numbers(self, count: int, kind: type, name: str) -> NDArray:

@@ -8,7 +8,7 @@ from pathlib import Path
 from carom.record import record
 
 _HEADER = ("element", "attributes", "count", "where", "consequence", "reason")
-_MOST_NAMES = 4
+_MAX_NAMES = 4
 
 
 @record
@@ -79,9 +79,9 @@ class IgnoredList(list[Ignored]):
         for one in self:
             counts[one.element] = counts.get(one.element, 0) + one.count
         names = sorted(counts, key=lambda name: -counts[name])
-        listed = [f"{counts[name]} {name}" for name in names[:_MOST_NAMES]]
-        if len(names) > _MOST_NAMES:
-            listed.append(f"{sum(counts[name] for name in names[_MOST_NAMES:])} others")
+        listed = [f"{counts[name]} {name}" for name in names[:_MAX_NAMES]]
+        if len(names) > _MAX_NAMES:
+            listed.append(f"{sum(counts[name] for name in names[_MAX_NAMES:])} others")
         return ", ".join(listed)
 
     def __str__(self) -> str:

@@ -29,7 +29,7 @@ _LEADING_NOT_FINITE = r"[+-]?(?:inf(?:inity)?|nan)"
 _LEADING_BOUND = re.compile(
     f"{_LEADING_NOT_FINITE}|{_LEADING_HEXADECIMAL}|{_LEADING_NUMBER.pattern}", re.IGNORECASE
 )
-_LEAST_BITS = -(1 << 31)
+_MIN_BITS = -(1 << 31)
 
 _LONGEST_SHOWN = 60
 
@@ -180,9 +180,9 @@ class FileContext:
             return 0
         digits = match.group()
         value = int(digits, 16) if "x" in digits.lower() else _whole(float(digits))
-        if not _LEAST_BITS <= value < 1 << 32:
+        if not _MIN_BITS <= value < 1 << 32:
             self.warn(element, f"{attribute}={shown(text)} does not fit into 32 bits; the highest is set")
-            return _LEAST_BITS
+            return _MIN_BITS
         return value if value < 1 << 31 else value - (1 << 32)
 
     def parse_number(self, element: Element, attribute: str, text: str) -> float:

@@ -8,7 +8,7 @@ from carom.description import Joint, Link
 from carom.formats.robot.context import FileContext, shown
 from carom.formats.xml_element import Element
 
-_MOST_NAMES = 8
+_MAX_NAMES = 8
 
 
 def find_root(
@@ -57,5 +57,5 @@ def _reachable(roots: list[int], joints: Sequence[Joint], count: int) -> set[int
 
 
 def _listed(names: list[str]) -> str:
-    listed = ", ".join(shown(name) for name in names[:_MOST_NAMES])
-    return listed if len(names) <= _MOST_NAMES else f"{listed} and {len(names) - _MOST_NAMES} more"
+    listed = ", ".join(shown(name) for name in names[:_MAX_NAMES])
+    return listed if len(names) <= _MAX_NAMES else f"{listed} and {len(names) - _MAX_NAMES} more"

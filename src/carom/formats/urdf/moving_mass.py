@@ -14,7 +14,7 @@ from carom.description import Joint, JointType, Link
 from carom.description.joint import SLIDES
 from carom.formats.robot.context import FileContext, shown
 
-_MOST_NAMES = 4
+_MAX_NAMES = 4
 _CONSEQUENCE = "no force or motor moves the joint"
 
 
@@ -33,8 +33,8 @@ def report_motion_without_mass(context: FileContext, links: Sequence[Link], join
         turns = joint.type not in SLIDES
         if any(_resists(links[index], turns=turns) for index in moved):
             continue
-        names = ", ".join(shown(links[index].name) for index in moved[:_MOST_NAMES])
-        more = "" if len(moved) <= _MOST_NAMES else f" and {len(moved) - _MOST_NAMES} more"
+        names = ", ".join(shown(links[index].name) for index in moved[:_MAX_NAMES])
+        more = "" if len(moved) <= _MAX_NAMES else f" and {len(moved) - _MAX_NAMES} more"
         reason = f"it moves only links without mass ({names}{more}); give one mass, or load with default_mass"
         context.leave_out(element, _CONSEQUENCE, reason)
 

@@ -22,7 +22,7 @@ _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.
 _GREATEST = float(np.finfo(np.float32).max)
 # More material files than anybody has would take long to look for.
-_MOST_LIBRARIES = 1000
+_MAX_LIBRARIES = 1000
 # Keyword: kind of value, and how many numbers are used and required; colours or weights may follow.
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
@@ -167,7 +167,7 @@ def _bad_face(lines: _Lines) -> int | None:
 
 def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
     known: dict[str, ObjMaterial] = {}
-    for name in islice(lines.libraries, _MOST_LIBRARIES):
+    for name in islice(lines.libraries, _MAX_LIBRARIES):
         known.update(read_materials(file.parent / name))
     used = [known[name] for name in lines.materials if name in known]
     with_texture = [material for material in used if material.texture is not None]

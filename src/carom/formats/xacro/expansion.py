@@ -16,7 +16,7 @@ from carom.formats.xacro.values import truth
 from carom.formats.xml_element import PlacedElement, from_calls
 
 PREFIX = "xacro:"
-_MOST_CALLS_SHOWN = 6
+_MAX_CALLS_SHOWN = 6
 
 
 class Expansion:
@@ -105,7 +105,7 @@ class Expansion:
         self._all(element, scope, new)
 
     def _new(self, element: PlacedElement, tag: str) -> PlacedElement:
-        calls = tuple(reversed(self._calls[-_MOST_CALLS_SHOWN:]))
+        calls = tuple(reversed(self._calls[-_MAX_CALLS_SHOWN:]))
         return PlacedElement(tag, {}, element.line, element.file, element.calls or calls)
 
     def _element(self, element: PlacedElement, scope: Scope, into: PlacedElement) -> None:
@@ -297,7 +297,7 @@ class _Called(PlacedElement):
     """Only the calls around a place."""
 
     def __init__(self, calls: tuple[str, ...]) -> None:
-        super().__init__("", {}, 0, Path(), calls[:_MOST_CALLS_SHOWN])
+        super().__init__("", {}, 0, Path(), calls[:_MAX_CALLS_SHOWN])
 
 
 _HANDLERS: dict[str, Callable[[Expansion, PlacedElement, Scope, PlacedElement], None]] = {

@@ -9,7 +9,7 @@ from typing import Any
 from carom.formats.xacro.limits import ExpressionError, check_length
 from carom.formats.xacro.values import Value, checked, text_of
 
-_MOST_ARGUMENTS = 1000
+_MAX_ARGUMENTS = 1000
 _WIDEST = 1000
 _MATHS = (
     "acos acosh asin asinh atan atan2 atanh ceil copysign cos cosh degrees erf erfc exp expm1 fabs floor "
@@ -191,8 +191,8 @@ def check_call(function: Value, arguments: list[Value]) -> None:
     """Refuse calls that might take long or that call no function of these tables."""
     if not callable(function) or isinstance(function, type):
         raise ExpressionError(f"{text_of(function)[:60]!r} is no function")
-    if len(arguments) > _MOST_ARGUMENTS:
-        raise ExpressionError(f"more than {_MOST_ARGUMENTS} arguments")
+    if len(arguments) > _MAX_ARGUMENTS:
+        raise ExpressionError(f"more than {_MAX_ARGUMENTS} arguments")
 
 
 def _padded(text: str, name: str, width: int, *fill: str) -> str:

@@ -11,7 +11,7 @@ from carom.formats.xacro.functions import Namespace
 from carom.formats.xacro.limits import Budget, ExpressionError
 from carom.formats.xacro.values import Value
 
-_MOST_VALUES = 100_000
+_MAX_VALUES = 100_000
 _DEEPEST = 18
 _ANGLES = {"!degrees": math.pi / 180.0, "!radians": 1.0}
 
@@ -55,9 +55,9 @@ class _Plain:
     def value(self, content: Any, depth: int) -> Value:
         """The plain value of a content."""
         self.count += 1
-        if self.count > _MOST_VALUES or depth > _DEEPEST:
+        if self.count > _MAX_VALUES or depth > _DEEPEST:
             raise ExpressionError(
-                f"{self.file} has more than {_MOST_VALUES} values, or is nested deeper than {_DEEPEST}"
+                f"{self.file} has more than {_MAX_VALUES} values, or is nested deeper than {_DEEPEST}"
             )
         if isinstance(content, dict):
             return Namespace({key: self.value(entry, depth + 1) for key, entry in content.items()})

@@ -30,7 +30,7 @@ from carom.layouts.contacts import (
 # Slack of a list that is to last [m].
 SLACK = real(0.02)
 # Substeps that a list with slack has to last, at the present speed.
-LEAST_LIFE = real(4.0)
+MIN_LIFE = real(4.0)
 
 
 @func
@@ -66,7 +66,7 @@ def renew_list(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, w
         if 2.0 * moved <= slack and not looks_farther(settings, pairs, world):
             pairs.count_pairs[world, LIST_AGE] = age
             return
-        if 2.0 * LEAST_LIFE * moved <= real(age) * SLACK:
+        if 2.0 * MIN_LIFE * moved <= real(age) * SLACK:
             wide = Int32(1)
     build_hierarchy(shapes, settings, pairs, world)
     count = list_pairs(shapes, model, settings, pairs, world, real(wide) * SLACK)

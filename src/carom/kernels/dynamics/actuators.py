@@ -9,7 +9,7 @@ import warp as wp
 
 from carom.kernels.dynamics.motors import unless_nan
 from carom.kernels.dynamics.muscles import activation_rate, muscle_force
-from carom.kernels.dynamics.rows import LEAST_INVERSE_MASS, add_row, inverse_mass_entry
+from carom.kernels.dynamics.rows import MIN_INVERSE_MASS, add_row, inverse_mass_entry
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, func, real
@@ -73,7 +73,7 @@ def actuator_row(
     # Impulse on the joint = h gear force - yielding (rate of the joint at the end).
     yielding = h * gear * gear * (damping + h * stiffness)
     inverse_mass = inverse_mass_entry(model, scratch, world, tree, place, place)
-    if inverse_mass <= LEAST_INVERSE_MASS:
+    if inverse_mass <= MIN_INVERSE_MASS:
         state.actuator_force[world, actuator] = real(0.0)
         return row
     first, second = h * gear * lower, h * gear * upper

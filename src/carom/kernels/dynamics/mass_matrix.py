@@ -16,7 +16,7 @@ from carom.kernels.structs import Model, Scratch
 from carom.kernels.types import Int32, func, real
 
 # A dof with less articulated inertia than this cannot be accelerated (double precision epsilon).
-LEAST_PIVOT = real(2.220446049250313e-16)
+MIN_PIVOT = real(2.220446049250313e-16)
 
 
 @func
@@ -64,7 +64,7 @@ def factorise(model: Model, scratch: Scratch, world: Int32, tree: Int32):
     """Replace the joint-space inertia in `block_factor` by L, and store the inverses of the pivots D."""
     factorise_rows(
         scratch.block_factor, model.tree[tree].first_block, scratch.dof, model.tree[tree].first_dof, world,
-        model.tree[tree].dof_count, LEAST_PIVOT,
+        model.tree[tree].dof_count, MIN_PIVOT,
     )  # fmt: skip
 
 

@@ -11,7 +11,7 @@ from carom.kernels.structs import Model, Scratch
 from carom.kernels.types import Int32, Vector3, func, real
 
 # Rows with less inverse mass than this are switched off (double precision epsilon).
-LEAST_INVERSE_MASS = real(2.220446049250313e-16)
+MIN_INVERSE_MASS = real(2.220446049250313e-16)
 
 
 @func
@@ -70,7 +70,7 @@ def inverse_mass_entry(model: Model, scratch: Scratch, world: Int32, tree: Int32
 def inverse_or_off(inverse_mass: real) -> real:
     """Effective mass of a row from its inverse mass; 0 if that is too small, as nothing can move."""
     # A conditional expression makes kernels of rows on GPUs spill registers.
-    if inverse_mass > LEAST_INVERSE_MASS:
+    if inverse_mass > MIN_INVERSE_MASS:
         return 1.0 / inverse_mass
     return 0.0
 

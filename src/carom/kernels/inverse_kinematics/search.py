@@ -25,10 +25,10 @@ from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
 
 # Iteration ends when the largest change of a joint is smaller than this.
 _NO_STEP = real(1e-14)
-_LEAST_THRESHOLD = real(1e-9)
+_MIN_THRESHOLD = real(1e-9)
 # Damping relative to the sum of squared errors, and the damping that remains at the target.
 _DAMPING_BY_ERROR = real(0.5)
-_LEAST_DAMPING = real(1e-8)
+_MIN_DAMPING = real(1e-8)
 _TRIES = wp.constant(6)
 # A local minimum is assumed after this many steps (_SLOW_STEPS), each with at least this share
 # (_LITTLE_PROGRESS) of the squared errors of the step before.
@@ -114,7 +114,7 @@ def descend(
         fill_jacobian(sizes, chain, search, search.coordinate_now, oriented)
         attempt, better = Int32(0), Int32(0)
         while better == 0 and attempt < _TRIES and tried < budget:
-            damping = growth * _DAMPING_BY_ERROR * left.squares + _LEAST_DAMPING
+            damping = growth * _DAMPING_BY_ERROR * left.squares + _MIN_DAMPING
             bounded_step(sizes, chain, search, search.coordinate_now, blocks, damping)
             advance(sizes, chain, search, search.coordinate_now, search.coordinate_trial)
             place(sizes, chain, search, search.coordinate_trial)
@@ -211,7 +211,7 @@ def find_coordinates(
     place(sizes, chain, search, search.coordinate_now)
     errors = measure_errors(sizes, chain, search, oriented)
     copy(sizes.coordinates, search.coordinate_now, search.coordinate_best)
-    goal = wp.max(threshold, _LEAST_THRESHOLD)
+    goal = wp.max(threshold, _MIN_THRESHOLD)
     if errors.distance <= goal and errors.angle <= goal:
         return
     if errors.distance <= bearable and outside == 0:

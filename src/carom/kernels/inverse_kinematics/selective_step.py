@@ -11,7 +11,7 @@ from carom.kernels.inverse_kinematics.steps import MAX_STEP, limit_step
 from carom.kernels.structs import Chain, ChainSizes, Search
 from carom.kernels.types import Int32, Vector3, func, real
 
-_MOST_SWEEPS = wp.constant(30)
+_MAX_SWEEPS = wp.constant(30)
 _NEGLIGIBLE = real(1e-20)
 
 
@@ -20,14 +20,14 @@ def diagonalise_rows(search: Search, rows: Int32):
     """Diagonalise `spectrum_matrix` by Jacobi rotations; eigenvectors are columns of `spectrum_vectors`."""
     a = search.spectrum_matrix
     sweep = Int32(0)
-    while sweep < _MOST_SWEEPS:
+    while sweep < _MAX_SWEEPS:
         off, trace = real(0.0), real(0.0)
         for i in range(rows):
             trace += a[i * rows + i]
             for k in range(i):
                 off += a[i * rows + k] * a[i * rows + k]
         if off <= _NEGLIGIBLE * trace * trace:
-            sweep = _MOST_SWEEPS
+            sweep = _MAX_SWEEPS
         else:
             for p in range(rows):
                 for q in range(p + 1, rows):

@@ -30,7 +30,7 @@ from carom.kernels.structs import (
 )
 from carom.kernels.types import Index2, Int32, func, kernel
 from carom.layouts.contacts import MEETING, PAIRS, THERE
-from carom.layouts.parallel import MOST_CANDIDATES
+from carom.layouts.parallel import MAX_CANDIDATES
 from carom.layouts.status import STATUS, WELL
 
 
@@ -106,7 +106,7 @@ def pair_candidates_kernel(
             result.candidates = candidates
             pair_work.pair_result[world, i] = result
             for candidate in range(wp.max(new_points, candidates)):
-                pair_work.candidate[world, MOST_CANDIDATES * i + candidate] = own.candidate[world, candidate]
+                pair_work.candidate[world, MAX_CANDIDATES * i + candidate] = own.candidate[world, candidate]
 
 
 @kernel

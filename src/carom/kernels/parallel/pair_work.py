@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.structs import CandidateRows, Pairs, PairWork
 from carom.kernels.types import Index4Rows, Int32, Vector3Rows, Vector4Rows, func
-from carom.layouts.parallel import MOST_CANDIDATES
+from carom.layouts.parallel import MAX_CANDIDATES
 
 # C++ for a view of an array in which all worlds share the row of a worker: the stride over worlds is zero.
 _ROW = """
@@ -61,5 +61,5 @@ def pairs_with_candidates(pairs: Pairs, work: PairWork, i: Int32) -> Pairs:
     """The arrays of collision detection, with the candidates of a pair."""
     own = Pairs()
     own = pairs
-    own.candidate = work.candidate[:, MOST_CANDIDATES * i : MOST_CANDIDATES * (i + 1)]
+    own.candidate = work.candidate[:, MAX_CANDIDATES * i : MAX_CANDIDATES * (i + 1)]
     return own

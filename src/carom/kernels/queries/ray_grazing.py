@@ -24,7 +24,7 @@ from carom.kernels.structs import Shapes
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import BOX, CAPSULE, CYLINDER, HULL, SPHERE
 
-_MOST_STEPS = 64
+_MAX_STEPS = 64
 _FAR = real(1.0e18)
 # A ray whose direction and normal have a product less than this, for unit vectors, goes along the surface.
 _ALONG = real(1.0e-12)
@@ -109,7 +109,7 @@ def ray_grazing(shapes: Shapes, shape: Int32, start: Vector3, way: Vector3, last
     if enters_larger(shapes, shape, start, way) <= last:
         at = real(0.0)
         distance, outward = distance_from(shapes, shape, start)
-        steps = Int32(_MOST_STEPS)
+        steps = Int32(_MAX_STEPS)
         while distance > GRAZE and steps > 0:
             steps -= 1
             rate = wp.dot(way, outward)

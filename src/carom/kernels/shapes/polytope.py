@@ -24,7 +24,7 @@ from carom.kernels.types import (
     real,
     shared_func,
 )
-from carom.layouts.contacts import MOST_CORNERS
+from carom.layouts.contacts import MAX_CORNERS
 
 # A face is on the boundary if the boundary is at most this far beyond it [m].
 PRECISION = real(1.0e-7)
@@ -264,7 +264,7 @@ def overlap(
     outward = Vector3(0.0, 0.0, 0.0)
     corners = faces[world, nearest]
     growing = Int32(1)
-    while growing == 1 and count < MOST_CORNERS:
+    while growing == 1 and count < MAX_CORNERS:
         plane = planes[world, nearest]
         normal = Vector3(plane[0], plane[1], plane[2])
         w = add_corner(core_a, core_b, vertex_position, points, points_a, world, count, normal)

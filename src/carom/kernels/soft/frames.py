@@ -9,8 +9,8 @@ from carom.kernels.structs import Model, SoftModel, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Transform, Vector3, func, real
 
 # Rotations are found by iteration from the last one: most iterations, and the angle that ends them [rad].
-_MOST_TURNS = 20
-_LEAST_TURN = real(1.0e-10)
+_MAX_TURNS = 20
+_MIN_TURN = real(1.0e-10)
 # Avoids division by zero if all nodes are in one place or on a line.
 _TINY = real(1.0e-12)
 
@@ -30,7 +30,7 @@ def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
     """
     q = wp.normalize(start)
     turning = Int32(0)
-    while turning < _MOST_TURNS:
+    while turning < _MAX_TURNS:
         frame = wp.quat_to_matrix(q)
         torque = Vector3(0.0, 0.0, 0.0)
         weight = real(0.0)
@@ -40,10 +40,10 @@ def turned(start: Quaternion, matrix: Matrix3) -> Quaternion:
         rate = torque / (wp.abs(weight) + _TINY)
         angle = wp.length(rate)
         turning += 1
-        if angle > _LEAST_TURN:
+        if angle > _MIN_TURN:
             q = wp.normalize(wp.quat_from_axis_angle(rate / angle, angle) * q)
         else:
-            turning = Int32(_MOST_TURNS)
+            turning = Int32(_MAX_TURNS)
     return q
 
 

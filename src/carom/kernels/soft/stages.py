@@ -32,8 +32,8 @@ from carom.layouts.status import STATUS, WELL
 # Largest phase of the fastest vibration in one small step [rad], as long as the number of small steps stays
 # within its limit.
 _PHASE = real(1.0)
-_LEAST_STEPS = 4
-_MOST_STEPS = 128
+_MIN_STEPS = 4
+_MAX_STEPS = 128
 
 
 @func
@@ -48,8 +48,8 @@ def small_steps(soft: SoftModel, dt: real) -> Int32:
     frequency = real(0.0)
     for body in range(soft.count_soft[BODIES]):
         frequency = maximum(frequency, soft.soft[body].frequency)
-    wanted = wp.min(wp.ceil(frequency * dt / _PHASE), real(_MOST_STEPS))
-    return wp.max(Int32(wanted), Int32(_LEAST_STEPS))
+    wanted = wp.min(wp.ceil(frequency * dt / _PHASE), real(_MAX_STEPS))
+    return wp.max(Int32(wanted), Int32(_MIN_STEPS))
 
 
 @func

@@ -8,8 +8,8 @@ from carom.kernels.solver.warm_starting import next_warm_start, slides
 from carom.kernels.structs import Contacts, ContactTerms, Model, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 
-_GREATEST_FRICTION = real(10.0)
-_LEAST_DENOMINATOR = real(2.220446049250313e-16)
+_MAX_FRICTION = real(10.0)
+_MIN_DENOMINATOR = real(2.220446049250313e-16)
 # Default damping of a link in a soft contact [N s/m].
 _DEFAULT_DAMPING = 0.1
 
@@ -36,8 +36,8 @@ def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32
     if stiffness_b > 0.0:
         compliance += 1.0 / stiffness_b
     damping = contact_damping(shapes, world, a) + contact_damping(shapes, world, b)
-    stiffness = 1.0 / maximum(compliance, _LEAST_DENOMINATOR)
-    denominator = maximum(settings.time_step * stiffness + damping, _LEAST_DENOMINATOR)
+    stiffness = 1.0 / maximum(compliance, _MIN_DENOMINATOR)
+    denominator = maximum(settings.time_step * stiffness + damping, _MIN_DENOMINATOR)
     return 1.0 / (denominator * settings.time_step), settings.time_step * stiffness / denominator
 
 
@@ -76,9 +76,9 @@ def contact_friction(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> Vector
         rolling = of_rank(rank_a, rank_b, rolling_a, rolling_b)
         spinning = of_rank(rank_a, rank_b, spinning_a, spinning_b)
     return Vector3(
-        within_bounds(lateral, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-        within_bounds(rolling, -_GREATEST_FRICTION, _GREATEST_FRICTION),
-        within_bounds(spinning, -_GREATEST_FRICTION, _GREATEST_FRICTION),
+        within_bounds(lateral, -_MAX_FRICTION, _MAX_FRICTION),
+        within_bounds(rolling, -_MAX_FRICTION, _MAX_FRICTION),
+        within_bounds(spinning, -_MAX_FRICTION, _MAX_FRICTION),
     )
 
 

@@ -12,7 +12,7 @@ from carom.kernels.solver.pair_rows import write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, UserConstraints
 from carom.kernels.types import Int32, func, real
 
-_LEAST_IMPEDANCE, _GREATEST_IMPEDANCE = real(0.0001), real(0.9999)
+_MIN_IMPEDANCE, _MAX_IMPEDANCE = real(0.0001), real(0.9999)
 _LEAST = real(1e-15)
 
 
@@ -26,15 +26,15 @@ def is_compliant(users: UserConstraints, user: Int32) -> bool:
 def impedance(users: UserConstraints, user: Int32, size: real) -> real:
     """Impedance of a constraint whose error has this size."""
     bounds, curve = users.user_impedance[user], users.user_reference[user]
-    first = within_bounds(bounds[0], _LEAST_IMPEDANCE, _GREATEST_IMPEDANCE)
-    last = within_bounds(bounds[1], _LEAST_IMPEDANCE, _GREATEST_IMPEDANCE)
+    first = within_bounds(bounds[0], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
+    last = within_bounds(bounds[1], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
     if bounds[2] <= _LEAST:
         return 0.5 * (first + last)
     x = wp.abs(size) / bounds[2]
     if x >= 1.0:
         return last
     y = x
-    midpoint, power = within_bounds(curve[2], _LEAST_IMPEDANCE, _GREATEST_IMPEDANCE), curve[3]
+    midpoint, power = within_bounds(curve[2], _MIN_IMPEDANCE, _MAX_IMPEDANCE), curve[3]
     if power > 1.0:
         if x <= midpoint:
             y = midpoint * wp.pow(x / midpoint, power)
@@ -88,7 +88,7 @@ def write_compliant_row(
     )
     before = velocity - h * forced
     reference = users.user_reference[user]
-    last = within_bounds(users.user_impedance[user][1], _LEAST_IMPEDANCE, _GREATEST_IMPEDANCE)
+    last = within_bounds(users.user_impedance[user][1], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
     stiffness, damping = -reference[0] / (last * last), -reference[1] / last
     if reference[0] > 0.0:
         time_constant = maximum(reference[0], 2.0 * h)

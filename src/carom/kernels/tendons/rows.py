@@ -8,7 +8,7 @@ import warp as wp
 from carom.kernels.dynamics.actuators import actuator_law
 from carom.kernels.dynamics.limits import limit_change
 from carom.kernels.dynamics.motors import unless_nan
-from carom.kernels.dynamics.rows import LEAST_INVERSE_MASS
+from carom.kernels.dynamics.rows import MIN_INVERSE_MASS
 from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
@@ -239,7 +239,7 @@ def add_transmission_row(
     force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     yielding = h * (damping + h * stiffness)
-    if inverse_mass <= LEAST_INVERSE_MASS:
+    if inverse_mass <= MIN_INVERSE_MASS:
         write_row(pair_rows, world, row, inverse_mass, 0.0, 0.0, 0.0, 0.0, 0.0)
     elif yielding == 0.0:
         impulse = unless_nan(within_bounds(h * force, h * lower, h * upper), force)

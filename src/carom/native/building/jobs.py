@@ -17,7 +17,7 @@ from carom.native.cpu import core_count
 
 _POLL_SECONDS = 0.05
 # Maximum length of a compiler's output in messages: the first errors matter, hundreds may follow from them.
-_MOST_CHARACTERS = 3000
+_MAX_CHARACTERS = 3000
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def run_all(
                     if process.returncode != 0:
                         output.seek(0)
                         said = output.read().decode(errors="replace").strip()
-                        raise BuildError(f"{job.name} could not be built:\n{said[:_MOST_CHARACTERS]}")
+                        raise BuildError(f"{job.name} could not be built:\n{said[:_MAX_CHARACTERS]}")
                 job.done()
                 ended += 1
                 break

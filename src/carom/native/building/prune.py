@@ -7,15 +7,15 @@ import shutil
 import time
 from pathlib import Path
 
-_MOST_SECONDS = 30 * 24 * 3600.0
-_MOST_BYTES = 400 << 20
+_MAX_SECONDS = 30 * 24 * 3600.0
+_MAX_BYTES = 400 << 20
 # Folders of killed builds; those of running builds are younger.
-_MOST_WORK_SECONDS = 24 * 3600.0
+_MAX_WORK_SECONDS = 24 * 3600.0
 # Files that are compiled again if missing. Zig manages its own cache.
 _FOLDERS = ("libraries", "code", "objects")
 
 
-def prune(cache: Path, most_bytes: int = _MOST_BYTES) -> None:
+def prune(cache: Path, most_bytes: int = _MAX_BYTES) -> None:
     """Remove files not used for 30 days, then the oldest ones until the rest has at most so many bytes.
 
     No other build may use the cache meanwhile.
@@ -27,10 +27,10 @@ def prune(cache: Path, most_bytes: int = _MOST_BYTES) -> None:
     kept_bytes = 0
     for used, entry in sorted(((entry.stat().st_mtime, entry) for entry in entries), reverse=True):
         kept_bytes += _size(entry)
-        if now - used > _MOST_SECONDS or kept_bytes > most_bytes:
+        if now - used > _MAX_SECONDS or kept_bytes > most_bytes:
             _remove(entry)
     for entry in cache.glob("work-*"):
-        if now - entry.stat().st_mtime > _MOST_WORK_SECONDS:
+        if now - entry.stat().st_mtime > _MAX_WORK_SECONDS:
             _remove(entry)
 
 

@@ -8,7 +8,7 @@
 namespace {
 
 // Numbers in the state of a link, and the maximum number of links in one call; more are left to Python.
-enum { LINK_NUMBERS = 3 * POSE_NUMBERS + SPATIAL_NUMBERS, MOST_LINKS = 32 };
+enum { LINK_NUMBERS = 3 * POSE_NUMBERS + SPATIAL_NUMBERS, MAX_LINKS = 32 };
 
 bool is_given(double number) { return number == number; }
 
@@ -181,9 +181,9 @@ CAROM_QUICK(link_state) {
 extern "C" CAROM_EXPORT PyObject* carom_link_states(const double* in, const Call* call) {
     const Body& body = *call->body;
     const bool with_velocity = in[1] != 0.0;
-    double numbers[MOST_LINKS][LINK_NUMBERS];
-    int64_t links[MOST_LINKS];
-    const intptr_t count = read_indices(call->sequences[0], body.link_count, MOST_LINKS, links);
+    double numbers[MAX_LINKS][LINK_NUMBERS];
+    int64_t links[MAX_LINKS];
+    const intptr_t count = read_indices(call->sequences[0], body.link_count, MAX_LINKS, links);
     if (count < 0 || !prepare_links(*call, with_velocity, in[2] != 0.0))
         return nullptr;
     int groups = 0;

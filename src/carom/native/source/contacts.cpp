@@ -7,7 +7,7 @@
 namespace {
 
 // Larger numbers of contacts are left to Python, which lets other threads run meanwhile.
-enum { MOST_CONTACTS = 64 };
+enum { MAX_CONTACTS = 64 };
 
 Contact contact_at(const ContactColumns& found, int32_t i) {
     return {
@@ -24,7 +24,7 @@ Contact contact_at(const ContactColumns& found, int32_t i) {
 extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const Call* call) {
     const ContactLister& report = call->client->scene->report;
     double seconds;
-    if (!report.call.function || *report.there > MOST_CONTACTS)
+    if (!report.call.function || *report.there > MAX_CONTACTS)
         return nullptr;
     if (*report.there > report.room || report.there[contacts::OVERLAPS] > report.room)
         return nullptr;
@@ -33,16 +33,16 @@ extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const C
     if (!read_time_step(*call->client, &seconds))
         return nullptr;
     {
-        const Instead<int32_t> count(report.asked.count, *report.there);
-        const Instead<int32_t> body_a(report.asked.body_a, static_cast<int32_t>(in[0]));
-        const Instead<int32_t> body_b(report.asked.body_b, static_cast<int32_t>(in[1]));
-        const Instead<int32_t> link_a(report.asked.link_a, static_cast<int32_t>(in[2]));
-        const Instead<int32_t> link_b(report.asked.link_b, static_cast<int32_t>(in[3]));
-        const Instead<double> time_step(report.asked.time_step, seconds);
+        const TemporaryValue<int32_t> count(report.asked.count, *report.there);
+        const TemporaryValue<int32_t> body_a(report.asked.body_a, static_cast<int32_t>(in[0]));
+        const TemporaryValue<int32_t> body_b(report.asked.body_b, static_cast<int32_t>(in[1]));
+        const TemporaryValue<int32_t> link_a(report.asked.link_a, static_cast<int32_t>(in[2]));
+        const TemporaryValue<int32_t> link_b(report.asked.link_b, static_cast<int32_t>(in[3]));
+        const TemporaryValue<double> time_step(report.asked.time_step, seconds);
         run(report.call);
     }
     const int32_t found = *report.found.count;
-    Contact contacts[MOST_CONTACTS];
+    Contact contacts[MAX_CONTACTS];
     for (int32_t i = 0; i < found; ++i)
         contacts[i] = contact_at(report.found, i);
     // From here on the report may be gone: making a tuple can start garbage collection, which may run any code.

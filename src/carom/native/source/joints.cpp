@@ -6,7 +6,7 @@
 
 namespace {
 
-enum { MOST_JOINTS = 64 };
+enum { MAX_JOINTS = 64 };
 
 struct State {
     double position, velocity, torque;
@@ -53,10 +53,10 @@ extern "C" CAROM_EXPORT int carom_joint_state(const double* in, double* out, con
 // Arguments: body, connection; a sequence of joints.
 extern "C" CAROM_EXPORT PyObject* carom_joint_states(const double* in, const Call* call) {
     const Body& body = *call->body;
-    State states[MOST_JOINTS];
-    int64_t joints[MOST_JOINTS];
+    State states[MAX_JOINTS];
+    int64_t joints[MAX_JOINTS];
     double seconds;
-    const intptr_t count = read_indices(call->sequences[0], body.link_count, MOST_JOINTS, joints);
+    const intptr_t count = read_indices(call->sequences[0], body.link_count, MAX_JOINTS, joints);
     if (count < 1 || !read_duration(*call, &seconds))
         return nullptr;
     for (intptr_t i = 0; i < count; ++i)

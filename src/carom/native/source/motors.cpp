@@ -51,7 +51,7 @@ extern "C" CAROM_EXPORT int carom_command_motor(const double* in, double* out, c
     } else if (mode == TORQUE) {
         body.torque[joint.velocity] += force;
     } else if (mode == PD) {
-        const double bound = force >= magnitudes::LEAST_PD_FORCE ? force : 0.0;
+        const double bound = force >= magnitudes::MIN_PD_FORCE ? force : 0.0;
         write_target(body.pd + joint.velocity * MOTOR_NUMBERS, clipped(position, joint), velocity, kp, kd, bound);
     } else {
         return 0;
@@ -77,9 +77,9 @@ extern "C" CAROM_EXPORT int carom_command_motors(const double* in, double* out, 
         }
     if (!read_time_step(*call->client, &seconds))
         return 0;
-    const Instead<int32_t> asked_mode(group->mode, static_cast<int32_t>(mode));
-    const Instead<int32_t> asked_given(group->given, given);
-    const Instead<double> asked_time_step(group->time_step, seconds);
+    const TemporaryValue<int32_t> asked_mode(group->mode, static_cast<int32_t>(mode));
+    const TemporaryValue<int32_t> asked_given(group->given, given);
+    const TemporaryValue<double> asked_time_step(group->time_step, seconds);
     run(group->command);
     return !*group->refused;
 }

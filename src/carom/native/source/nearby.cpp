@@ -6,7 +6,7 @@
 namespace {
 
 // Larger numbers are left to Python, which lets other threads run meanwhile.
-enum { MOST_SHAPES = 256, MOST_PAIRS = 64 };
+enum { MAX_SHAPES = 256, MAX_PAIRS = 64 };
 
 // Copies numbers; returns whether any bit has changed.
 bool copy(double* to, const double* from, int64_t count) {
@@ -23,7 +23,7 @@ bool copy(double* to, const double* from, int64_t count) {
 
 // Places shapes at the current coordinates; false if data for this are missing.
 bool place(Placement& at) {
-    if (!at.place.function || at.shape_count > MOST_SHAPES)
+    if (!at.place.function || at.shape_count > MAX_SHAPES)
         return false;
     PyObject* value = python.PyObject_GetAttr(at.shapes, at.changes_name);
     double changes = -1.0;
@@ -67,7 +67,7 @@ int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
         for (int64_t k = b.begin; k < b.end; ++k)
             for (int32_t m = 0; m < at.link_shapes[i]; ++m)
                 for (int32_t n = 0; n < at.link_shapes[k]; ++n) {
-                    if (count == MOST_PAIRS)
+                    if (count == MAX_PAIRS)
                         return -1;
                     const int32_t link_a = static_cast<int32_t>(i - a.begin), link_b = static_cast<int32_t>(k - b.begin);
                     pairs[count++] = {at.first_shape[i] + m, at.first_shape[k] + n, link_a, link_b};
@@ -105,23 +105,23 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
     Scene& scene = *call->client->scene;
     const PairSearch& nearest = scene.nearest;
     const Body *a = call->body, *b = find_body(*call->client, in[1]);
-    Pair pairs[MOST_PAIRS];
+    Pair pairs[MAX_PAIRS];
     if (!b || in[5] >= 0.0 || in[6] >= 0.0 || !nearest.search.function || !place(scene.placement))
         return nullptr;
     const Range rows_a = rows_of(*a, in[3]), rows_b = rows_of(*b, in[4]);
     const int count = find_pairs(scene.placement, rows_a, rows_b, pairs);
     if (count < 0 || count > nearest.room)
         return nullptr;
-    int32_t before[2][MOST_PAIRS];
+    int32_t before[2][MAX_PAIRS];
     for (int i = 0; i < count; ++i) {
         before[0][i] = nearest.first[i], before[1][i] = nearest.second[i];
         nearest.first[i] = pairs[i].shape_a, nearest.second[i] = pairs[i].shape_b;
     }
-    int found = 0, of[MOST_PAIRS];
-    Candidate points[MOST_PAIRS];
+    int found = 0, of[MAX_PAIRS];
+    Candidate points[MAX_PAIRS];
     if (count) {
-        const Instead<int32_t> asked(nearest.count, count);
-        const Instead<double> reach(nearest.max_distance, in[2] < magnitudes::MAX_DISTANCE ? in[2] : magnitudes::MAX_DISTANCE);
+        const TemporaryValue<int32_t> asked(nearest.count, count);
+        const TemporaryValue<double> reach(nearest.max_distance, in[2] < magnitudes::MAX_DISTANCE ? in[2] : magnitudes::MAX_DISTANCE);
         run(nearest.search);
         for (found = 0; found < *nearest.found; ++found) {
             of[found] = nearest.pairs[found];
@@ -147,7 +147,7 @@ extern "C" CAROM_EXPORT PyObject* carom_overlapping(const double* in, const Call
     Placement& at = call->client->scene->placement;
     if (at.has_bare_links || !place(at))
         return nullptr;
-    Place places[MOST_SHAPES];
+    Place places[MAX_SHAPES];
     int count = 0;
     for (int64_t shape = 0; shape < at.shape_count; ++shape) {
         if (!meets(at, shape, in, in + 3))

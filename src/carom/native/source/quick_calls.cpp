@@ -20,16 +20,16 @@ enum { RECORDS = 0x1C };  // PyBUF_RECORDS_RO
 
 // What follows from the parameters of a call, found once.
 struct Arrangement {
-    double missing[MOST_NUMBERS];  // the numbers of a call without arguments
+    double missing[MAX_NUMBERS];  // the numbers of a call without arguments
     int32_t number_count;
     uint32_t required;  // a bit for each parameter
-    int32_t first_number[MOST_PARAMETERS], sequence[MOST_PARAMETERS];
+    int32_t first_number[MAX_PARAMETERS], sequence[MAX_PARAMETERS];
     int32_t body, connection;  // indices of these numbers, -1 if there is no such parameter
 };
 
-QuickCall calls[MOST_CALLS];
-Guard guards[MOST_CALLS];
-Arrangement arrangements[MOST_CALLS];
+QuickCall calls[MAX_CALLS];
+Guard guards[MAX_CALLS];
+Arrangement arrangements[MAX_CALLS];
 const Client* clients[MOST_CLIENTS];
 
 bool read_number(PyObject* value, double* number) {
@@ -118,7 +118,7 @@ bool read(int kind, PyObject* value, double* numbers, PyObject** sequence) {
             return false;
         const double x = numbers[0], y = numbers[1], z = numbers[2], w = numbers[3];
         const double squared = x * x + y * y + z * z + w * w;
-        return magnitudes::LEAST_SQUARE < squared && squared < magnitudes::GREATEST_SQUARE;
+        return magnitudes::MIN_SQUARE < squared && squared < magnitudes::MAX_SQUARE;
     }
     case 'v':  // numbers, or None
         *sequence = value;
@@ -216,7 +216,7 @@ PyObject* result_of(const QuickCall& made, const double* numbers, int count) {
 PyObject* quick_answer(int place, PyObject* const* arguments, intptr_t count, PyObject* names) {
     const QuickCall& made = calls[place];
     const Arrangement& arrangement = arrangements[place];
-    double numbers[MOST_NUMBERS], results[MOST_RESULTS];
+    double numbers[MAX_NUMBERS], results[MAX_RESULTS];
     Call call = {};
     if (!read_all(made, arrangement, arguments, count, names, numbers, &call) || !find(arrangement, numbers, &call))
         return nullptr;
@@ -380,5 +380,5 @@ extern "C" CAROM_EXPORT int carom_claim_quick_calls(
 // The C code of the builtin of a quick call, whose description is complete.
 extern "C" CAROM_EXPORT Entry carom_quick_entry(int place) {
     arrangements[place] = arranged(calls[place]);
-    return Entries<MOST_CALLS>::at(place);
+    return Entries<MAX_CALLS>::at(place);
 }

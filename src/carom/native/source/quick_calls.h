@@ -68,9 +68,9 @@ inline void release(PyObject* object) {
 
 // Replaces a value and restores it on destruction: the host relies on the arguments that it set last.
 template <typename T>
-struct Instead {
-    Instead(T* at, T value) : at(at), before(*at) { *at = value; }
-    ~Instead() { *at = before; }
+struct TemporaryValue {
+    TemporaryValue(T* at, T value) : at(at), before(*at) { *at = value; }
+    ~TemporaryValue() { *at = before; }
     T* at;
     T before;
 };

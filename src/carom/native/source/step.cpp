@@ -34,7 +34,7 @@ extern "C" CAROM_EXPORT PyObject* carom_step(const double* in, const Call* call)
     const Step& step = client.scene->step;
     if (!lock.is_held || !step.run || python.PyList_Size(step.observers) || client.reports_analytics)
         return nullptr;
-    const Instead<int32_t> repeatable(&step.run->repeatable, 1);
+    const TemporaryValue<int32_t> repeatable(&step.run->repeatable, 1);
     perform(step);
     if (*step.status)
         return nullptr;

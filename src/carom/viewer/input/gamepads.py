@@ -8,8 +8,8 @@ from threading import Lock
 from typing import Any
 
 # No gamepad has more axes or buttons; a page cannot fill the memory.
-_MOST_PARTS = 64
-_MOST_GAMEPADS = 8
+_MAX_PARTS = 64
+_MAX_GAMEPADS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Gamepads:
                 _numbers(pad["buttons"], 0.0),
                 bool(pad["standard"]),
             )
-            for pad in told["gamepads"][:_MOST_GAMEPADS]
+            for pad in told["gamepads"][:_MAX_GAMEPADS]
         ]
         with self._lock:
             self._pads[page] = pads
@@ -69,5 +69,5 @@ class Gamepads:
 
 
 def _numbers(told: list[Any], lower: float) -> tuple[float, ...]:
-    values = [float(value) for value in told[:_MOST_PARTS]]
+    values = [float(value) for value in told[:_MAX_PARTS]]
     return tuple(min(max(value, lower), 1.0) if isfinite(value) else 0.0 for value in values)

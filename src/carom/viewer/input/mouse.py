@@ -9,7 +9,7 @@ from carom.viewer.input.keys import DOWN, RELEASED, TRIGGERED
 MOVED, CLICKED = 1, 2
 _NO_BUTTON = -1
 # Limit for scripts that never read the events; others read them many times a second.
-_MOST_EVENTS = 1000
+_MAX_EVENTS = 1000
 
 MouseEvent = tuple[int, float, float, int, int]
 
@@ -18,7 +18,7 @@ class Mouse:
     """Motions and clicks of the mouse on all pages. Safe to use from all threads."""
 
     def __init__(self) -> None:
-        self._events: deque[MouseEvent] = deque(maxlen=_MOST_EVENTS)
+        self._events: deque[MouseEvent] = deque(maxlen=_MAX_EVENTS)
 
     def move(self, x: float, y: float) -> None:
         """Records a motion of the mouse to a pixel, counted from the upper left corner."""

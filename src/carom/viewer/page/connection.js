@@ -5,7 +5,7 @@ const RETRY_MS = 700;
 /** How long a socket may take to open before polling is tried [ms]. */
 const PATIENCE_MS = 4000;
 /** Maximum number of characters of the messages in one request; servers limit request lines to 8,192. */
-const MOST_TOLD = 6000;
+const MAX_TOLD = 6000;
 
 export class Connection {
   /**
@@ -81,7 +81,7 @@ export class Connection {
     let text = "";
     while (this.untold.length > 0) {
       const next = `&told=${encodeURIComponent(this.untold[0])}`;
-      if (text && text.length + next.length > MOST_TOLD) break;
+      if (text && text.length + next.length > MAX_TOLD) break;
       text += next;
       this.untold.shift();
     }

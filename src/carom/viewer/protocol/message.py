@@ -69,12 +69,12 @@ class Message:
             elif not field.kind.holds(header[name]):
                 raise ValueError(
                     f"{name!r} of a {self.type!r} message has to be {field.kind.typescript}, "
-                    f"not {str(header[name])[:_MOST_SHOWN]!r}"
+                    f"not {str(header[name])[:_MAX_SHOWN]!r}"
                 )
 
 
 # Maximum length of a wrong value in the text of an error.
-_MOST_SHOWN = 60
+_MAX_SHOWN = 60
 
 
 def needed(kind: Kind, meaning: str) -> Field:

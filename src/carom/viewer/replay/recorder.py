@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.checks import positive
 from carom.viewer.board import Board, Reader, boards
-from carom.viewer.details import Details, Wish
+from carom.viewer.details import DetailRequest, Details
 from carom.viewer.messages import decoded
 from carom.viewer.notebook import replay_frame
 from carom.viewer.protocol import to_page
@@ -66,7 +66,7 @@ class ReplayRecorder:
         lock = RLock()
         self._feed = SceneFeed(world, lock, self._board)
         self._details = Details(world, lock, self._board)
-        wish = Wish(
+        wish = DetailRequest(
             contacts=contacts, joints="all" if joints else frozenset(), dynamics=True, constraints=True
         )
         self._details.want(_PAGE, wish)
@@ -136,7 +136,7 @@ class ReplayRecorder:
         if self not in self._world.observers:
             return
         self._world.observers.remove(self)
-        self._details.want(_PAGE, Wish())
+        self._details.want(_PAGE, DetailRequest())
         if self._recording.frame_count == 0 or self._last != float(self._world.time):
             self.shoot()
         self._scripts = None

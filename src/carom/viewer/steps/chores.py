@@ -12,7 +12,7 @@ _log = logging.getLogger("carom")
 _PATIENCE = 0.02
 
 
-class Chores:
+class StepQueue:
     """A queue of functions that need the lock of a world's steps. Safe to use from all threads."""
 
     def __init__(self, lock: Any) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from carom.scene.snapshot import Snapshot
     from carom.world.world import World
 
-_MOST_MARKS = 32
+_MAX_MARKS = 32
 
 
 class Moments:
@@ -52,7 +52,7 @@ class Moments:
 
     def mark(self) -> None:
         """Saves the present state, and drops the oldest mark if there are too many."""
-        if len(self._marks) >= _MOST_MARKS:
+        if len(self._marks) >= _MAX_MARKS:
             oldest = next(iter(self._marks))
             del self._marks[oldest]
             self._take_down(oldest)

@@ -8,7 +8,7 @@ from time import monotonic, sleep
 # Maximum length of one wait [s]: on Windows, Ctrl-C is handled only between two waits.
 _LOOK = 0.1
 # Maximum delay that a simulation slower than its set speed catches up [s].
-_GREATEST_LAG = 0.1
+_MAX_LAG = 0.1
 
 
 class PauseControl:
@@ -87,7 +87,7 @@ class PauseControl:
         if self._origin is None or time < self._origin[0]:
             self._origin = (time, now)
         due = self._origin[1] + (time - self._origin[0]) / speed
-        if now - due > _GREATEST_LAG:
+        if now - due > _MAX_LAG:
             self._origin = (time, now)
         elif due > now:
             sleep(due - now)

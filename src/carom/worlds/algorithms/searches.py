@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.algorithms.inverse_kinematics import MOST_ITERATIONS, SearchTable
+from carom.algorithms.inverse_kinematics import MAX_ITERATIONS, SearchTable
 from carom.checks import Array
 from carom.engine.world_calls import WorldCalls
 from carom.layouts.chain import SearchBatch
@@ -75,7 +75,7 @@ class Searcher:
         best = put_zeros(batch, "best", count * coordinates).reshape(count, coordinates)
         left = put_zeros(batch, "residual", 2 * count).reshape(count, 2)
         limited = options._replace(
-            iterations=min(options.iterations, MOST_ITERATIONS), further=min(options.further, MOST_ITERATIONS)
+            iterations=min(options.iterations, MAX_ITERATIONS), further=min(options.further, MAX_ITERATIONS)
         )
         launches = [
             [Launch(searches_in_worlds_kernel, 1, [*table.structs, batch, *limited, 0])]

@@ -12,7 +12,7 @@ from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, MinitaurGym
 NUM_LEGS = 4
 # Signs of the motor angles for a swing: those of left and right legs are opposite.
 _SWING = np.array((-1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0))
-_MOST_LEANING = 0.3
+_MAX_LEANING = 0.3
 
 
 def motor_angles_of(pose: Any) -> np.ndarray:
@@ -90,7 +90,7 @@ class LegPoseEnv(MinitaurGymEnv):
 
     def is_fallen(self) -> bool:
         """Whether roll or pitch of the base is larger than 0.3 rad."""
-        return bool((np.abs(self.minitaur.GetTrueBaseRollPitchYaw()[:2]) > _MOST_LEANING).any())
+        return bool((np.abs(self.minitaur.GetTrueBaseRollPitchYaw()[:2]) > _MAX_LEANING).any())
 
     def _get_observation(self) -> np.ndarray:
         robot = self.minitaur

@@ -14,7 +14,7 @@ INIT_EXTENSION_POS = 2.6
 INIT_SWING_POS = 0.0
 STEP_PERIOD = 1.0 / 3.0
 STEP_AMPLITUDE = 0.75
-_MOST_ACTION = 0.1
+_MAX_ACTION = 0.1
 _UPRIGHT = 0.85
 # Legs that are lifted in one period and in the next: those at opposite corners.
 _LIFTED = ((0.0, 1.0, 1.0, 0.0), (1.0, 0.0, 0.0, 1.0))
@@ -50,7 +50,7 @@ class MinitaurAlternatingLegsEnv(BentLegsEnv):
         """Makes the environment; for the arguments see `MinitaurGymEnv`."""
         super().__init__(
             actions=NUM_MOTORS,
-            bound=_MOST_ACTION,
+            bound=_MAX_ACTION,
             init_swing=INIT_SWING_POS,
             init_extension=INIT_EXTENSION_POS,
             accurate_motor_model_enabled=True,

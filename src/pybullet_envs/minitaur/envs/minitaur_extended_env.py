@@ -12,8 +12,8 @@ from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS
 from pybullet_envs.minitaur.envs.minitaur_reactive_env import MinitaurReactiveEnv
 from pybullet_envs.minitaur_env_bases import Step
 
-_MOST_SWING = 0.8
-_MOST_STEPS = 500
+_MAX_SWING = 0.8
+_MAX_STEPS = 500
 _MOST_VELOCITY = 0.5
 _JERKINESS = 0.1
 
@@ -141,7 +141,7 @@ class MinitaurExtendedEnv(MinitaurReactiveEnv):
         if self._never_terminate:
             return False
         swing = pose_of(self.minitaur.GetMotorAngles())[: NUM_LEGS : NUM_LEGS // 2]
-        return len(self._past_actions) >= _MOST_STEPS or bool((swing > _MOST_SWING).any())
+        return len(self._past_actions) >= _MAX_STEPS or bool((swing > _MAX_SWING).any())
 
     def _reward(self) -> float:
         way = self.minitaur.GetBasePosition()[0] - self._last_base_position[0]

@@ -33,8 +33,8 @@ PERTURBATION_TOTAL_STEP = 100
 INIT_EXTENSION_POS = 2.0
 INIT_SWING_POS = 0.0
 MOVING_FLOOR_TOTAL_STEP = 100
-_MOST_ACTION = 1.0
-_MOST_TILT = 0.2
+_MAX_ACTION = 1.0
+_MAX_TILT = 0.2
 _UPRIGHT, _LOWEST = 0.85, 0.15
 _AT_ORIGIN, _LEVEL = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
@@ -76,7 +76,7 @@ class MinitaurFourLegStandEnv(BentLegsEnv):
         self._tilts = np.array((_LEVEL, _LEVEL))
         super().__init__(
             actions=NUM_LEGS,
-            bound=_MOST_ACTION,
+            bound=_MAX_ACTION,
             init_swing=INIT_SWING_POS,
             init_extension=INIT_EXTENSION_POS,
             tells_rates=use_angular_velocity_in_observation,
@@ -104,7 +104,7 @@ class MinitaurFourLegStandEnv(BentLegsEnv):
         part, whole = self._env_step_counter % MOVING_FLOOR_TOTAL_STEP, MOVING_FLOOR_TOTAL_STEP
         if part == 0:
             _, now = self._p.getBasePositionAndOrientation(self._ground_id)
-            roll, pitch = (self.np_random.uniform(-_MOST_TILT, _MOST_TILT) for _ in "xy")
+            roll, pitch = (self.np_random.uniform(-_MAX_TILT, _MAX_TILT) for _ in "xy")
             self._tilts = np.array((now, self._p.getQuaternionFromEuler([roll, pitch, 0.0])))
         share = part / whole
         tilt = (1.0 - share, share) @ self._tilts

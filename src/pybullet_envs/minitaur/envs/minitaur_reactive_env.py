@@ -17,7 +17,7 @@ __all__ = [
 
 INIT_EXTENSION_POS = 2.0
 INIT_SWING_POS = 0.0
-_MOST_ACTION = 0.5
+_MAX_ACTION = 0.5
 
 MinitaurPose = namedtuple(
     "MinitaurPose",
@@ -63,7 +63,7 @@ class MinitaurReactiveEnv(LegPoseEnv):
         """
         super().__init__(
             actions=NUM_MOTORS,
-            bound=_MOST_ACTION,
+            bound=_MAX_ACTION,
             init_swing=INIT_SWING_POS,
             init_extension=INIT_EXTENSION_POS,
             tells_angles=use_angle_in_observation,

@@ -22,7 +22,7 @@ __all__ = [
 
 RANGE_OF_LEG_MOTION = 0.7
 LIMIT_FALLEN = 0.7
-_MOST_RISING_STEPS = 5000
+_MAX_RISING_STEPS = 5000
 _RISEN = 0.9
 _SHORTENED = 0.7
 _FRONT = np.array((1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0))
@@ -80,7 +80,7 @@ class MinitaurStandGymEnv(MinitaurGymEnv):
             return super().step(action)
         self._checked(action)
         self._begin_if_needed()
-        for moment in range(_MOST_RISING_STEPS):
+        for moment in range(_MAX_RISING_STEPS):
             self._pace()
             self.minitaur.ApplyAction(self._rise(moment))
             self._p.stepSimulation()

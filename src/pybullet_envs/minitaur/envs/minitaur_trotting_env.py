@@ -9,7 +9,7 @@ import numpy as np
 from pybullet_envs.minitaur.envs.leg_pose_env import NUM_LEGS, LegPoseEnv
 from pybullet_envs.minitaur.envs.minitaur_gym_env import NUM_MOTORS, Randomizers
 
-_MOST_ACTION = 0.25
+_MAX_ACTION = 0.25
 # The legs at opposite corners move together.
 _PHASES = np.array((0.0, pi, pi, 0.0))
 
@@ -63,7 +63,7 @@ class MinitaurTrottingEnv(LegPoseEnv):
         self._swing_amplitude = swing_amplitude
         super().__init__(
             actions=NUM_MOTORS,
-            bound=_MOST_ACTION,
+            bound=_MAX_ACTION,
             init_swing=init_swing,
             init_extension=init_extension,
             tells_signal=use_signal_in_observation,

@@ -8,7 +8,7 @@ from carom.formats.mjcf.compiled.model import CompiledBody
 
 Kind = tuple[int, int]
 _ORDINARY: Kind = (1, 1)
-_MOST_KINDS = 31
+_MAX_KINDS = 31
 
 
 def set_collision_groups(bodies: list[CompiledBody]) -> int:
@@ -27,7 +27,7 @@ def set_collision_groups(bodies: list[CompiledBody]) -> int:
             kind = (shape.group or 0, shape.mask or 0)
             if kind not in kinds:
                 kinds.append(kind)
-    bits = {kind: 1 << min(place, _MOST_KINDS - 1) for place, kind in enumerate(kinds)}
+    bits = {kind: 1 << min(place, _MAX_KINDS - 1) for place, kind in enumerate(kinds)}
     mixed = 0
     for body in bodies:
         own = {(shape.group or 0, shape.mask or 0) for shape in body.collisions}

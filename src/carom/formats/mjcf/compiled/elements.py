@@ -14,7 +14,7 @@ from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import MAX_ELEMENTS, Element
 
-_MOST_COPIES = 100_000
+_MAX_COPIES = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +94,8 @@ class Elements:
     def _copies(self, element: Element, scope: Scope) -> Iterator[tuple[Element, Scope]]:
         context, attributes = scope.context, element.attributes
         count = int(context.parse_number(element, "count", context.required(element, "count")))
-        if not 0 < count <= _MOST_COPIES:
-            raise context.error(element, f"count={count} must be from 1 to {_MOST_COPIES}")
+        if not 0 < count <= _MAX_COPIES:
+            raise context.error(element, f"count={count} must be from 1 to {_MAX_COPIES}")
         separator = attributes.get("sep", "")
         placing = {"pos": attributes.get("offset", "0 0 0")}
         if "euler" in attributes:

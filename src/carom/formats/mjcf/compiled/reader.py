@@ -36,7 +36,7 @@ from carom.formats.xml_element import Element
 _FILTER_PARENT = "flag.filterparent"
 # What is in them is reported one by one.
 _BY_CHILDREN = ("actuator", "sensor", "tendon", "equality", "deformable")
-_MOST_MODELS = 64
+_MAX_MODELS = 64
 _ASSETS = ("mesh", "material", "texture", "hfield", "model")
 
 
@@ -142,7 +142,7 @@ def _read_document(
         other = context.asset_file(element, context.required(element, "file"), "")
         if other is None:
             raise context.not_found(element, element.attributes["file"])
-        if other in (*around, file) or len(around) > _MOST_MODELS:
+        if other in (*around, file) or len(around) > _MAX_MODELS:
             raise context.error(element, f"{shown(str(other))} attaches itself")
         context.attached[name] = _read_document(other.absolute(), search, hull, cursor, (*around, file))
     return context

@@ -50,7 +50,7 @@ export class Bodies {
     const titles = titlesOf(this.scene);
     document.getElementById("bodies-count").textContent = String(bodies.length);
     this.list.replaceChildren(
-      ...bodies.slice(0, MOST_LISTED).map(({ body, name }) => {
+      ...bodies.slice(0, MAX_LISTED).map(({ body, name }) => {
         const text = `${body}  ${titles.get(body)}`;
         const button = Object.assign(document.createElement("button"), { textContent: text, title: text });
         button.dataset.body = body;
@@ -208,7 +208,7 @@ export class Bodies {
 }
 
 /** Maximum number of bodies in the list. */
-const MOST_LISTED = 500;
+const MAX_LISTED = 500;
 
 function numbers(values, digits) {
   return values.map((value) => fixed(value, digits)).join("  ");

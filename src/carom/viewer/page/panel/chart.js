@@ -8,7 +8,7 @@ const INK = "#5b6b7a";
 const CURSOR = "#d0342c";
 /** Initial and minimum time span of a chart [s]. */
 const SECONDS = 10;
-const LEAST_SECONDS = 0.05;
+const MIN_SECONDS = 0.05;
 
 export class Chart {
   /**
@@ -46,7 +46,7 @@ export class Chart {
     const end = this.end ?? this.latest;
     const under = end - this.span * (1 - event.offsetX / width);
     const factor = Math.exp(Math.sign(event.deltaY) * 0.25);
-    this.span = Math.max(LEAST_SECONDS, this.span * factor);
+    this.span = Math.max(MIN_SECONDS, this.span * factor);
     this.end = under + this.span * (1 - event.offsetX / width);
     if (this.end >= this.latest) this.end = null;
     this.changed();

@@ -13,9 +13,9 @@ import { element } from "../elements.js";
 /** @import { Player } from "../time/player.js" */
 /** @import { TimeWindow } from "../time/window.js" */
 
-const LEAST_HEIGHT = 110;
+const MIN_HEIGHT = 110;
 /** Height of the view that is left at least [pixels]. */
-const LEAST_VIEW = 120;
+const MIN_VIEW = 120;
 /** A pointer that moves less than this is a click [pixels]. */
 const STILL = 4;
 /** Zoom by one notch of the wheel. */
@@ -102,7 +102,7 @@ export class Dock {
 
   /** The greatest height of the pane [pixels]. */
   get most() {
-    return Math.max(LEAST_HEIGHT, window.innerHeight - LEAST_VIEW - 60);
+    return Math.max(MIN_HEIGHT, window.innerHeight - MIN_VIEW - 60);
   }
 
   open(open) {
@@ -115,7 +115,7 @@ export class Dock {
   }
 
   resize(height) {
-    this.height = Math.min(Math.max(height, LEAST_HEIGHT), this.most);
+    this.height = Math.min(Math.max(height, MIN_HEIGHT), this.most);
     document.documentElement.style.setProperty("--dock", this.isOpen ? `${this.height}px` : "0px");
     this.changed();
   }

@@ -3,7 +3,7 @@
 import { niceScale } from "../view/arrows/arrow_scale.js";
 
 /** Length of the legend's arrow, at least [pixels]. */
-const LEAST_PIXELS = 36;
+const MIN_PIXELS = 36;
 
 export class Legend {
   constructor() {
@@ -28,7 +28,7 @@ export class Legend {
     this.rows.forEach(({ row, bar, text }, index) => {
       row.hidden = !(amounts[index] > 0);
       if (row.hidden) return;
-      const amount = niceScale((amounts[index] * LEAST_PIXELS) / metre);
+      const amount = niceScale((amounts[index] * MIN_PIXELS) / metre);
       bar.style.width = `${(amount / amounts[index]) * metre}px`;
       const told = `${amount} ${units[index]}`;
       if (text.textContent !== told) text.textContent = told;

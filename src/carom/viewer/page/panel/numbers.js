@@ -8,13 +8,13 @@ export function fixed(value, digits) {
 
 /** Decimals with which a range is divided into a thousand steps or more. */
 export function digitsFor(range) {
-  return Math.max(0, Math.min(MOST_DIGITS, 3 - Math.floor(Math.log10(range || 1))));
+  return Math.max(0, Math.min(MAX_DIGITS, 3 - Math.floor(Math.log10(range || 1))));
 }
 
 /** A number as it is shown for a range: with decimals or, if these were too many, with a power of ten. */
 export function shown(value, range) {
   const digits = digitsFor(range);
-  if (digits <= MOST_SHOWN) return fixed(value, digits);
+  if (digits <= MAX_SHOWN) return fixed(value, digits);
   const smallest = 10 ** -digits;
   return Math.abs(value) < smallest / 2 ? "0" : value.toExponential(Math.max(0, Math.min(3, Math.floor(Math.log10(Math.abs(value) / smallest)))));
 }
@@ -24,5 +24,5 @@ export function stepFor(range) {
   return Number(`1e${Math.floor(Math.log10(range || 1)) - 2}`);
 }
 
-const MOST_DIGITS = 18;
-const MOST_SHOWN = 6;
+const MAX_DIGITS = 18;
+const MAX_SHOWN = 6;

@@ -7,7 +7,7 @@ const FPS = 30;
 const BITS = 0.12;
 const KEY_EVERY = 60;
 /** Pictures that may wait for the encoder. */
-const MOST_WAITING = 4;
+const MAX_WAITING = 4;
 /** Names of codecs in the browser and in a WebM file, the best first. */
 const CODECS = [
   ["vp09.00.51.08", "V_VP9"],
@@ -45,7 +45,7 @@ export async function filmOf(draw, { from, to, speed }, progress) {
       frame.close();
       // The page stays alive meanwhile: clicks are seen, and messages of the simulation arrive.
       do await new Promise((go) => setTimeout(go));
-      while (encoder.encodeQueueSize > MOST_WAITING && problem === null);
+      while (encoder.encodeQueueSize > MAX_WAITING && problem === null);
       if (problem !== null) throw problem;
       if (!progress((number + 1) / count)) return null;
     }

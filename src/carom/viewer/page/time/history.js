@@ -8,7 +8,7 @@ export const BUDGET_BYTES = 128 * 2 ** 20;
 /** Memory of a frame besides its numbers [bytes]. */
 const FRAME_BYTES = 200;
 /** Step of the history's clock between frames if simulated time stands still or goes back [s]. */
-const LEAST_INTERVAL = 1 / 60;
+const MIN_INTERVAL = 1 / 60;
 /** Number of frames between two checks of the memory. */
 const TIDY_EVERY = 64;
 
@@ -71,7 +71,7 @@ export class History {
     const last = this.frames.at(-1);
     if (last && last.header.time === header.time && sameBytes(last.payload, payload)) return;
     const passed = last ? header.time - last.header.time : 0;
-    const clock = last ? last.clock + (passed > 0 ? passed : LEAST_INTERVAL) : 0;
+    const clock = last ? last.clock + (passed > 0 ? passed : MIN_INTERVAL) : 0;
     this.frames.push({ header, payload, clock });
     this.bytes += payload.byteLength + FRAME_BYTES;
     if (this.frames.length % TIDY_EVERY === 0) this.tidy();
@@ -90,7 +90,7 @@ export class History {
     const earlier = new Array(frames.length);
     for (let i = frames.length - 1; i >= 0; i--) {
       const passed = next.header.time - frames[i].header.time;
-      earlier[i] = next = { ...frames[i], clock: next.clock - (passed > 0 ? passed : LEAST_INTERVAL) };
+      earlier[i] = next = { ...frames[i], clock: next.clock - (passed > 0 ? passed : MIN_INTERVAL) };
       this.bytes += next.payload.byteLength + FRAME_BYTES;
     }
     this.frames = earlier.concat(this.frames);

@@ -7,7 +7,7 @@ import { POSE_FLOATS } from "../view/scene.js";
 
 /** Duration of a trail on the history's clock [s], and its maximum number of segments. */
 const SECONDS = 5;
-const MOST_PIECES = 600;
+const MAX_PIECES = 600;
 
 /**
  * Positions of a link in the frames up to a given one, the oldest first.
@@ -22,7 +22,7 @@ export function trailOf(history, index, scene, selection) {
   const last = history.frames[index];
   if (at < 0 || !last) return [];
   const places = [];
-  for (let i = index; i >= 0 && places.length <= MOST_PIECES; i--) {
+  for (let i = index; i >= 0 && places.length <= MAX_PIECES; i--) {
     const { header, payload, clock } = history.frames[i];
     // Frames with another layout have the poses of other bodies at this index.
     if (header.layout !== last.header.layout || clock < last.clock - SECONDS) break;

@@ -3,7 +3,7 @@
 /** @import { History } from "./history.js" */
 
 /** Least length of the part [s]. */
-const LEAST_SECONDS = 0.02;
+const MIN_SECONDS = 0.02;
 
 export class TimeWindow {
   /** @param {History} history */
@@ -29,7 +29,7 @@ export class TimeWindow {
   /** Makes the part longer by a factor, around a moment that stays where it is. */
   zoom(clock, factor) {
     const [from, to] = this.range;
-    const span = Math.max(LEAST_SECONDS, (to - from) * factor);
+    const span = Math.max(MIN_SECONDS, (to - from) * factor);
     const share = to > from ? (to - clock) / (to - from) : 0;
     this.show(clock + share * span - span, clock + share * span);
   }

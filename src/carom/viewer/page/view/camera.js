@@ -11,9 +11,9 @@ const STEEPEST = 89.9;
 
 /** Distance of a camera that shows a sphere, in radii (1.41 would just do); and the smallest radius [m]. */
 const FIT_MARGIN = 1.5;
-const LEAST_FIT = 0.15;
+const MIN_FIT = 0.15;
 /** What is left free in a small window counts as this share of it at least: some of the view is then covered. */
-const LEAST_FREE = 0.75;
+const MIN_FREE = 0.75;
 /** Yaw and pitch of the preset views [degrees]. */
 export const PRESETS = {
   corner: [50, -35],
@@ -127,10 +127,10 @@ export class Camera {
   fit([lower, upper], { side, below } = { side: 0, below: 0 }) {
     this.lens = null;
     this.target = scale(add(lower, upper), 0.5);
-    const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), LEAST_FIT);
+    const radius = Math.max(0.5 * Math.hypot(...subtract(upper, lower)), MIN_FIT);
     // The vertical field of view is 90 degrees; in a tall window the horizontal one is narrower.
     const whole = Math.min(this.width, this.height);
-    const free = Math.max(Math.min(this.width - 2 * side, this.height - 2 * below), LEAST_FREE * whole);
+    const free = Math.max(Math.min(this.width - 2 * side, this.height - 2 * below), MIN_FREE * whole);
     this.distance = (FIT_MARGIN * radius * this.height) / Math.max(Math.min(free, whole), 1);
     this.update();
   }

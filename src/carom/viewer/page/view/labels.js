@@ -63,11 +63,11 @@ export class Labels {
 }
 
 /** Maximum number of link names; more would cover each other. */
-const MOST_NAMES = 300;
+const MAX_NAMES = 300;
 
 /** Shows the name of each link at its frame, below the position of its joint. */
 export function labelLinks(labels, camera, scene) {
-  let room = MOST_NAMES;
+  let room = MAX_NAMES;
   for (const { body, name, links } of scene.bodies.values()) {
     if (scene.hidden.has(body)) continue;
     for (let link = 0; link < links.length && room > 0; link++, room--) {

@@ -8,7 +8,7 @@ import { Group } from "./group.js";
 const COLOUR = [1, 0.55, 0.05];
 /** Width of the outline [pixels of the page], and its least width [pixels of the canvas]. */
 const WIDTH = 2.5;
-const LEAST_WIDTH = 1.5;
+const MIN_WIDTH = 1.5;
 const SELECTED = { wireframe: false, linkColours: false, version: 0 };
 
 const EDGE = {
@@ -49,7 +49,7 @@ export class Outline {
     this.collect(scene, options, scene.hidden.has(body?.body) ? undefined : body);
     if (this.groups.length === 0) return;
     const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
-    const thick = Math.max(LEAST_WIDTH, WIDTH * ratio);
+    const thick = Math.max(MIN_WIDTH, WIDTH * ratio);
     const area = areaOf(boundsOfBody(scene, body, options.collisions), camera, ratio, thick);
     if (area) {
       gl.enable(gl.SCISSOR_TEST);

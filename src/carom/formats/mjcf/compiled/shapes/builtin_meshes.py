@@ -11,7 +11,7 @@ from carom.native.products import dots
 from carom.native.trigonometry import cos, sin
 
 Made = tuple[NDArray[np.float64], NDArray[np.int32]]
-_MOST_DIVISIONS = 4
+_MAX_DIVISIONS = 4
 
 
 def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
@@ -25,8 +25,8 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
             return "params of a cone are its number of sides, at least 3, and a radius from 0 to 1"
         return _cone(int(parameters[0]), parameters[1])
     if name == "sphere":
-        if len(parameters) != 1 or not 0 <= parameters[0] <= _MOST_DIVISIONS:
-            return f"params of a sphere are a number of divisions from 0 to {_MOST_DIVISIONS}"
+        if len(parameters) != 1 or not 0 <= parameters[0] <= _MAX_DIVISIONS:
+            return f"params of a sphere are a number of divisions from 0 to {_MAX_DIVISIONS}"
         return _sphere(int(parameters[0]))
     return f"Carom makes no mesh builtin={name!r}; it makes cone and sphere. Write the mesh to a file"
 

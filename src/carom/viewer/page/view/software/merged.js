@@ -4,11 +4,11 @@
 import { INSTANCE_FLOATS, Level } from "../level.js";
 
 /** Meshes with more vertices are drawn as instances: copying them would cost more than it saves. */
-const MOST_VERTICES = 100;
+const MAX_VERTICES = 100;
 
 export class Merged extends Level {
   static suits(mesh) {
-    return mesh.vertexCount <= MOST_VERTICES;
+    return mesh.vertexCount <= MAX_VERTICES;
   }
 
   constructor(gl, mesh, reach) {

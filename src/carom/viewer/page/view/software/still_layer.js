@@ -6,9 +6,9 @@ import { dot, scale, subtract } from "../maths.js";
 import { Picture } from "../gpu.js";
 
 /** More moving links than this are not worth a box each. */
-const MOST_LINKS = 200;
+const MAX_LINKS = 200;
 /** A larger part of the view is not worth copying the rest. */
-const MOST_OF_VIEW = 0.75;
+const MAX_OF_VIEW = 0.75;
 /** Margin about what moves [pixels], and in texels of the shadow map. */
 const MARGIN = 3;
 const MARGIN_TEXELS = 3;
@@ -40,7 +40,7 @@ export class StillLayer {
    */
   window(scene, camera, options, canvas, towards, texel) {
     const { moving, poses } = parted(scene);
-    if (moving.length > MOST_LINKS) return null;
+    if (moving.length > MAX_LINKS) return null;
     const look = JSON.stringify([canvas.width, canvas.height, [...camera.matrix], scene.looks, options, texel, poses]);
     if (look !== this.key) {
       this.key = look;
@@ -160,5 +160,5 @@ function pixels(rectangle, { width, height }) {
   const edge = (at, size, margin) => Math.round(Math.min(Math.max(((at + 1) / 2) * size + margin, 0), size));
   const [x, y] = [edge(left, width, -MARGIN), edge(low, height, -MARGIN)];
   const [w, h] = [edge(right, width, MARGIN) - x, edge(high, height, MARGIN) - y];
-  return w * h > MOST_OF_VIEW * width * height ? null : [x, y, w, h];
+  return w * h > MAX_OF_VIEW * width * height ? null : [x, y, w, h];
 }
