@@ -163,7 +163,7 @@ def test_parallel_light_casts_the_same_shadow_in_images_of_any_size(size):
     view = {"eye": (0.5, 0.0, 5.0), "target": (0.5, 0.0, 0.0)}
     plain, shadowed = (
         Camera.with_field_of_view(
-            *size, 60.0, light=replace(DAYLIGHT, direction=(-1.0, 0.0, 1.0), shadow=shadow)
+            size[0], size[1], 60.0, light=replace(DAYLIGHT, direction=(-1.0, 0.0, 1.0), shadow=shadow)
         )
         .look_at(**view)
         .capture(world)

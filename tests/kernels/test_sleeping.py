@@ -25,6 +25,7 @@ from carom.kernels.solver.sleeping import watch
 from carom.kernels.structs import Model, Settings, State, UserConstraints
 from carom.kernels.types import Int32, kernel, real
 from carom.kernels.warp_types import warp_type
+from carom.layouts.codes import ABSENT, ACTIVE
 from carom.layouts.model import TreeModel
 
 STEP = 0.25
@@ -75,14 +76,17 @@ def test_islands_are_the_connected_components_of_what_can_move(data: st.DataObje
     setting, state, users = Settings(), State(), UserConstraints()
     setting.tree_count, setting.user_count = count, len(ties)
     state.tree_island = integers([-7] * count, 2)
+    present = data.draw(st.lists(st.booleans(), min_size=count, max_size=count))
+    state.tree_activity = integers([ACTIVE if there else ABSENT for there in present], 2)
     users.user_enabled = integers([enabled for *_, enabled in ties] or [0], 2)
     users.user_tree_a = integers([a for a, *_ in ties] or [0], 1)
     users.user_tree_b = integers([b for _, b, _ in ties] or [0], 1)
     model = model_of(*({"dof_count": 6 * int(free)} for free in moves))
     wp.launch(unite_tied_kernel, dim=1, inputs=[setting, model, state, users], device="cpu")
     roots = state.tree_island.numpy()[0]
-    # The world, -1, and what cannot move tie nothing together.
-    edges = [(a, b) for a, b, enabled in ties if enabled and a >= 0 and moves[a] and moves[b]]
+    # The world, -1, and what cannot move or is absent tie nothing together.
+    tied = [(a, b) for a, b, enabled in ties if enabled and a >= 0 and present[a] and present[b]]
+    edges = [(a, b) for a, b in tied if moves[a] and moves[b]]
     a, b = np.array(edges, dtype=int).reshape(-1, 2).T
     labels = connected_components(
         coo_matrix((np.ones(len(a)), (a, b)), shape=(count, count)), directed=False

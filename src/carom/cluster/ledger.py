@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 import itertools
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Protocol, TypeAlias
 
 from carom.cluster.errors import ClusterError, EpisodeError, named
@@ -20,7 +20,7 @@ class Entry(Protocol):
         ...
 
 
-Outcome: TypeAlias = list[Entry] | EpisodeError
+Outcome: TypeAlias = Sequence[Entry] | EpisodeError
 """Result of a batch."""
 
 
