@@ -57,6 +57,7 @@ def replay(hundred: Path, browser) -> Iterator[Page]:
 
 def test_a_hundred_equal_boxes_are_drawn_with_few_calls(replay: Page):
     # Boxes and the plane for the eye and for the light, the sky, the grid.
+    replay.until("app.renderer.pace.still")
     calls, instances = replay.page.evaluate(CALLS)
     assert calls <= 6
     # The browser draws by the processor, where each instance would cost as much as a call.
@@ -67,6 +68,7 @@ def test_a_hundred_equal_boxes_are_drawn_with_few_calls(replay: Page):
 
 
 def test_lines_are_drawn_with_one_call_and_arrows_with_another(replay: Page):
+    replay.until("app.renderer.pace.still")
     alone, _ = replay.page.evaluate(CALLS)
     replay.page.evaluate("app.player.seek(1), Object.assign(app.options, { frames: true, forces: true })")
     calls, instances = replay.page.evaluate(CALLS)
