@@ -68,6 +68,9 @@ def test_a_point_lies_where_the_image_of_the_script_has_it(page: Page, lens: Seq
     ball = red_ball(POINT)
     view = p.computeViewMatrix([1.6, -0.9, 1.2], [0, 0.2, 0.4], [0.1, 0, 1])
     aim = on_page(taken(view, lens), IMAGE)
+    # The script's view stays, where the first one would be fitted to the ball.
+    p.resetDebugVisualizerCamera(2, 40, -30, [0, 0, 0.5])
+    page.until("Math.abs(app.camera.distance - 2) < 1e-6 && !app.viewpoint.undecided")
     before = page.page.evaluate("[...app.camera.matrix]")
     page.page.locator("#camera summary").click()
     page.page.get_by_role("button", name="camera 1").click()
