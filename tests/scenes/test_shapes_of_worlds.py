@@ -57,7 +57,11 @@ SHAPES: dict[str, tuple[Add, float, tuple[float, float, float]]] = {
         0.3,
         (0.13 / 3.0, 0.1 / 3.0, 0.05 / 3.0),
     ),
-    "sphere": (lambda world, mass: world.add_sphere(0.2, (0.0, 0.0, 0.3), mass=mass), 0.2, (0.016, 0.016, 0.016)),
+    "sphere": (
+        lambda world, mass: world.add_sphere(0.2, (0.0, 0.0, 0.3), mass=mass),
+        0.2,
+        (0.016, 0.016, 0.016),
+    ),
     "cylinder": (
         lambda world, mass: world.add_cylinder(0.2, 0.6, (0.0, 0.0, 0.4), mass=mass),
         0.3,
