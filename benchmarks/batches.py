@@ -26,7 +26,8 @@ from carom.scene.body import Body
 HERE = Path(__file__).resolve().parent
 DATA = PANDA.parent.parent
 COUNT, STEPS = 256, (1, 20)
-STRENGTH = 20.0
+STRENGTHS = {"ant": 150.0, "humanoid": 40.0}
+"""Torque of a control of 1 [Nm]: gears of the learning tasks with these robots."""
 CASES = {
     "panda": "Panda, nine position servos, targets that change",
     "boxes": "9 towers of 3 boxes",
@@ -52,7 +53,7 @@ def scene(case: str) -> tuple[World, Body | None]:
     world.add_plane()
     robot = next(body for body in world.load(DATA / "mjcf" / f"{case}.xml").bodies if body.joint_count)
     for joint in _hinges(robot):
-        robot.add_actuator(joint, Motor(joint, gear=STRENGTH))
+        robot.add_actuator(joint, Motor(joint, gear=STRENGTHS[case]))
     return world, robot
 
 
@@ -83,7 +84,14 @@ def ours(case: str, threads: int, seconds: float, steps: int) -> float:
 def mujoco(case: str, threads: int, seconds: float, steps: int, interpreter: Path) -> float:
     """World-steps per second of `mujoco.batch`."""
     numbers = [str(number) for number in (seconds, threads, steps, COUNT)]
-    command = [str(interpreter), str(HERE / "batches_mujoco.py"), case, *numbers, str(DATA)]
+    command = [
+        str(interpreter),
+        str(HERE / "batches_mujoco.py"),
+        case,
+        *numbers,
+        str(DATA),
+        str(STRENGTHS.get(case, 0.0)),
+    ]
     found = subprocess.run(command, cwd=HERE, text=True, check=True, stdout=subprocess.PIPE)
     return float(found.stdout.split()[-1])
 

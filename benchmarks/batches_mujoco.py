@@ -40,7 +40,7 @@ def main() -> None:
     elif case == "boxes":
         model, middle, amount = tower_model(3), np.zeros(0), 0.0
     else:
-        model, amount = legged_model(data / "mjcf" / f"{case}.xml", 20.0), 1.0
+        model, amount = legged_model(data / "mjcf" / f"{case}.xml", float(sys.argv[7])), 1.0
         middle = np.zeros(model.nu)
     batch = Batch(model, count, threads, persistent=True)
     if case == "panda":

@@ -93,6 +93,33 @@ def test_geoms_collide_if_the_type_of_either_meets_the_affinity_of_the_other(loa
     assert drops(load, ball, floor) is falls
 
 
+@pytest.mark.parametrize(
+    ("ball", "falls"),
+    [
+        ("", False),
+        ('contype="1" conaffinity="0"', False),
+        ('contype="4" conaffinity="1"', False),
+        ('contype="2" conaffinity="2"', False),
+        ('contype="0" conaffinity="0"', True),
+    ],
+)
+@pytest.mark.parametrize("fixed", [True, False])
+def test_bodies_of_a_script_collide_with_geoms_that_collide_with_anything(load, ball, falls, fixed):
+    scene = load(
+        '<mujoco><worldbody><body pos="5 0 0"><freejoint/><geom size=".1"/></body>'
+        f'<body name="b" pos="0 0 .11"><freejoint/><geom size=".1" {ball}/></body></worldbody></mujoco>'
+    )
+    scene.world.gravity = (0, 0, -10)
+    if fixed:
+        scene.world.add_plane()
+    else:
+        scene.world.add_box((1.0, 1.0, 0.5), (0.0, 0.0, -0.25), mass=1e6)
+        scene.world.gravity = (0, 0, 0)
+        scene["b"].set_base_velocity((0.0, 0.0, -1.0), (0.0, 0.0, 0.0))
+    scene.world.step(100)
+    assert bool(scene["b"].links[-1].pose.position[2] < 0) is falls
+
+
 def test_excluded_bodies_do_not_collide(load):
     assert drops(load, "", "", '<contact><exclude body1="b" body2="world"/></contact>')
 

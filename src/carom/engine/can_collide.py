@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import ABSENT, ACTIVE
 from carom.model.builder import WorldArrays
-from carom.model.shape_arrays import FIXED_GROUP, FIXED_MASK
 
 
 def can_collide(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:

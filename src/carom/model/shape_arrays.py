@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_GROUP, MOVING_MASK
 from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.flags import LoadFlags
@@ -24,10 +25,6 @@ from carom.record import record
 
 if TYPE_CHECKING:
     from carom.model.body_rows import BodyRows
-
-# Collision groups of bodies that move and of fixed bases, and the groups each collides with.
-MOVING_GROUP, MOVING_MASK = 1, -1
-FIXED_GROUP, FIXED_MASK = 2, -1 ^ 2
 
 BREAKING_FRACTION = 0.02
 """Breaking distance of a contact, relative to the reach of the smaller shape."""

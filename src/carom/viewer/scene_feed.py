@@ -184,4 +184,4 @@ class SceneFeed:
 
 
 def _present_bodies(world: World) -> list[Body]:
-    return [body for body in world.bodies.values() if body.present]
+    return [body for body in list(world.bodies.values()) if body.present]
