@@ -252,6 +252,7 @@ bench: oracle .mujoco/mujoco $(VENV)/dev
 	$(RUN) -m carom warmup
 	$(RUN) benchmarks/run.py --oracle .oracle/bin/python
 	$(RUN) benchmarks/throughput.py --oracle .oracle/bin/python
+	$(RUN) benchmarks/batches.py
 
 scaling: $(VENV)/dev
 	$(RUN) -m carom warmup

@@ -44,7 +44,7 @@ def scene(case: str) -> tuple[World, Body | None]:
     world = World()
     world.gravity = (0.0, 0.0, -9.81)
     if case == "panda":
-        # The servos that MuJoCo has in `throughput_mujoco.panda_model`.
+        # The servos of `batches_mujoco.panda_model`.
         arm = world.load_urdf(PANDA, fixed_base=True)
         arm.joints.reset(HOME)
         for joint in _hinges(arm):

@@ -10,7 +10,20 @@ import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
 from mujoco.batch import Batch  # pyright: ignore[reportMissingImports]
 from mujoco_cases import SETTLING_STEPS, tower_model
-from throughput_mujoco import HOME, TIME_STEP, panda_model
+
+TIME_STEP = 1 / 240
+HOME = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8, 0.02, 0.02]
+
+
+def panda_model(path: Path) -> mujoco.MjModel:
+    """Our Panda, with position actuators as those of `batches.py`."""
+    spec = mujoco.MjSpec.from_file(str(path))
+    spec.option.timestep = TIME_STEP
+    for joint in spec.joints:
+        servo = spec.add_actuator()
+        servo.target, servo.trntype = joint.name, mujoco.mjtTrn.mjTRN_JOINT
+        servo.set_to_position(kp=400.0, kv=40.0)
+    return spec.compile()
 
 
 def legged_model(path: Path, strength: float) -> mujoco.MjModel:
@@ -35,7 +48,7 @@ def main() -> None:
     data = Path(sys.argv[6])
     generator = np.random.default_rng(0)
     if case == "panda":
-        model, _ = panda_model(str(data / "franka_panda" / "panda.urdf"))
+        model = panda_model(data / "franka_panda" / "panda.urdf")
         middle, amount = np.array(HOME), 0.2
     elif case == "boxes":
         model, middle, amount = tower_model(3), np.zeros(0), 0.0

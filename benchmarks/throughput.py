@@ -1,9 +1,9 @@
-"""World-steps per second of many worlds: `Worlds`, PyBullet in a process per core, MuJoCo's `rollout`.
+"""World-steps per second of many worlds: `Worlds`, and PyBullet in a process per core.
 
-    python benchmarks/throughput.py [--oracle .oracle/bin/python] [--mujoco .mujoco/bin/python] [--turns 3]
+    python benchmarks/throughput.py [--oracle .oracle/bin/python] [--turns 3]
 
-The engines take turns on the same cores, and a figure is the median over the turns. Memory is what a process
-that holds so many worlds, stepped for a while, has more than before it made them.
+The engines take turns on the same cores, and a figure is the median over the turns; `batches.py` has MuJoCo.
+Memory is what a process that holds so many worlds, stepped for a while, has more than before it made them.
 """
 
 from __future__ import annotations
@@ -110,20 +110,6 @@ def pybullet(case: str, processes: int, seconds: float, oracle: Path) -> float:
     return sum(float(process.communicate()[0].split()[-1]) for process in running)
 
 
-def mujoco(case: str, threads: int, seconds: float, interpreter: Path) -> float:
-    """Steps per second of MuJoCo's `rollout`."""
-    command = [
-        str(interpreter),
-        str(HERE / "throughput_mujoco.py"),
-        case,
-        str(seconds),
-        str(threads),
-        str(PANDA),
-    ]
-    found = subprocess.run(command, cwd=HERE, text=True, check=True, stdout=subprocess.PIPE)
-    return float(found.stdout.split()[-1])
-
-
 def memory_per_world(case: str, count: int) -> float:
     """Bytes that each of so many worlds takes, in a process of its own; 0 where the system does not say."""
     code = "import sys, throughput; print(throughput.measure_memory(sys.argv[1], int(sys.argv[2])))"
@@ -149,9 +135,8 @@ def _resident() -> int:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description="Time many worlds against PyBullet and MuJoCo.")
+    parser = argparse.ArgumentParser(description="Time many worlds against PyBullet.")
     parser.add_argument("--oracle", type=Path, default=ROOT / ".oracle" / "bin" / "python")
-    parser.add_argument("--mujoco", type=Path, default=ROOT / ".mujoco" / "bin" / "python")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=2.0, help="time spent on each figure in each turn")
     parser.add_argument("--memory", type=int, nargs="*", default=[100, 1000, 10000], metavar="WORLDS")
@@ -170,8 +155,6 @@ def main() -> None:
             samples[case, "call"].append(call(case, cores))
             if arguments.oracle.exists():
                 samples[case, "PyBullet"].append(pybullet(case, cores, seconds, arguments.oracle.absolute()))
-            if arguments.mujoco.exists():
-                samples[case, "MuJoCo"].append(mujoco(case, cores, seconds, arguments.mujoco.absolute()))
     medians = {key: statistics.median(values) for key, values in samples.items()}
     figures = table(medians, cores)
     if arguments.memory:
@@ -185,9 +168,8 @@ def table(medians: dict[tuple[str, str], float], cores: int) -> str:
     """World-steps per second as a Markdown table."""
     lines = [
         f"| world-steps per second, {COUNT} worlds | Carom, 1 thread | {cores} threads | one step a call | "
-        "threads pay | Python's share | PyBullet, a process per core | Carom : PyBullet | MuJoCo rollout | "
-        "Carom : MuJoCo |",
-        "| --- |" + " ---: |" * 9,
+        "threads pay | Python's share | PyBullet, a process per core | Carom : PyBullet |",
+        "| --- |" + " ---: |" * 7,
     ]
     for case, title in CASES.items():
         one, all_, single = (medians[case, name] for name in ("one thread", "all threads", "step by step"))
@@ -199,13 +181,12 @@ def table(medians: dict[tuple[str, str], float], cores: int) -> str:
             # Of a call for one world on each thread, what is not that world's step.
             f"{(medians[case, 'call'] - 1.0 / one) / (COUNT / single):.1%}",
         ]
-        for name in ("PyBullet", "MuJoCo"):
-            theirs = medians.get((case, name))
-            cells += (
-                ["–", "–"]
-                if theirs is None
-                else [f"{theirs:,.0f}", f"{all_ / theirs:.2f}× ({single / theirs:.2f}×)"]
-            )
+        theirs = medians.get((case, "PyBullet"))
+        cells += (
+            ["–", "–"]
+            if theirs is None
+            else [f"{theirs:,.0f}", f"{all_ / theirs:.2f}× ({single / theirs:.2f}×)"]
+        )
         lines.append("| " + " | ".join([title, *cells]) + " |")
     return "\n".join(lines)
 

@@ -4,10 +4,11 @@ import gc
 import sys
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from tests.physics.robots import pendulum, random_tree
 
-from carom import World
+from carom import World, Worlds
 from carom.algorithms import inverse_dynamics, jacobian, mass_matrix
 
 resource = pytest.importorskip("resource", reason="peak memory is not known on this system")
@@ -82,3 +83,26 @@ def test_resets_and_new_worlds_leave_nothing_behind():
             other.step()
 
     assert_leaves_nothing_behind(cycle, rounds=100)
+
+
+def test_resets_of_many_worlds_leave_nothing_behind():
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    arm = world.load(pendulum(3))
+    ball = world.add_sphere(0.1, (1.0, 0.0, 0.3), mass=1.0)
+    world.add_plane()
+    worlds = Worlds(world, 16)
+    start = worlds.save()
+    random = np.random.default_rng(0)
+
+    def cycle() -> None:
+        over = np.flatnonzero(random.random(16) < 0.5)
+        worlds.restore(start, where=over)
+        worlds[ball].set_present(random.random(len(over)) < 0.8, where=over)
+        worlds[arm].change_dynamics(0, mass=random.uniform(0.5, 2.0, len(over)), where=over)
+        worlds[ball].set_base_poses((1.0, 0.0, random.random()), where=over)
+        worlds.step(3)
+        worlds.save(where=over)
+        worlds.contacts(ball)
+
+    assert_leaves_nothing_behind(cycle, rounds=1000)
