@@ -322,3 +322,16 @@ def test_worlds_on_a_gpu_refuse() -> None:
     bodies["kuka"].present = False
     with pytest.raises(ValueError, match="cannot simulate absent bodies yet"):
         Worlds(scene, 2, device="warp-cpu")
+
+
+def test_coordinates_are_copied_with_who_is_present():
+    world, bodies = piled()
+    worlds = Worlds(world, 2)
+    worlds[bodies["ball 1"]].set_present([True, False])
+    worlds[bodies["floor"]].set_present([False, True])
+    copy = world.copy()
+    copy.step(5)
+    for number in (0, 1, 0):
+        worlds.copy_coordinates(number, copy)
+        assert copy.bodies[bodies["ball 1"].id].present is (number == 0)
+        assert copy.bodies[bodies["floor"].id].present is (number == 1)

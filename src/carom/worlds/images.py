@@ -116,8 +116,6 @@ class ImageTaker:
         link = None if camera.link is None else self._own(camera.link)
         for place, world in enumerate(worlds.tolist()):
             copy_coordinates(self._engine, world, self._scene)
-            activity = self._engine.arrays.state.numpy["tree_activity"][world]
-            self._scene.arrays.state.numpy["tree_activity"][0, : len(activity)] = activity
             pose = camera.pose_on(None if link is None else link.pose)
             image = renderer_of(self._scene).draw(
                 self._scene,

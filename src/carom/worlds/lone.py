@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from carom.engine.engine import Engine
-from carom.layouts.codes import ConstraintKind
+from carom.layouts.codes import ABSENT, ConstraintKind
 from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
@@ -31,10 +31,15 @@ def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_t
 
 
 def copy_coordinates(engine: Engine, number: int, world: World) -> None:
-    """Set the coordinates of a world to those of one world of an engine with the same bodies."""
+    """Give a world the coordinates of one world of an engine with the same bodies, and who is present."""
+    own = world.arrays.state.numpy
     for name in ("position", "node_position"):
         positions = engine.arrays.state.numpy[name][number]
-        world.arrays.state.numpy[name][0, : len(positions)] = positions
+        own[name][0, : len(positions)] = positions
+    for body in world.bodies.values():
+        is_there = bool(engine.arrays.state.numpy["tree_activity"][number, body.rows.tree] != ABSENT)
+        if is_there != body.present:
+            body.present = is_there
 
 
 def _copy_row(source: ArrayTable, target: ArrayTable, number: int) -> None:

@@ -301,6 +301,8 @@ class Worlds(ContactQueries, Closed):
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
+        The bodies that are present there are present in it afterwards.
+
         Args:
             number: Index of the world.
             world: A world with the same bodies, such as the original. Its velocities do not change.

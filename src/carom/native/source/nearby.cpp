@@ -89,8 +89,9 @@ struct Place {
 };
 
 bool meets(const Placement& at, int64_t shape, const double* lower, const double* upper) {
+    // The bounds of an absent body's shapes are empty.
     if (at.kind[shape] == codes::PLANE)
-        return true;
+        return at.lower[3 * shape] <= at.upper[3 * shape];
     for (int axis = 0; axis < 3; ++axis)
         if (!(at.lower[3 * shape + axis] <= upper[axis] && at.upper[3 * shape + axis] >= lower[axis]))
             return false;
