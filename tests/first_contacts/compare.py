@@ -198,7 +198,7 @@ On meshes and height fields PyBullet makes a point for each triangle it comes ac
 inner edges would only push sideways. So normals lean in PyBullet where here they are upright, points are
 more, and forces are shared out in another way. Where points of two triangles are within the breaking distance
 PyBullet keeps the one it comes across last, so gaps differ mostly with a distance of 0.1.
-[Differences](../differences.md#contact) has what comes of it.
+[Differences](../differences/contact.md) has what comes of it.
 
 On other shapes, these first contacts differ:
 
