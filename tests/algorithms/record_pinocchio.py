@@ -49,11 +49,14 @@ def ask(pin: Any, path: Path, link: str, *, is_fixed: bool) -> dict[str, Any]:
     ]
     answers["rnea"] = pin.rnea(model, data, q, v, a)
     names = ("dtau_dq", "dtau_dv", "mass")
-    answers |= dict(zip(names, pin.computeRNEADerivatives(model, data, q, v, a), strict=True))
+    # These are views of memory that later calls overwrite.
+    found = [np.array(each) for each in pin.computeRNEADerivatives(model, data, q, v, a)]
+    answers |= dict(zip(names, found, strict=True))
     answers["mass"] = pin.crba(model, data, q)
     answers["aba"] = pin.aba(model, data, q, v, tau)
     pin.computeABADerivatives(model, data, q, v, tau)
-    answers |= {"da_dq": data.ddq_dq, "da_dv": data.ddq_dv, "da_dtau": pin.computeMinverse(model, data, q)}
+    answers |= {"da_dq": np.array(data.ddq_dq), "da_dv": np.array(data.ddq_dv)}
+    answers["da_dtau"] = np.array(pin.computeMinverse(model, data, q))
     answers["coriolis"] = pin.computeCoriolisMatrix(model, data, q, v)
     answers["gravity"] = pin.computeGeneralizedGravity(model, data, q)
     answers["bias"] = pin.nonLinearEffects(model, data, q, v)
@@ -64,7 +67,7 @@ def ask(pin: Any, path: Path, link: str, *, is_fixed: bool) -> dict[str, Any]:
     answers["momentum"] = pin.computeCentroidalMomentum(model, data, q, v).vector
     answers["momentum_rate"] = pin.computeCentroidalMomentumTimeVariation(model, data, q, v, a).vector
     names = ("dh_dq", "drate_dq", "drate_dv", "dh_dv")
-    found = pin.computeCentroidalDynamicsDerivatives(model, data, q, v, a)
+    found = [np.array(each) for each in pin.computeCentroidalDynamicsDerivatives(model, data, q, v, a)]
     answers |= dict(zip(names, found, strict=True))
     answers["regressor"] = pin.computeJointTorqueRegressor(model, data, q, v, a)
     pin.forwardKinematics(model, data, q, v, a)
