@@ -226,6 +226,26 @@ def test_the_regressor_times_the_parameters_are_the_forces(motion: Motion):
     assert np.linalg.matrix_rank(regressor) == len(v)
 
 
+def test_accelerations_by_mass_and_inertia():
+    motion = motion_of("humanoid")
+    body, link, tau = motion.body, 4, motion.tau
+    before = algorithms.inertial_parameters(body)
+    mass, inertia = body.dynamics(link).mass, np.array(body.dynamics(link).inertia)
+    found = algorithms.forward_dynamics_derivatives(body, motion.q, motion.v, tau)
+    regressor = algorithms.joint_torque_regressor(body, motion.q, motion.v, found.accelerations)
+    by_parameters = -found.da_dtau @ regressor
+
+    def changed(factor: float) -> Vector:
+        x, y, z = (factor * inertia).tolist()
+        body.change_dynamics(link, mass=factor * mass, inertia=(x, y, z))
+        return algorithms.forward_dynamics(body, motion.q, motion.v, tau)
+
+    # A link that is heavier by a factor has all of its parameters times this factor.
+    slope = (changed(1.0 + STEP) - changed(1.0 - STEP)) / (2.0 * STEP)
+    assert np.abs(slope).max() > 0.1
+    assert is_close(by_parameters[:, 10 * (1 + link) :][:, :10] @ before[1 + link], slope)
+
+
 def test_the_regressor_is_the_derivative_by_mass_and_inertia():
     motion = motion_of("laikago")
     body, link = motion.body, 2

@@ -28,7 +28,8 @@ def joint_torque_regressor(
 
     Each column is the derivative of the forces by a parameter. The forces are those of `inverse_dynamics`
     without armature, in the order of the velocities: those of a free base are torque before force. The
-    derivative by the armature of a joint is its acceleration, by its damping its rate.
+    derivative by the armature of a joint is its acceleration, by its damping its rate. Accelerations of
+    `forward_dynamics` have the derivatives -M⁻¹ Y, with Y for these accelerations.
 
     Args:
         body: The body.
