@@ -11,12 +11,20 @@ linear acceleration minus gravity; for a Jacobian it begins with the point. Posi
 of the joints follow, as far as the kernel needs them.
 """
 
-from carom.layouts.types import Array, Int32, Matrix3, Reals, Vector3, Vectors3, real, struct
+from carom.layouts.types import Array, Int32, Ints, Matrix3, Reals, Vector3, Vectors3, real, struct
 
 BASE_MOTION = 9
 """Count of numbers in `input` before the positions."""
 # Index in a question of `motion_kernel` where the positions begin; gravity comes first.
 POSE = 3
+CENTROIDAL_NUMBERS = 18
+"""Count of numbers in an answer of `centroidal_kernel` before the matrices."""
+CENTROIDAL_COLUMNS = 4
+"""Count of its matrices."""
+LINK_MOTION = 12
+"""Count of numbers of the velocity and acceleration of a link."""
+INERTIAL_PARAMETERS = 10
+"""Count of the inertial parameters of a link."""
 
 
 @struct
@@ -109,6 +117,51 @@ class MechanismBatch:
     moment: Vectors3
     inertia: Array[Matrix3]
     armature: Reals  # by world, then dof
+
+
+@struct
+class SubtreeMotion:
+    """Motion of a node, and inertia, momentum and force of the node and all its descendants.
+
+    Everything is a spatial vector or tensor about the origin of the base's frame, in its present axes.
+    """
+
+    omega: Vector3
+    velocity: Vector3
+    alpha: Vector3
+    acceleration: Vector3  # minus gravity, for inverse dynamics
+    mass: real
+    moment: Vector3
+    inertia: Matrix3
+    flow: Matrix3  # sum of mass times velocity times position transposed
+    momentum: Vector3  # linear
+    torque: Vector3
+    force: Vector3
+
+
+@struct
+class DofSweep:
+    """Motion subspace of a dof and its changes, as spatial vectors like those of `SubtreeMotion`."""
+
+    angular: Vector3
+    linear: Vector3
+    turn_angular: Vector3  # velocity of the parent x subspace
+    turn_linear: Vector3
+    swing_angular: Vector3  # acceleration of the parent x subspace + velocity of the parent x turn
+    swing_linear: Vector3
+    rate_angular: Vector3  # turn + velocity of the node x subspace
+    rate_linear: Vector3
+
+
+@struct
+class SweepTable:
+    """Workspace of the derivatives of a mechanism, and its link frames."""
+
+    subtree: Array[SubtreeMotion]  # by node
+    dof: Array[DofSweep]
+    dof_parent: Ints  # the dof before it on the way to the base; -1 if there is none
+    link: Array[EndModel]  # frames of links, the base first
+    matrix: Reals  # factors of the mass matrix, row-major
 
 
 @struct

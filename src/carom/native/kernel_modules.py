@@ -15,7 +15,8 @@ KERNEL_MODULES = _modules(
         "dynamics.step_ends",
     ),
     *("images.draw", "inverse_kinematics.many_searches", "inverse_kinematics.search"),
-    *("mechanism.dynamics", "mechanism.many_bodies", "mechanism.motion", "mechanism.stable_pd"),
+    *("mechanism.derivatives", "mechanism.dynamics", "mechanism.link_motion", "mechanism.many_bodies"),
+    *("mechanism.momentum", "mechanism.motion", "mechanism.stable_pd"),
     *("queries.closest", "queries.contact_report", "queries.rays", "queries.touching"),
     *("soft.stages", "solver.sleeping", "solver.stages"),
 )
@@ -38,6 +39,7 @@ _WHOLE_WORLDS = _modules(
     *("contact.stages", "dynamics.step", "dynamics.step_ends", "soft.stages", "solver.stages"),
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),
+    *("mechanism.derivatives", "mechanism.link_motion", "mechanism.momentum"),
 )
 CUDA_MODULES = (
     *PARALLEL_MODULES,

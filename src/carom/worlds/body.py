@@ -10,15 +10,15 @@ from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.worlds.actuators import ActuatorBatch
+from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.checks import Mask
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
 from carom.worlds.joints import JointBatch
-from carom.worlds.mechanics import AlgorithmBatch
 from carom.worlds.sensors import SensorBatch
 
 
-class BodyBatch(JointBatch, ActuatorBatch, AlgorithmBatch, SensorBatch):
+class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     """The same body in all worlds; get it from `Worlds[body]`.
 
     The first axis of arrays is the world, the second joint coordinates or links. Coordinates leave out fixed

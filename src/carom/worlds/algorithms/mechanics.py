@@ -1,14 +1,16 @@
-"""Inverse dynamics, mass matrices and Jacobians of a body in many worlds: a native call on each thread."""
+"""Dynamics, Jacobians and derivatives of a body in many worlds: a native call on each thread."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from carom.algorithms.mechanism import Mechanism
 from carom.algorithms.nodes import body_nodes
+from carom.algorithms.sweeps import sweep_table
 from carom.engine.engine import Engine
 from carom.engine.world_calls import WorldCalls
 from carom.layouts.mechanism import MechanismBatch
@@ -41,6 +43,7 @@ class MechanicsBatch:
 
     def __init__(self, body: Body, engine: Engine, threads: int) -> None:
         nodes, ends = body_nodes(body)
+        self._body, self._ends = body, ends
         self._varied = VariedParameters(engine, body, ends)
         self._make: Callable[[], Mechanism] = lambda: Mechanism(nodes, ends, free=not body.fixed_base)
         self._mechanisms = [self._make() for _ in range(threads)]
@@ -48,6 +51,8 @@ class MechanicsBatch:
         self._calls = WorldCalls(threads)
         self.dofs: int = self._mechanisms[0].dofs
         """Number of velocity coordinates, those of a free base included."""
+        self.links: int = len(ends)
+        """Number of links, the base included."""
 
     def forces(self, questions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
         """Generalized forces (n, dofs) for questions of `motion_kernel`, (n, numbers), in some worlds.
@@ -77,6 +82,28 @@ class MechanicsBatch:
         shape = (_JACOBIAN_ROWS, self.dofs)
         return self._ask(kernel, questions, np.arange(len(points)), shape, "Jacobian", 1 + link)
 
+    def sweep(
+        self, kernel: Kernel, questions: np.ndarray, worlds: np.ndarray, size: int, name: str, *numbers: int
+    ) -> np.ndarray:
+        """Answers (n, size) of a kernel that takes a `SweepTable`, to questions (n, numbers), in some worlds.
+
+        It gets `numbers`, or else whether masses, inertias and armature differ between worlds.
+
+        Raises:
+            ValueError: In a world an answer is not finite.
+        """
+        if size == 0:
+            return np.zeros((len(worlds), 0))
+        return self._ask(
+            *(kernel, questions, worlds, (size,), name, *numbers),
+            varied=not numbers,
+            tables=self._sweep_tables,
+        )
+
+    @cached_property
+    def _sweep_tables(self) -> list[Any]:
+        return [sweep_table(self._body, each, self._ends) for each in self._mechanisms]
+
     def _ask(
         self,
         kernel: Kernel,
@@ -86,8 +113,12 @@ class MechanicsBatch:
         name: str,
         *numbers: int,
         varied: bool = False,
+        tables: list[Any] | None = None,
     ) -> np.ndarray:
-        """The answers of a kernel, which gets `numbers`, and for `varied` also whether worlds differ."""
+        """The answers of a kernel, which gets `numbers`, and for `varied` also whether worlds differ.
+
+        If there are tables, each thread has one of its own.
+        """
         count = len(worlds)
         batch, mechanisms = MechanismBatch(), self._mechanisms
         put_array(batch, "question", questions)
@@ -96,7 +127,11 @@ class MechanicsBatch:
         if varied:
             mechanisms = self._put_parameters(batch, found, worlds)
             numbers = (*numbers, int(found is not None))
-        launches = [[Launch(kernel, 1, [*each.structs, batch, *numbers, 0])] for each in mechanisms]
+        more = [[]] * len(mechanisms) if tables is None else [[table] for table in tables]
+        launches = [
+            [Launch(kernel, 1, [*each.structs, *own, batch, *numbers, 0])]
+            for each, own in zip(mechanisms, more, strict=True)
+        ]
         self._calls.run(count, launches)
         # The kernels make the first number NaN if any is not finite.
         wrong = np.flatnonzero(np.isnan(answer.reshape(count, int(np.prod(shape)))[:, :1]))
