@@ -3,6 +3,9 @@
 import { LINE_FLOATS } from "../lines.js";
 import { SOLID_FLOATS } from "../arrows/solids.js";
 
+/** @import { Solids } from "../arrows/solids.js" */
+/** @import { Lines } from "../lines.js" */
+
 /** Places in the numbers of a line and of a solid. */
 const LINE_WIDTH = 9;
 const [SOLID_SHAFT, SOLID_HEAD] = [10, 11];
@@ -10,8 +13,8 @@ const [SOLID_SHAFT, SOLID_HEAD] = [10, 11];
 /**
  * The box of all lines and solids, and the width of the widest line.
  *
- * @param {import("../lines.js").Lines} lines
- * @param {import("../arrows/solids.js").Solids} solids
+ * @param {Lines} lines
+ * @param {Solids} solids
  * @returns {{lower: number[], upper: number[], width: number}} corners [m], infinite if there is nothing; width in
  *   pixels of the screen
  */

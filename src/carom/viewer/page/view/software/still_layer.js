@@ -6,6 +6,9 @@ import { dot, scale, subtract } from "../maths.js";
 import { Picture } from "../gpu.js";
 import { boxOfDrawings } from "./covered.js";
 
+/** @import { Solids } from "../arrows/solids.js" */
+/** @import { Lines } from "../lines.js" */
+
 /** More moving links than this are not worth a box each. */
 const MAX_LINKS = 200;
 /** A larger part of the view is not worth copying the rest. */
@@ -70,7 +73,7 @@ export class StillLayer {
   /**
    * The part of the view that is drawn over: column and row of its lower left corner, width and height [pixels].
    *
-   * @param {{lines: object, solids: object, clouds: object[], selected: object}} drawings
+   * @param {{lines: Lines, solids: Solids, clouds: object[], selected: object}} drawings
    */
   covered({ lines, solids, clouds, selected }, camera, canvas) {
     const all = [0, 0, canvas.width, canvas.height];
