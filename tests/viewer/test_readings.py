@@ -59,7 +59,7 @@ def test_readings_of_many_bodies_are_not_recorded_unless_they_are_wanted(viewer:
         p.createMultiBody(1, shape, basePosition=[n, 0, 1])
     with Watcher(viewer.address) as page:
         page.wait_for(lambda: page.frame.get("poses") == 65)
-        assert until(lambda: not viewer._details._links)
+        assert until(lambda: not viewer._frames.details._links)
         page.take_what_came()
         p.stepSimulation()
         page.wait_for(lambda: page.frame["time"] > 0)

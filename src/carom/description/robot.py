@@ -28,6 +28,7 @@ class Robot:
         deformable: Its description if it is a soft body; it then has a single link with the name of the
             `<deformable>` or `<reduced_deformable>` element, and no joints.
         actuators: What drives its joints; PyBullet's API has none.
+        is_mocap: Its root is moved by users only, as a `mocap` body of MJCF.
     """
 
     name: str
@@ -39,3 +40,4 @@ class Robot:
     user_data: dict[str, str] = field(default_factory=dict)
     deformable: Deformable | None = None
     actuators: tuple[ActuatorSpec, ...] = ()
+    is_mocap: bool = False

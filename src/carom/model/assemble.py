@@ -67,6 +67,7 @@ def assemble(
         link_damping=0.0 if as_written else DEFAULT_LINK_DAMPING,
         is_held=not as_written,
         actuators=robot.actuators if as_written else (),
+        is_mocap=robot.is_mocap,
     )
     if flags & LoadFlags.PRINT_URDF_INFO:
         _log.info("%s", outline(body))

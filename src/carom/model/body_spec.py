@@ -143,6 +143,7 @@ class BodySpec(Reusable):
         sites: Named frames on its links.
         sensors: What it measures.
         keyframes: Its states by name.
+        is_mocap: Its base is fixed, and moved by users only: also with the mouse in the viewer.
     """
 
     name: str
@@ -159,6 +160,7 @@ class BodySpec(Reusable):
     sites: tuple[SiteSpec, ...] = ()
     sensors: tuple[SensorSpec, ...] = ()
     keyframes: tuple[BodyKeyframe, ...] = ()
+    is_mocap: bool = False
 
     @property
     def damping_field(self) -> str:

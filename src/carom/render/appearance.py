@@ -124,7 +124,7 @@ class Appearance:
 
     def number_textures(self, world: World) -> None:
         """Number the textures of all bodies, in the order the bodies were loaded."""
-        for body in world.bodies.values():
+        for body in list(world.bodies.values()):
             if body not in self._looks:
                 self._looks[body] = self._first_of(body)
 

@@ -69,7 +69,8 @@ class Board:
     def reader(self) -> Reader:
         """Somebody who is told of all changes from now on, and of what is there."""
         reader = Reader(self)
-        self._readers.add(reader)
+        with self._lock:
+            self._readers.add(reader)
         return reader
 
     def changes(self, revision: int) -> tuple[list[tuple[Hashable, bytes, bool]], int]:
@@ -89,11 +90,11 @@ class Board:
         """Drops removals that all readers have, and the pages: they have a revision, None without pages."""
         if not self._removals:
             return
-        known = [reader.revision for reader in self._readers]
-        if revision is not None:
-            known.append(revision)
-        revision = min(known, default=self._revision)
         with self._lock:
+            known = [reader.revision for reader in self._readers]
+            if revision is not None:
+                known.append(revision)
+            revision = min(known, default=self._revision)
             for key in [key for key in self._removals if self._entries[key].revision <= revision]:
                 self._removals.remove(key)
                 del self._entries[key]

@@ -84,6 +84,7 @@ class Details:
         self._always = always
         self._links: list[tuple[int, int]] = []
         self._joint_total = 0
+        self._bodies: list[Body] = []
         self._world = world
         self._world_lock = lock
         self._board = board
@@ -124,12 +125,16 @@ class Details:
         if not self._world_lock.acquire(timeout=_PATIENCE):
             return self._last
         try:
-            if monotonic() >= self._due:
+            due = monotonic() >= self._due
+            bodies = list(self._world.bodies.values())
+            # The past of a new body begins with its first frame.
+            if self._always and (due or bodies != self._bodies):
+                self._find_readings(bodies)
+            self._bodies = bodies
+            if due:
                 self._due = monotonic() + _PERIOD
                 self._show_dynamics(wish.dynamics)
                 self._show_constraints(wish.constraints)
-                if self._always:
-                    self._find_readings()
             self._last = self._read(wish)
         finally:
             self._world_lock.release()
@@ -154,22 +159,22 @@ class Details:
             blocks.append(("links", readings.links(world, sorted(links))))
         return [(name, rows) for name, rows in blocks if len(rows)]
 
-    def _find_readings(self) -> None:
+    def _find_readings(self, bodies: list[Body]) -> None:
         """Finds the links whose readings are always recorded: bases that move, and joints with sensors."""
         self._links = []
         self._joint_total = 0
-        for number, body in self._world.bodies.items():
+        for body in bodies:
             self._joint_total += body.velocity_count.count(1)
             if len(self._links) <= _ALWAYS_LINKS:
-                self._links += [] if body.fixed_base else [(number, BASE)]
+                self._links += [] if body.fixed_base else [(body.id, BASE)]
                 self._links += [
-                    (number, joint) for joint in range(body.joint_count) if body.has_sensor(joint)
+                    (body.id, joint) for joint in range(body.joint_count) if body.has_sensor(joint)
                 ]
         if len(self._links) > _ALWAYS_LINKS:
             self._links = []
 
     def _show_dynamics(self, wanted: bool) -> None:
-        facts = {number: _dynamics(body) for number, body in self._world.bodies.items()} if wanted else {}
+        facts = {body.id: _dynamics(body) for body in self._bodies} if wanted else {}
         for number in self._dynamics.keys() - facts.keys():
             self._board.take_down(("dynamics", number), to_page.NO_DYNAMICS(dynamics=number))
         for number, known in facts.items():

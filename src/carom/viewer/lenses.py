@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from threading import Lock
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _MOST = 16
 # Minimum interval between two views of one camera [s].
 _PERIOD = 1 / 60
+# How long an update waits for a step to end; it is then left to the next frame [s].
+_PATIENCE = 0.005
 
 _Lens = tuple[int, int, bytes]
 
@@ -26,11 +28,12 @@ _Lens = tuple[int, int, bytes]
 class Lenses:
     """Puts the views and projections of cameras on the board, for pages to look through them.
 
-    Safe to use from all threads.
+    Safe to use from all threads. `world_lock` is held while the followed cameras are read.
     """
 
-    def __init__(self, board: Board) -> None:
+    def __init__(self, board: Board, world_lock: Any) -> None:
         self._board = board
+        self._world_lock = world_lock
         self._lock = Lock()
         self._numbers: dict[str | _Lens, int] = {}
         self._told: dict[int, tuple[object, ...]] = {}
@@ -43,11 +46,16 @@ class Lenses:
 
     def update(self) -> None:
         """Tells pages how the followed cameras see the world now."""
-        for name, camera in list(self._followed.items()):
-            body = None if camera.link is None else camera.link.body
-            if body is not None and body.world.bodies.get(body.id) is not body:
-                continue
-            self._tell(name, name, camera.view, camera.projection, camera.width, camera.height)
+        # A body may be removed meanwhile.
+        if not self._followed or not self._world_lock.acquire(timeout=_PATIENCE):
+            return
+        try:
+            for name, camera in list(self._followed.items()):
+                body = None if camera.link is None else camera.link.body
+                if body is None or body.world.bodies.get(body.id) is body:
+                    self._tell(name, name, camera.view, camera.projection, camera.width, camera.height)
+        finally:
+            self._world_lock.release()
 
     def saw(
         self, view: NDArray[np.float64], projection: NDArray[np.float64], width: int, height: int

@@ -88,6 +88,8 @@ class JointReadings:
         self._world = world
         # Torques that scripts have applied for the last step, which has cleared them; none if not watched.
         self._applied = np.zeros(0)
+        self._placed_bodies: list[tuple[int, tuple[int, ...], tuple[int, ...], tuple[int, ...]]] = []
+        self._known_places: NDArray[np.int64] = np.zeros((0, 4), dtype=np.int64)
 
     def watch(self, *, on: bool) -> None:
         """Reads the torques that scripts apply, or no longer. The world must not be stepped meanwhile.
@@ -117,30 +119,41 @@ class JointReadings:
             without a target.
         """
         world = self._world
-        bodies = [body for number, body in world.bodies.items() if wanted == "all" or number in wanted]
-        places = [
-            (body.id, joint, body.position_index[joint], body.velocity_index[joint])
-            for body in bodies
-            for joint, freedoms in enumerate(body.velocity_count)
-            if freedoms == 1
-        ]
-        if not places:
+        places = self._places(wanted)
+        if not len(places):
             return np.zeros((0, JOINT_COLUMNS), dtype=np.float32)
-        number, joint, position, velocity = np.array(places).T
+        position, velocity = places[:, 2], places[:, 3]
         motor = world.motor[velocity]
         active = motor[:, MOTOR_MAX_IMPULSE] > 0.0
-        applied = np.zeros(len(places))
+        rows = np.empty((len(places), JOINT_COLUMNS), dtype=np.float32)
+        rows[:, :2] = places[:, :2]
+        rows[:, 2] = world.position[position]
+        rows[:, 3] = world.velocity[velocity]
+        rows[:, 7] = np.nan
+        rows[:, 5] = np.where(active & (motor[:, MOTOR_KP] != 0.0), motor[:, MOTOR_POSITION], np.nan)
+        rows[:, 6] = np.where(active & (motor[:, MOTOR_KD] != 0.0), motor[:, MOTOR_VELOCITY], np.nan)
+        torque = world.motor_impulse[velocity] / world.parameters.substep_time
         if velocity.max() < len(self._applied):
             applied = self._applied[velocity]
-        return np.column_stack(
-            (
-                number,
-                joint,
-                world.position[position],
-                world.velocity[velocity],
-                world.motor_impulse[velocity] / world.parameters.substep_time + applied,
-                np.where(active & (motor[:, MOTOR_KP] != 0.0), motor[:, MOTOR_POSITION], np.nan),
-                np.where(active & (motor[:, MOTOR_KD] != 0.0), motor[:, MOTOR_VELOCITY], np.nan),
-                np.where(applied != 0.0, applied, np.nan),
-            )
-        ).astype(np.float32)
+            torque += applied
+            rows[:, 7] = np.where(applied != 0.0, applied, np.nan)
+        rows[:, 4] = torque
+        return rows
+
+    def _places(self, wanted: frozenset[int] | Literal["all"]) -> NDArray[np.int64]:
+        """(joints, 4): body, joint, rows of its position and velocity; found anew if bodies change."""
+        bodies = [
+            (body.id, body.position_index, body.velocity_index, body.velocity_count)
+            for number, body in list(self._world.bodies.items())
+            if wanted == "all" or number in wanted
+        ]
+        if bodies != self._placed_bodies:
+            self._placed_bodies = bodies
+            places = [
+                (number, joint, positions[joint], velocities[joint])
+                for number, positions, velocities, counts in bodies
+                for joint, count in enumerate(counts)
+                if count == 1
+            ]
+            self._known_places = np.array(places, dtype=np.int64).reshape(-1, 4)
+        return self._known_places

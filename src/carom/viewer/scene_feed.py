@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.layouts.codes import Activity
 from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
 from carom.scene.soft_body import SoftBody
@@ -29,6 +30,8 @@ _PATIENCE = 0.02
 _RATE_WINDOW = 1.0
 # Minimum interval between updates of a soft body's shape [s]: each update is a whole mesh.
 _SHAPE_INTERVAL = 1 / 15
+# Members of enumerations are found slowly.
+_ABSENT = int(Activity.ABSENT)
 
 
 class SceneFeed:
@@ -51,11 +54,14 @@ class SceneFeed:
         self._board = board
         self._assets = Assets(board)
         self._bodies: list[Body] = []
+        self._all: list[Body] = []
+        self._absent = b""
         self._arrays: object = None
         self._appearance: Appearance | None = None
         self._looks: tuple[object, ...] = ()
         self._described: dict[int, dict[str, Any]] = {}
         self._rows: NDArray[np.int64] = np.zeros(0, dtype=np.int64)
+        self._row_count = 0
         self._layout = 0
         self._last = b""
         self._numbers = b""
@@ -77,7 +83,7 @@ class SceneFeed:
         self.moved = False
         self.follow()
         poses = self._world.link_pose
-        if self._rows.size and self._rows[-1] >= len(poses):
+        if self._row_count > len(poses):
             return None
         payload = poses[self._rows].astype("<f4").tobytes()
         time = float(self._world.time)
@@ -113,24 +119,39 @@ class SceneFeed:
         return round((time - self._clock[0][1]) / passed, 3) if passed > 0.0 else 0.0
 
     def _follow_bodies(self) -> None:
-        world = self._world
-        # A reset gives a world new arrays.
-        same_world = world.arrays is self._arrays
-        if same_world and _present_bodies(world) == self._bodies and self._looks == self._present_looks():
-            return
-        if not self._lock.acquire(timeout=_PATIENCE):
+        if self._knows_bodies() or not self._lock.acquire(timeout=_PATIENCE):
             return
         try:
-            self._describe(_present_bodies(world))
+            self._describe()
         finally:
             self._lock.release()
+
+    def _knows_bodies(self) -> bool:
+        """Whether bodies and their looks are as they were described last; it takes little time for each."""
+        world = self._world
+        return (
+            # A reset gives a world new arrays.
+            world.arrays is self._arrays
+            and list(world.bodies.values()) == self._all
+            and _absent_trees(world) == self._absent
+            and self._looks == self._present_looks()
+        )
 
     def _follow_nodes(self) -> None:
         """Puts the present shapes of soft bodies on the board."""
         now = monotonic()
         if not self._world.contact_arrays.soft.bodies or now - self._shapes_sent < _SHAPE_INTERVAL:
             return
+        # A body may be removed meanwhile.
+        if not self._lock.acquire(timeout=_PATIENCE):
+            return
+        try:
+            self._describe_nodes()
+        finally:
+            self._lock.release()
         self._shapes_sent = now
+
+    def _describe_nodes(self) -> None:
         appearance = self._appearance
         for body in self._bodies:
             if not isinstance(body, SoftBody) or body.world.bodies.get(body.id) is not body:
@@ -155,7 +176,9 @@ class SceneFeed:
             {mesh for shape in shapes for mesh, _ in shape["meshes"]}, {shape["texture"] for shape in shapes}
         )
 
-    def _describe(self, bodies: list[Body]) -> None:
+    def _describe(self) -> None:
+        everything, absent = list(self._world.bodies.values()), _absent_trees(self._world)
+        bodies = [body for body in everything if not absent[body.rows.tree]]
         self._appearance = appearance = appearance_of(self._world)
         appearance.number_textures(self._world)
         looks = self._present_looks()
@@ -174,14 +197,16 @@ class SceneFeed:
         self._keep_used_assets()
         rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
         self._rows = np.concatenate([np.zeros(0, dtype=np.int64), *rows])
+        self._row_count = int(self._rows.max(initial=-1)) + 1
         self._layout += 1
         order = [[body.id, body.joint_count - BASE] for body in bodies]
         self._board.put("layout", to_page.LAYOUT(layout=self._layout, bodies=order))
         # The bodies are kept for the comparison by id, because Python reuses the ids of deleted objects.
-        self._bodies = bodies
+        self._bodies, self._all, self._absent = bodies, everything, absent
         self._arrays = self._world.arrays
         self._looks = looks
 
 
-def _present_bodies(world: World) -> list[Body]:
-    return [body for body in list(world.bodies.values()) if body.present]
+def _absent_trees(world: World) -> bytes:
+    """For each tree whether it is absent; a script may have added bodies since."""
+    return (world.arrays.state.numpy["tree_activity"][0] == _ABSENT).tobytes()

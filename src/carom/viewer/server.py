@@ -246,8 +246,8 @@ class PageServer:
             except Exception:
                 _log.exception("The viewer could not read the world.")
             self._board.forget_removals(None)
-            with suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._pages.somebody.wait(), 1.0 / _FRAMES_PER_SECOND_UNWATCHED)
+            # A page that comes meanwhile waits: to be told at once of it would cost more than a frame.
+            await asyncio.sleep(1.0 / _FRAMES_PER_SECOND_UNWATCHED)
 
     async def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")

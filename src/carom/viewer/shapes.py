@@ -26,6 +26,7 @@ from carom.render.textures import NO_TEXTURE
 from carom.scene.joint_constraints import moving_links
 from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
+from carom.viewer.input.picking import follows_hand
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
@@ -164,7 +165,8 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
         file=None if source is None else source.name,
         path=None if source is None else "/".join(source.parts[-2:]),
         links=[
-            {**_link(body, link), "moves": moves} for link, moves in enumerate(moving_links(body), start=BASE)
+            {**_link(body, link), "moves": moves or follows_hand(body, link)}
+            for link, moves in enumerate(moving_links(body), start=BASE)
         ],
         shapes=shapes,
     )

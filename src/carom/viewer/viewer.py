@@ -15,11 +15,12 @@ from carom.remote.user_token import fresh_token, user_token
 from carom.viewer.access import Access, is_loopback
 from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
-from carom.viewer.details import NOTHING, DetailRequest, Details
+from carom.viewer.details import NOTHING, DetailRequest
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
+from carom.viewer.history.frames import Frames
 from carom.viewer.history.history import DEFAULT_BYTES
-from carom.viewer.history.recorder import HistoryRecorder, told
+from carom.viewer.history.recorder import told
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import MODES, JointHands
 from carom.viewer.input.gamepads import Gamepad, Gamepads
@@ -31,14 +32,12 @@ from carom.viewer.input.picking import Picking
 from carom.viewer.input.turning import Turning
 from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.last_words import LastWords
-from carom.viewer.lenses import Lenses
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
 from carom.viewer.protocol import from_page, to_page
 from carom.viewer.protocol.message import Message
 from carom.viewer.rays import Rays
-from carom.viewer.scene_feed import SceneFeed
 from carom.viewer.server import PageServer
 from carom.viewer.steps.chores import StepQueue
 from carom.viewer.steps.moments import Moments
@@ -139,15 +138,12 @@ class Viewer:
         self._moments = Moments(world, self._board)
         self._leaving = Leaving(self._close_by_user)
         self._last_words = LastWords(self._board, lambda: self._server)
-        self._feed = SceneFeed(world, self.lock, self._board)
-        self._past = HistoryRecorder(self._board, max(history, 0))
+        self._frames = Frames(world, self.lock, self._board, max(history, 0))
+        self._past = self._frames.past
         self.previews: Previews = Previews(self._board)
-        self._lenses = Lenses(self._board)
         self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
         self._turning = Turning(world, self.lock, lambda: self.pause_control.closed)
-        self._details = Details(world, self.lock, self._board, always=self._past.is_on)
         self._sleeping = Sleeping(world)
-        self._values: dict[str, float] = {}
         self.pause(False)
         self._answers: dict[Message, Callable[[int, dict[str, Any]], None]] = {
             from_page.SLIDER: self._take_slider,
@@ -161,7 +157,7 @@ class Viewer:
             from_page.DRAWN: lambda page, told: self._pictures.drawn(page, int(told["picture"])),
             from_page.PAST: self._tell_past,
             from_page.PREVIEW_WIDTH: lambda page, told: self.previews.ask(page, int(told["width"])),
-            from_page.WANT: lambda page, told: self._want(page, DetailRequest.told(told)),
+            from_page.WANT: lambda page, told: self._frames.want(page, DetailRequest.told(told)),
             from_page.DRIVE: self._take_drive,
             from_page.GIVE_BACK: self._give_back,
             from_page.HANDLE: self._take_handle,
@@ -296,10 +292,7 @@ class Viewer:
         Raises:
             ValueError: The value is not a finite number.
         """
-        number = float(value)
-        if not isfinite(number):
-            raise ValueError(f"plot {name!r} is given {value!r}; it has to be a finite number")
-        self._values[str(name)] = number
+        self._frames.plot(name, value)
 
     def slider(self, name: str, lower: float, upper: float, start: float) -> Slider:
         """Adds a slider to the panel; its `value` is set by the user.
@@ -374,7 +367,7 @@ class Viewer:
         """
         if camera.link is not None and camera.link.body.world is not self._world:
             raise ValueError(f"camera {name!r} is mounted on a link of another world")
-        self._lenses.follow(name, camera)
+        self._frames.lenses.follow(name, camera)
 
     def show_image(self, image: RawImage, view: NDArray[np.float64], projection: NDArray[np.float64]) -> None:
         """Shows an image of the script, where its camera stands, and what it sees.
@@ -386,7 +379,7 @@ class Viewer:
         """
         self.previews.show(image, product(projection, view))
         height, width = image.rgba.shape[:2]
-        self._lenses.saw(view, projection, width, height)
+        self._frames.lenses.saw(view, projection, width, height)
 
     def _add_control(self, control: Slider) -> None:
         self.controls.add(max(self.controls.sliders, default=-1) + 1, control)
@@ -394,7 +387,7 @@ class Viewer:
     @property
     def rays(self) -> Rays:
         """Records the rays that scripts cast; needed only while `rays.wanted`."""
-        return self._details.rays
+        return self._frames.details.rays
 
     def draw_now(self) -> None:
         """Waits until all visible pages have drawn the present state.
@@ -450,17 +443,7 @@ class Viewer:
     def _record(self) -> bytes | None:
         """Makes a frame of the present state, and keeps it."""
         self.drawings.expire()
-        # This may take long.
-        self._feed.follow()
-        self._lenses.update()
-        blocks = self._details.blocks()
-        extras: dict[str, Any] = {"picture": self._pictures.asked}
-        if self._values:
-            extras["values"] = self._values.copy()
-        number = self._past.next_number if self._past.is_on else None
-        frame = self._feed.frame(extras, blocks, number)
-        self._past.take(frame if self._feed.moved else None)
-        return frame
+        return self._frames.take(self._pictures.asked)
 
     def _tell_past(self, page: int, request: dict[str, Any]) -> None:
         excerpt = self._past.before(int(request["before"]), known=bool(request["known"]))
@@ -469,7 +452,7 @@ class Viewer:
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)
         self._pictures.forget(page)
-        self._want(page, NOTHING)
+        self._frames.want(page, NOTHING)
         self._gamepads.forget(page)
         self.previews.forget(page)
         self._let_go(page, {})
@@ -533,10 +516,6 @@ class Viewer:
         width, height = int(told["width"]), int(told["height"])
         if min(width, height) > 0:
             self.camera.resized(width, height)
-
-    def _want(self, page: int, wish: DetailRequest) -> None:
-        self._details.want(page, wish)
-        self._feed.collisions = self._details.wish.collisions
 
     def _take_drive(self, page: int, told: dict[str, Any]) -> None:
         body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])

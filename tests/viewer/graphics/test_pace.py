@@ -1,5 +1,6 @@
 """Pictures that take too long get coarser while something moves, and many equal shapes cost few calls."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -141,15 +142,20 @@ LAYERS = """async ([first, last]) => {
   const windows = [], window = layer.window.bind(layer);
   layer.window = (...told) => (windows.push(window(...told)), windows.at(-1));
   for (const moment of [first, first, 0.5 * (first + last), last]) seek(moment), shown();
+  const [,, width, height] = layer.spoilt;
+  // A new line, below the floor, which hides it.
+  app.grasp.line = () => [[-0.6, -0.6, -0.05], [0.6, -0.6, -0.05]];
   const quick = shown();
   layer.window = () => null;
   const whole = shown();
   seek(first);
   const before = shown();
   delete layer.window;
+  delete app.grasp.line;
   const differ = (a, b) => a.reduce((sum, value, i) => sum + (Math.abs(value - b[i]) > 3), 0);
   const area = app.canvas.width * app.canvas.height;
-  return { windows, differing: differ(quick, whole), moved: differ(before, whole), area };
+  const [differing, moved] = [differ(quick, whole), differ(before, whole)];
+  return { windows, differing, moved, area, solids: app.overlays.solids.count, copied: width * height };
 }"""
 
 
@@ -161,17 +167,22 @@ def test_only_what_moves_is_drawn_anew(tmp_path: Path, browser):
     world.load_urdf(data / "table/table.urdf", (0.6, 0, 0), fixed_base=True)
     ball = world.load_urdf(data / "sphere_small.urdf", (0, 0.3, 1.1))
     ball.set_base_velocity((0.8, 0, 0), (0, 0, 0))
+    # It rests, under the ball, so that there is a force at every moment.
+    world.load_urdf(data / "cube_small.urdf", (0.2, 0.3, 0.651))
     with world.record(tmp_path / "ball.html"):
         world.step(240)
     page = Page(browser, (tmp_path / "ball.html").as_uri(), WIDTH, HEIGHT)
     page.until("window.app?.history.count > 0 && app.scene.groups.length > 0")
-    for lines in ("false", "true"):
-        page.page.evaluate(f"app.options.frames = {lines}")
-        result = page.page.evaluate(LAYERS, [0.1, 0.4])
+    for frames, forces in ((False, False), (True, False), (False, True), (True, True)):
+        page.page.evaluate(f"Object.assign(app.options, {json.dumps({'frames': frames, 'forces': forces})})")
+        result = page.page.evaluate(LAYERS, [0.1, 0.6])
         # The first picture of a camera is drawn as a whole, the next ones where the ball and its shadow are.
         assert all(width * height < 0.5 * result["area"] for *_, width, height in result["windows"][1:])
         assert result["moved"] > 100
         assert result["differing"] <= 4
+        assert bool(result["solids"]) == forces
+        # What was drawn over the picture is restored where it was, not everywhere.
+        assert result["copied"] < 0.5 * result["area"]
     assert page.complaints == []
 
 

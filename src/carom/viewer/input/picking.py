@@ -15,6 +15,7 @@ from carom.model.body_spec import BASE
 from carom.scene.joint_constraints import moving_links
 
 if TYPE_CHECKING:
+    from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
     from carom.world.world import World
 
@@ -50,7 +51,8 @@ class _Hand:
 class Picking:
     """The pulls of all pages. For use by one thread; only `apply` changes the world, under its lock.
 
-    While the simulation is `paused`, bodies with a free base are moved at once; their velocity stays.
+    While the simulation is `paused`, bodies with a free base are moved at once; their velocity stays. Mocap
+    bodies always are, without a constraint.
     """
 
     def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:
@@ -104,7 +106,7 @@ class Picking:
     def _carry(self, hand: _Hand) -> None:
         """Moves a body with a free base so that the pulled point is at the mouse."""
         body = self._world.bodies[hand.body]
-        if body.fixed_base or body.spec.soft is not None:
+        if body.spec.soft is not None or (body.fixed_base and not follows_hand(body, hand.link)):
             return
         base, *_ = poses = self._world.link_pose[body.first_link : body.first_link + 1 + body.joint_count]
         held = Pose(tuple(poses[hand.link - BASE][:3]), tuple(poses[hand.link - BASE][3:]))
@@ -127,6 +129,10 @@ class Picking:
         body = world.bodies.get(hand.body)
         if body is None or not BASE <= hand.link < body.joint_count:
             return False
+        if follows_hand(body, hand.link):
+            self._carry(hand)
+            hand.moved = False
+            return True
         if not moving_links(body)[hand.link - BASE]:
             return False
         hand.tie = world.tie(
@@ -143,3 +149,8 @@ class Picking:
         hand.tie.max_force = max(_MIN_FORCE, _FORCE_BY_MASS * mass)
         hand.tie.max_impulse = hand.tie.max_force * world.parameters.substep_time
         return True
+
+
+def follows_hand(body: Body, link: int) -> bool:
+    """Whether a link belongs to the base of a mocap body, which the mouse moves as it is, not by forces."""
+    return body.spec.is_mocap and not moving_links(body)[link - BASE]

@@ -16,6 +16,7 @@ from carom.layouts.flags import ActivationChange
 from carom.model.body_spec import BASE
 from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.joint_constraints import moving_links
+from carom.viewer.input.picking import follows_hand
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -41,7 +42,8 @@ class Turning:
 
     Requests are made by one thread, which also calls `apply`; only that changes the world, under its lock.
     While the simulation is `paused`, bodies with a free base are turned at once about the centre of mass of
-    the link; their velocity stays. Otherwise, and with a fixed base, a torque turns the link in each step.
+    the link; their velocity stays. Mocap bodies always are. Otherwise, and with a fixed base, a torque turns
+    the link in each step.
     """
 
     def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:
@@ -71,12 +73,13 @@ class Turning:
         try:
             for page, asked in self._asked.items():
                 turn = None if asked is None else self._turn(self._turns.get(page), *asked)
-                if turn is None:
+                by_hand = turn is not None and follows_hand(turn.body, turn.link)
+                if turn is None or by_hand:
                     self._turns.pop(page, None)
                 else:
                     self._turns[page] = turn
-                    if self._paused():
-                        _carry(turn)
+                if turn is not None and (by_hand or self._paused()):
+                    _carry(turn)
             self._asked.clear()
             observers = self._world.observers
             if self._turns and self not in observers:
@@ -102,7 +105,7 @@ class Turning:
         body = self._world.bodies.get(number)
         if body is None or body.spec.soft is not None or not BASE <= link < body.joint_count:
             return None
-        if not moving_links(body)[link - BASE]:
+        if not moving_links(body)[link - BASE] and not follows_hand(body, link):
             return None
         change_dynamics(body, BASE, {"activation_state": ActivationChange.WAKE_UP})
         if turn is not None and turn.body is body and turn.link == link:
@@ -148,9 +151,9 @@ def _subtree(body: Body, link: int) -> list[int]:
 
 
 def _carry(turn: _Turn) -> None:
-    """Turns a body with a free base so that the link has its target; bodies with a fixed one stay."""
+    """Turns a body with a free base, or a mocap body, so that the link has its target; others stay."""
     body = turn.body
-    if body.fixed_base:
+    if body.fixed_base and not follows_hand(body, turn.link):
         return
     first = body.first_link
     base, held = (body.world.link_pose[row].tolist() for row in (first, first - BASE + turn.link))

@@ -43,7 +43,7 @@ def robot_of_body(body: CompiledBody) -> PlacedRobot:
     else:
         maker.add(body, None)
         pose = body.pose
-    robot = Robot(body.name, tuple(maker.links), tuple(maker.joints))
+    robot = Robot(body.name, tuple(maker.links), tuple(maker.joints), is_mocap=body.is_mocap)
     return PlacedRobot(robot, pose, fixed_base=not body.is_free)
 
 

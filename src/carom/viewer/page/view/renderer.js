@@ -64,7 +64,7 @@ class Renderer {
     this.sign = new Program(gl, SIGN);
     this.nothing = gl.createVertexArray();
     this.lineBatch = new LineBatch(gl);
-    this.solidBatch = new SolidBatch(gl);
+    this.solidBatch = new SolidBatch(gl, slow);
     this.map = new ShadowMap(gl, 2048);
     this.reflection = new Picture(gl);
     this.layer = new StillLayer(gl);
@@ -104,15 +104,15 @@ class Renderer {
       layer.keep(canvas, world);
     }
     scene.fill(options, camera.eye, focal);
-    const more = drawings.lines.count + drawings.solids.count + drawings.clouds.length > 0 || drawings.selected !== undefined;
-    if (window) layer.compose(window, more, canvas, world);
+    const covered = window && layer.covered(drawings, camera, canvas);
+    if (window) layer.compose(window, covered, canvas, world);
     else world(() => this.aimAtCanvas());
     gl.enable(gl.DEPTH_TEST);
     this.drawSigns(drawings.signs, scene, camera);
     if (!options.wireframe) this.drawClear(scene, camera, options);
     this.drawPoints(drawings.clouds, scene, camera);
     this.drawLines(drawings.lines, camera);
-    this.solidBatch.draw(drawings.solids, camera);
+    this.solidBatch.draw(drawings.solids, camera, covered);
     this.outline.draw(scene, camera, options, drawings.selected, canvas.width / camera.width);
     gl.disable(gl.DEPTH_TEST);
     if (window) layer.show(canvas);

@@ -3,13 +3,17 @@
 import { Program } from "../gpu.js";
 import { SOLID_FLOATS } from "./solids.js";
 
+/** Corners of a ring; fewer if the CPU draws, for which each vertex of a hundred arrows takes time. */
 const SIDES = 14;
+const FEW_SIDES = 8;
+/** Size of the place of a vertex on the mesh: cosine and sine of its angle, ring, and kind of normal. */
+const PLACE = 4;
 /** Sizes and places of the attributes: start, vector, colour, and the three sizes. */
 const ATTRIBUTES = [3, 3, 4, 3];
 
 /**
- * A vertex has its number around (0 to 1), and its ring: centre and rim of the shaft's start, its end, the
- * head's centre and rim, and the tip. The normal of a flat ring is along the arrow.
+ * The rings of the mesh: centre and rim of the shaft's start, its end, the rim of the head, and the tip. The
+ * normal of a flat ring is along the arrow.
  */
 const SOLID = {
   vertex: `#version 300 es
@@ -17,7 +21,7 @@ layout(location = 0) in vec3 start;
 layout(location = 1) in vec3 vector;
 layout(location = 2) in vec4 tint;
 layout(location = 3) in vec3 sizes;
-layout(location = 4) in vec3 place;
+layout(location = 4) in vec4 place;
 uniform mat4 camera;
 uniform vec3 eye;
 out vec4 colour;
@@ -27,14 +31,13 @@ void main() {
   float size = length(vector);
   vec3 along = vector / max(size, 1e-12);
   vec3 side = normalize(cross(along, abs(along.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
-  float angle = 6.2831853 * place.x;
-  vec3 outward = cos(angle) * side + sin(angle) * cross(along, side);
+  vec3 outward = place.x * side + place.y * cross(along, side);
   float neck = size - sizes.z;
   // Rings: 0 centre, 1 rim and 2 end of the shaft, 3 rim of the head, 4 tip.
-  float radius = place.y < 0.5 || place.y > 3.5 ? 0.0 : place.y < 2.5 ? sizes.x : sizes.y;
-  float height = place.y < 1.5 ? 0.0 : place.y > 3.5 ? size : neck;
+  float radius = place.z < 0.5 || place.z > 3.5 ? 0.0 : place.z < 2.5 ? sizes.x : sizes.y;
+  float height = place.z < 1.5 ? 0.0 : place.z > 3.5 ? size : neck;
   vec3 slanted = normalize(outward * max(sizes.z, 1e-9) + along * sizes.y);
-  normal = place.z < 0.5 ? -along : place.z < 1.5 ? outward : slanted;
+  normal = place.w < 0.5 ? -along : place.w < 1.5 ? outward : slanted;
   vec3 point = start + along * height + outward * radius;
   colour = tint;
   toEye = eye - point;
@@ -53,7 +56,8 @@ void main() {
 };
 
 export class SolidBatch {
-  constructor(gl) {
+  /** @param {boolean} byProcessor whether the CPU draws */
+  constructor(gl, byProcessor) {
     this.gl = gl;
     this.program = new Program(gl, SOLID);
     this.buffer = gl.createBuffer();
@@ -67,25 +71,34 @@ export class SolidBatch {
       gl.vertexAttribDivisor(place, 1);
       at += size * 4;
     });
-    const mesh = triangles();
-    this.corners = mesh.length / 3;
+    const { places, indices } = ringMesh(byProcessor ? FEW_SIDES : SIDES);
+    this.corners = indices.length;
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ARRAY_BUFFER, mesh, gl.STATIC_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, places, gl.STATIC_DRAW);
     gl.enableVertexAttribArray(ATTRIBUTES.length);
-    gl.vertexAttribPointer(ATTRIBUTES.length, 3, gl.FLOAT, false, 0, 0);
+    gl.vertexAttribPointer(ATTRIBUTES.length, PLACE, gl.FLOAT, false, 0, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
   }
 
-  /** Draws solids over the picture: they hide each other, and nothing hides them. */
-  draw(solids, camera) {
+  /**
+   * Draws solids over the picture: they hide each other, and nothing hides them.
+   *
+   * @param {?number[]} window the part of the view that they are in, whose depths are lost; null for all of it
+   */
+  draw(solids, camera, window) {
     if (solids.count === 0) return;
     const gl = this.gl;
     this.program.use({ camera: camera.matrix, eye: camera.eye });
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
     gl.bufferData(gl.ARRAY_BUFFER, solids.used, gl.DYNAMIC_DRAW);
+    if (window) gl.enable(gl.SCISSOR_TEST);
+    if (window) gl.scissor(...window);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    gl.drawArraysInstanced(gl.TRIANGLES, 0, this.corners, solids.opaque);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.drawElementsInstanced(gl.TRIANGLES, this.corners, gl.UNSIGNED_SHORT, 0, solids.opaque);
     const clouded = solids.count - solids.opaque;
     if (clouded === 0) return;
     // What is left of the buffer: instances cannot begin at another one in WebGL.
@@ -93,21 +106,28 @@ export class SolidBatch {
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(false);
-    gl.drawArraysInstanced(gl.TRIANGLES, 0, this.corners, clouded);
+    gl.drawElementsInstanced(gl.TRIANGLES, this.corners, gl.UNSIGNED_SHORT, 0, clouded);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
   }
 }
 
-/** The triangles of the mesh: share of the turn, ring, and kind of normal (0 flat, 1 outward, 2 slanted). */
-function triangles() {
-  const numbers = [];
-  for (let i = 0; i < SIDES; i++) {
-    const [a, b] = [i / SIDES, (i + 1) / SIDES];
-    const strips = [[0, 1, 0], [1, 2, 1], [2, 3, 0], [3, 4, 2]];
-    for (const [from, to, kind] of strips) {
-      numbers.push(a, from, kind, b, from, kind, b, to, kind, a, from, kind, b, to, kind, a, to, kind);
+/**
+ * Vertices and triangles of the mesh: each strip from ring to ring has vertices of its own, for its normal (0
+ * flat, 1 outward, 2 slanted).
+ */
+export function ringMesh(sides) {
+  const [places, indices] = [[], []];
+  for (const [from, to, kind] of [[0, 1, 0], [1, 2, 1], [2, 3, 0], [3, 4, 2]]) {
+    const first = places.length / PLACE;
+    for (let i = 0; i < sides; i++) {
+      const angle = (2 * Math.PI * i) / sides;
+      for (const ring of [from, to]) places.push(Math.cos(angle), Math.sin(angle), ring, kind);
+      const [near, next] = [first + 2 * i, first + 2 * ((i + 1) % sides)];
+      // At the centre, and at the tip, all vertices are one point.
+      if (from !== 0) indices.push(near, next, near + 1);
+      if (from === 0 || to !== 4) indices.push(next, next + 1, near + 1);
     }
   }
-  return new Float32Array(numbers);
+  return { places: new Float32Array(places), indices: new Uint16Array(indices) };
 }

@@ -26,7 +26,9 @@ export class Solids {
 
   arrow(start, vector, colour, radius) {
     const length = Math.hypot(...vector);
-    if (length > 0) this.put(start, vector, [...colour, 1], radius, HEAD_RADIUS * radius, Math.min(HEAD_LENGTH * radius, 0.5 * length));
+    // A short arrow is as thin as it is short: else its head would be a disc.
+    const thin = Math.min(radius, (0.5 * length) / HEAD_LENGTH);
+    if (length > 0) this.put(start, vector, [...colour, 1], thin, HEAD_RADIUS * thin, HEAD_LENGTH * thin);
   }
 
   /** An arc about an axis with a head at its end, from angle 0, which is along `zero`, to an angle [rad]. */

@@ -4,6 +4,10 @@
 import { boundsOfLink } from "../bounds.js";
 import { dot, scale, subtract } from "../maths.js";
 import { Picture } from "../gpu.js";
+import { boxOfDrawings } from "./covered.js";
+
+/** @import { Solids } from "../arrows/solids.js" */
+/** @import { Lines } from "../lines.js" */
 
 /** More moving links than this are not worth a box each. */
 const MAX_LINKS = 200;
@@ -66,6 +70,24 @@ export class StillLayer {
     return pixels(rectangle, canvas);
   }
 
+  /**
+   * The part of the view that is drawn over: column and row of its lower left corner, width and height [pixels].
+   *
+   * @param {{lines: Lines, solids: Solids, clouds: object[], selected: object}} drawings
+   */
+  covered({ lines, solids, clouds, selected }, camera, canvas) {
+    const all = [0, 0, canvas.width, canvas.height];
+    if (clouds.length > 0 || selected !== undefined) return all;
+    if (lines.count + solids.count === 0) return [0, 0, 0, 0];
+    const { lower, upper, width } = boxOfDrawings(lines, solids);
+    const rectangle = [1, 1, -1, -1];
+    for (let corner = 0; corner < 8; corner++) {
+      const point = [0, 1, 2].map((i) => (corner & (1 << i) ? upper[i] : lower[i]));
+      if (!this.include(rectangle, point, camera.matrix)) return all;
+    }
+    return pixels(rectangle, canvas, MARGIN + (width * canvas.width) / camera.width) ?? all;
+  }
+
   /** Extends a rectangle in clip coordinates by a point; false if that is not in front of the eye. */
   include(rectangle, point, matrix) {
     const row = (i) => dot([matrix[i], matrix[4 + i], matrix[8 + i]], point) + matrix[12 + i];
@@ -103,9 +125,9 @@ export class StillLayer {
    * Draws the part of the view that has changed over the last picture, after what had changed there is restored.
    *
    * @param {number[]} window the part: x, y, width and height [pixels]
-   * @param {boolean} more whether more is drawn afterwards, anywhere in the view
+   * @param {number[]} covered the part that is drawn over afterwards
    */
-  compose(window, more, canvas, draw) {
+  compose(window, covered, canvas, draw) {
     const [x, y, width, height] = window;
     const gl = this.gl;
     const all = [0, 0, canvas.width, canvas.height];
@@ -120,7 +142,7 @@ export class StillLayer {
       gl.clear(gl.DEPTH_BUFFER_BIT);
     });
     gl.disable(gl.SCISSOR_TEST);
-    this.spoilt = more ? all : [x, y, width, height];
+    this.spoilt = together(window, covered);
   }
 
   /** Shows the composed picture. */
@@ -154,11 +176,20 @@ function parted(scene) {
 }
 
 /** The pixels of a rectangle in clip coordinates; null if it is most of the view. */
-function pixels(rectangle, { width, height }) {
+function pixels(rectangle, { width, height }, margin = MARGIN) {
   const [left, low, right, high] = rectangle;
   if (right < left) return [0, 0, 0, 0];
-  const edge = (at, size, margin) => Math.round(Math.min(Math.max(((at + 1) / 2) * size + margin, 0), size));
-  const [x, y] = [edge(left, width, -MARGIN), edge(low, height, -MARGIN)];
-  const [w, h] = [edge(right, width, MARGIN) - x, edge(high, height, MARGIN) - y];
+  const edge = (at, size, more) => Math.round(Math.min(Math.max(((at + 1) / 2) * size + more, 0), size));
+  const [x, y] = [edge(left, width, -margin), edge(low, height, -margin)];
+  const [w, h] = [edge(right, width, margin) - x, edge(high, height, margin) - y];
   return w * h > MAX_OF_VIEW * width * height ? null : [x, y, w, h];
+}
+
+/** The smallest part of the view that has two others in it. */
+function together(one, other) {
+  if (one[2] * one[3] === 0) return other;
+  if (other[2] * other[3] === 0) return one;
+  const [x, y] = [0, 1].map((i) => Math.min(one[i], other[i]));
+  const [right, high] = [0, 1].map((i) => Math.max(one[i] + one[2 + i], other[i] + other[2 + i]));
+  return [x, y, right - x, high - y];
 }

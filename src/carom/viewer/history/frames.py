@@ -1,0 +1,72 @@
+"""Making the frames of a viewer from the present state of its world, and keeping them."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from carom.viewer.details import DetailRequest, Details
+from carom.viewer.history.recorder import HistoryRecorder
+from carom.viewer.lenses import Lenses
+from carom.viewer.scene_feed import SceneFeed
+
+if TYPE_CHECKING:
+    from carom.viewer.board import Board
+    from carom.world.world import World
+
+
+class Frames:
+    """Makes frames. For use by one thread, except `plot`.
+
+    Args:
+        world: The world.
+        lock: The lock of its steps.
+        board: The board of its viewer.
+        history: Memory for the past [bytes]; with 0 nothing is kept.
+
+    Attributes:
+        details: What pages want to know besides poses.
+        lenses: The views of the script's cameras.
+        past: The frames that are kept.
+    """
+
+    def __init__(self, world: World, lock: Any, board: Board, history: int) -> None:
+        self._feed = SceneFeed(world, lock, board)
+        self.past: HistoryRecorder = HistoryRecorder(board, history)
+        self.lenses: Lenses = Lenses(board, lock)
+        self.details: Details = Details(world, lock, board, always=self.past.is_on)
+        self._values: dict[str, float] = {}
+
+    def plot(self, name: str, value: float) -> None:
+        """Sets a value of the script, which frames tell from now on.
+
+        Raises:
+            ValueError: The value is not a finite number.
+        """
+        number = float(value)
+        if not isfinite(number):
+            raise ValueError(f"plot {name!r} is given {value!r}; it has to be a finite number")
+        self._values[str(name)] = number
+
+    def want(self, page: int, wish: DetailRequest) -> None:
+        """Sets what a page wants to know."""
+        self.details.want(page, wish)
+        self._feed.collisions = self.details.wish.collisions
+
+    def take(self, picture: int) -> bytes | None:
+        """Makes a frame of the present state and keeps it; None if it is as the last one.
+
+        Args:
+            picture: Number of the picture that the script waits for.
+        """
+        # This may take long.
+        self._feed.follow()
+        self.lenses.update()
+        blocks = self.details.blocks()
+        extras: dict[str, Any] = {"picture": picture}
+        if self._values:
+            extras["values"] = self._values.copy()
+        number = self.past.next_number if self.past.is_on else None
+        frame = self._feed.frame(extras, blocks, number)
+        self.past.take(frame if self._feed.moved else None)
+        return frame
