@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import batch_islands, quicksort_order
@@ -23,6 +25,9 @@ _FIELDS = (
     "constraint_twist",
     "constraint_max_impulse",
     "constraint_actuator",
+    "constraint_reference",
+    "constraint_impedance",
+    "constraint_margin",
 )
 
 
@@ -116,7 +121,7 @@ class ConstraintRows:
         _use(arrays, len(rows))
         self._written = [self._terms(rows, row, user_rows) for row in range(len(rows))]
         for field, values in zip(_FIELDS, zip(*self._written, strict=True), strict=False):
-            arrays.model.numpy[field][..., : len(rows)] = values
+            _at(arrays, field, slice(len(rows)))[...] = values
         tree_count = arrays.used["tree"]
         counts = [0] * tree_count
         for constraint in rows:
@@ -157,7 +162,7 @@ class ConstraintRows:
         if terms != self._written[row]:
             for field, value, old in zip(_FIELDS, terms, self._written[row], strict=True):
                 if value != old:
-                    arrays.model.numpy[field][..., row] = value
+                    _at(arrays, field, slice(row, row + 1))[...] = value
             self._written[row] = terms
 
     def _terms(self, rows: Sequence[JointConstraint], row: int, user_rows: Mapping[int, int]) -> Terms:
@@ -166,7 +171,14 @@ class ConstraintRows:
         link = it.body.first_link + 1 + it.joint if it.user is None else user_rows[it.user.id]
         tree, place = it.moving_body.rows.tree, self._places[row]
         actuator = it.body.rows.first["actuator"] + it.actuator
-        return it.kind, tree, link, place, it.lower, it.upper, it.twist, it.max_impulse, actuator
+        bounds = (it.lower, it.upper, it.twist, it.max_impulse)
+        return it.kind, tree, link, place, *bounds, actuator, it.reference, it.impedance, it.margin
+
+
+def _at(arrays: WorldArrays, field: str, rows: slice) -> np.ndarray:
+    """Some rows of a field of the model; those of all worlds, if worlds have their own."""
+    array = arrays.model.numpy[field]
+    return array[:, rows] if array.ndim > 1 else array[rows]
 
 
 def _use(arrays: WorldArrays, count: int) -> None:

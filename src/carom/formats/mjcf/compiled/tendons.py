@@ -15,6 +15,7 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
@@ -70,6 +71,8 @@ class TendonReader:
                     None if spring[0] == -1.0 else (spring[0], spring[-1]),
                     _range(copy, element, attributes),
                     copy.context.number(element, attributes, "frictionloss", 0.0),
+                    read_compliance(copy, element, attributes, "limit"),
+                    copy.context.number(element, attributes, "margin", 0.0),
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
