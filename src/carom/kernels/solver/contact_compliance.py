@@ -92,6 +92,8 @@ def let_contact_yield(
     distance = terms.distance - margin
     if distance >= 0.0:
         terms.ignored = Int32(1)
+        terms.softness = real(0.0)
+        return terms
     d = impedance_at(reference, impedance, distance)
     stiffness, damping = spring_and_damper(settings, reference, impedance)
     terms.yields = Int32(1)

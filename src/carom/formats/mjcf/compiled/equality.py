@@ -119,6 +119,10 @@ class EqualityReader:
             )
             return
         constant, first, second, third, fourth = _coefficients(scope, element, attributes)
+        compliances = [self.model.tendons[name].limit_compliance for name in (follower, leader) if name]
+        weight = (
+            sum(it.inverse_mass for it in compliances) if all(it.inverse_mass for it in compliances) else 0.0
+        )
         self.model.tendon_couplings.append(
             FileTendonCoupling(
                 self._name(scope, element),
@@ -126,7 +130,7 @@ class EqualityReader:
                 leader or None,
                 (constant, first, second, third, fourth),
                 scope.context.flag(element, attributes, "active", True),
-                read_compliance(scope, element, attributes),
+                replace(read_compliance(scope, element, attributes), inverse_mass=weight),
             )
         )
 

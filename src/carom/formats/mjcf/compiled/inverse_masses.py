@@ -6,6 +6,8 @@ its inverse inertia likewise of a torque; that of a joint is by a force or torqu
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,7 +20,6 @@ from carom.record import record
 
 Matrix = NDArray[np.float64]
 _LEAST_PIVOT = 1e-15
-_FREE = 6
 
 
 @record(frozen=False, eq=False)
@@ -95,34 +96,54 @@ class _Tree:
         return total
 
 
-def inverse_masses(root: CompiledBody) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
-    """Inverse mass and inertia of a body of the world and of all in it, and the inverse masses of its joints.
+class InverseMasses:
+    """Inverse masses of a body of the world, of all in it, and of its joints [1/kg, 1/(kg m²)].
 
-    They are by name [1/kg, 1/(kg m²)]. Those of what no force moves are 0, and all are if the masses of the
-    file leave some joint without inertia.
+    Those of what no force moves are 0, and all are if some joint has no inertia.
+
+    Attributes:
+        bodies: Inverse mass and inverse inertia of each body, by name.
+        joints: Inverse mass of each joint, by name.
     """
-    tree = _Tree(root)
-    count = len(tree.armature)
-    lower = _cholesky(tree.mass_matrix())
-    if lower is None or not count:
-        return {part.body.name: (0.0, 0.0) for part in tree.parts}, dict.fromkeys(tree.joints, 0.0)
-    # Forces: of each dof, and those of each body.
-    forces = np.zeros((count, count + 6 * len(tree.parts)))
-    forces[:, :count] = np.eye(count)
-    for number, part in enumerate(tree.parts):
-        first = count + 6 * number
-        forces[part.dofs, first : first + 6] = part.jacobian.T
-    answers = np.zeros(forces.shape[1])
-    for row in range(count):
-        forces[row] /= lower[row, row]
-        answers += forces[row] * forces[row]
-        forces[row + 1 :] -= lower[row + 1 :, row, None] * forces[row]
-    of_dofs, of_bodies = answers[:count], answers[count:].reshape(-1, 2, 3)
-    bodies = {
-        part.body.name: (_mean(linear), _mean(angular))
-        for part, (linear, angular) in zip(tree.parts, of_bodies, strict=True)
-    }
-    return bodies, {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
+
+    def __init__(self, root: CompiledBody) -> None:
+        tree = _Tree(root)
+        self._dofs = tree.joints
+        self._count = len(tree.armature)
+        self._lower = _cholesky(tree.mass_matrix())
+        # Forces: of each dof, and those of each body.
+        count = self._count
+        forces = np.zeros((count, count + 6 * len(tree.parts)))
+        forces[:, :count] = np.eye(count)
+        for number, part in enumerate(tree.parts):
+            first = count + 6 * number
+            forces[part.dofs, first : first + 6] = part.jacobian.T
+        answers = self._answers(forces)
+        of_dofs, of_bodies = answers[:count], answers[count:].reshape(-1, 2, 3)
+        self.bodies: dict[str, tuple[float, float]] = {
+            part.body.name: (_mean(linear), _mean(angular))
+            for part, (linear, angular) in zip(tree.parts, of_bodies, strict=True)
+        }
+        self.joints: dict[str, float] = {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
+
+    def along(self, shares: Iterable[tuple[str, float]]) -> float:
+        """The inverse mass along a sum of positions of joints, each by its name and times a share."""
+        force = np.zeros((self._count, 1))
+        for name, share in shares:
+            force[self._dofs[name]] += share
+        return float(self._answers(force)[0])
+
+    def _answers(self, forces: Matrix) -> Matrix:
+        """For each column of forces on the dofs, the acceleration that it causes along itself."""
+        answers, lower = np.zeros(forces.shape[1]), self._lower
+        if lower is None:
+            return answers
+        rest = forces.copy()
+        for row in range(self._count):
+            rest[row] /= lower[row, row]
+            answers += rest[row] * rest[row]
+            rest[row + 1 :] -= lower[row + 1 :, row, None] * rest[row]
+        return answers
 
 
 def _mean(values: Matrix) -> float:

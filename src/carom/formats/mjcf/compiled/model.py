@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
+    from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
 
 @record(frozen=False, eq=False)
@@ -293,6 +294,7 @@ class CompiledModel:
         tendons: By name; those that are not simulated have no robot.
         tendon_couplings: Of tendons, by `<equality>`.
         still: World poses of bodies that do not move, and of the world.
+        weights: Inverse masses of each robot, by name.
         body_weights: Inverse mass and inverse inertia of each body at the reference, by name.
         joint_weights: Inverse mass of each joint at the reference, by name.
         sensors: Those that are built, in order; what they refer to has a name of its own in the whole file.
@@ -316,5 +318,6 @@ class CompiledModel:
     tendons: dict[str, FileTendon] = field(default_factory=dict)
     tendon_couplings: list[FileTendonCoupling] = field(default_factory=list)
     still: dict[str, Pose] = field(default_factory=dict)
+    weights: dict[str, InverseMasses] = field(default_factory=dict)
     body_weights: dict[str, tuple[float, float]] = field(default_factory=dict)
     joint_weights: dict[str, float] = field(default_factory=dict)

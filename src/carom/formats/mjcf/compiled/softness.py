@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from carom.description.compliance import Compliance
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.inverse_masses import inverse_masses
+from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.xml_element import Element
@@ -27,9 +27,9 @@ def read_compliance(scope: Scope, element: Element, attributes: Attributes, of: 
 def weigh(model: CompiledModel, world: CompiledBody) -> None:
     """Find the inverse masses of all bodies and joints, and what follows from them."""
     for root in world.children:
-        of_bodies, of_joints = inverse_masses(root)
-        model.body_weights |= of_bodies
-        model.joint_weights |= of_joints
+        weights = model.weights[root.name] = InverseMasses(root)
+        model.body_weights |= weights.bodies
+        model.joint_weights |= weights.joints
         pending = [root]
         while pending:
             body = pending.pop()

@@ -58,20 +58,23 @@ class TendonReader:
             attributes = section_attributes(of, element, "tendon")
             for copy in self._copies(of, element):
                 parts = self._parts(copy, element)
-                name = self._name(copy, element)
+                name, robot = self._name(copy, element), self._robot(copy, element, parts)
                 spring = copy.context.numbers(
                     element, "springlength", attributes.get("springlength", "-1"), 1, 2
                 )
                 tendon = FileTendon(
                     name,
                     parts,
-                    self._robot(copy, element, parts),
+                    robot,
                     copy.context.number(element, attributes, "stiffness", 0.0),
                     copy.context.number(element, attributes, "damping", 0.0),
                     None if spring[0] == -1.0 else (spring[0], spring[-1]),
                     _range(copy, element, attributes),
                     copy.context.number(element, attributes, "frictionloss", 0.0),
-                    read_compliance(copy, element, attributes, "limit"),
+                    replace(
+                        read_compliance(copy, element, attributes, "limit"),
+                        inverse_mass=self._inverse_mass(robot, parts),
+                    ),
                     copy.context.number(element, attributes, "margin", 0.0),
                 )
                 self._check(copy, element, tendon)
@@ -147,6 +150,12 @@ class TendonReader:
             scope.context.leave_out(element, _LOST, reason)
             return ""
         return robots.pop()
+
+    def _inverse_mass(self, robot: str, parts: tuple[FilePart, ...]) -> float:
+        """Inverse mass at the reference along a tendon over joints; 0 for others."""
+        if not robot or any(part.kind is not PathKind.JOINT for part in parts):
+            return 0.0
+        return self.model.weights[robot].along((part.on, part.size) for part in parts)
 
     def _check(self, scope: Scope, element: Element, tendon: FileTendon) -> None:
         path = tuple(PathPart(part.kind, size=part.size) for part in tendon.parts)
