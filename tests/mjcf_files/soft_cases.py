@@ -64,9 +64,10 @@ MOVED: dict[str, str] = {
     "contacts of two stiffnesses": _ball('solref="-500 -20"', 'solref="-300 -50"'),
     "contact of priority": _ball('solref=".1 1" priority="1"', 'solref=".03 .5"'),
     "contact off": _ball("", "", '<option><flag contact="disable"/></option>'),
-    "arm on a floor": """<mujoco><worldbody><geom type="plane" size="5 5 .1"/><body name="a" pos="0 0 .25"><joint
- name="j" axis="0 1 0"/><geom size=".05" pos=".3 0 0"/><body name="b" pos=".3 0 0"><joint name="k" axis="0 1 0"
- damping=".05"/><geom size=".05" pos=".3 0 0" solref=".04 .8"/></body></body></worldbody></mujoco>""",
+    "arm on a floor": """<mujoco><worldbody><geom type="plane" size="5 5 .1" condim="1"/><body name="a" pos="0 0 .25"><joint
+ name="j" axis="0 1 0"/><geom size=".05" pos=".3 0 0" condim="1"/><body name="b" pos=".3 0 0"><joint name="k" axis="0 1 0"
+ damping=".05"/><geom size=".05" pos=".3 0 0" condim="1"
+ solref=".04 .8"/></body></body></worldbody></mujoco>""",
     "box": """<mujoco><worldbody><geom type="plane" size="5 5 .1"/><body name="f" pos="0 0 .0999"><freejoint/>
 <geom type="box" size=".3 .2 .1" solref=".05 .6"/></body></worldbody></mujoco>""",
 }

@@ -12,6 +12,8 @@ from carom import World
 from carom.formats.mjcf.compiled.reader import compile_mjcf
 from carom.model.from_files import hull_triangles
 
+# MuJoCo's Euler has explicit springs.
+SPRINGS = ("springdamper", "damper off")
 ANSWERS = json.loads(Path(__file__).with_name("soft_answers.json").read_text())
 
 
@@ -31,8 +33,12 @@ def test_bodies_move_as_in_mujoco(tmp_path, name):
         scene = world.load(tmp_path / "file.xml")
         assert not scene.ignored.that_matter
         scene.apply_options()
+        # MuJoCo's solver converges.
+        world.parameters.solver_residual_threshold, world.parameters.solver_iterations = 1e-16, 500
+        world.apply_parameters()
         for actuator in scene.actuators.values():
             actuator.control = 2.0
+        atol = 5e-3 if name in SPRINGS else 1e-6
         done = 0
         for steps, answer in zip(STEPS, ANSWERS[name], strict=True):
             world.step(steps - done)
@@ -43,7 +49,4 @@ def test_bodies_move_as_in_mujoco(tmp_path, name):
             else:
                 body = scene["a"]
                 found = np.concatenate([body.joints[joint].coordinates for joint in ("j", "k")])
-            assert_allclose(found, answer, atol=TOLERANCE.get(name, 2e-5), err_msg=f"after {steps} steps")
-
-
-TOLERANCE: dict[str, float] = {}
+            assert_allclose(found, answer, atol=atol, err_msg=f"after {steps} steps")

@@ -51,7 +51,7 @@ def _robot(placed: PlacedRobot, off: set[str]) -> PlacedRobot:
 def _link(link: Link, off: set[str]) -> Link:
     if "contact" not in off:
         return link
-    return replace(link, collisions=tuple(replace(it, group=0, mask=0) for it in link.collisions))
+    return replace(link, collisions=tuple(replace(it, mask=0) for it in link.collisions))
 
 
 def _joint(joint: Joint, off: set[str]) -> Joint:
