@@ -11,15 +11,22 @@ WEIGHED = """<mujoco><worldbody><body name="a" pos="0 0 1" euler="10 20 30"><joi
 
 
 def _pendulum(joint: str, more: str = "", option: str = "", gravity: str = "0 0 -9.81") -> str:
-    return f"""<mujoco><option timestep=".001" gravity="{gravity}">{option}</option><worldbody><body name="a"
- pos="0 0 1"><joint name="j" axis="0 1 0" {joint}/><geom size=".1" pos=".3 0 0" density="300"/><body name="b"
- pos=".3 0 0"><joint name="k" type="slide" axis="1 0 0" range="-.1 .1"/><geom size=".05" density="800"/></body>
-</body></worldbody>{more}</mujoco>"""
+    return f"""<mujoco><option timestep=".001" gravity="{gravity}">{option}</option><worldbody>
+<body name="a" pos="0 0 1"><joint name="j" axis="0 1 0" {joint}/><geom size=".1" pos=".3 0 0" density="300"/>
+<body name="b" pos=".3 0 0"><joint name="k" type="slide" axis="1 0 0" range="-.1 .1"/><geom size=".05"
+ density="800"/></body></body></worldbody>{more}</mujoco>"""
 
 
 def _ball(plane: str, ball: str, option: str = "") -> str:
     return f"""<mujoco>{option}<worldbody><geom type="plane" size="5 5 .1" {plane}/><body name="f"
  pos="0 0 .1999"><freejoint/><geom size=".2" {ball}/></body></worldbody></mujoco>"""
+
+
+def _arm(geom: str, option: str = "") -> str:
+    ball = f'<geom size=".05" pos=".3 0 0" {geom}'
+    return f"""<mujoco>{option}<worldbody><geom type="plane" size="5 5 .1" {geom}/><body name="a"
+ pos="0 0 .25"><joint name="j" axis="0 1 0"/>{ball}/><body name="b" pos=".3 0 0"><joint name="k"
+ axis="0 1 0"/>{ball} solref=".04 .8"/></body></body></worldbody></mujoco>"""
 
 
 _FIXED = '<tendon><fixed name="t" range="-.1 .2" {}><joint joint="j" coef=".5"/><joint joint="k" coef="2"/>'
@@ -64,10 +71,10 @@ MOVED: dict[str, str] = {
     "contacts of two stiffnesses": _ball('solref="-500 -20"', 'solref="-300 -50"'),
     "contact of priority": _ball('solref=".1 1" priority="1"', 'solref=".03 .5"'),
     "contact off": _ball("", "", '<option><flag contact="disable"/></option>'),
-    "arm on a floor": """<mujoco><worldbody><geom type="plane" size="5 5 .1" condim="1"/><body name="a" pos="0 0 .25"><joint
- name="j" axis="0 1 0"/><geom size=".05" pos=".3 0 0" condim="1"/><body name="b" pos=".3 0 0"><joint name="k" axis="0 1 0"
- damping=".05"/><geom size=".05" pos=".3 0 0" condim="1"
- solref=".04 .8"/></body></body></worldbody></mujoco>""",
+    "arm on a smooth floor": _arm('condim="1"'),
+    "arm on a floor": _arm(""),
+    "arm on a rough floor": _arm('friction="2"'),
+    "arm with round cones": _arm("", '<option cone="elliptic"/>'),
     "box": """<mujoco><worldbody><geom type="plane" size="5 5 .1"/><body name="f" pos="0 0 .0999"><freejoint/>
 <geom type="box" size=".3 .2 .1" solref=".05 .6"/></body></worldbody></mujoco>""",
 }

@@ -356,6 +356,7 @@ class ManifoldBlock:
 
     friction_delassus: Matrix8
     friction_share: Vector8
+    friction_softness: Vector8
     friction_inverse_mass: Vector8
     friction_impulse: Vector8
     friction_wanted: Vector8
@@ -398,6 +399,8 @@ class ContactTerms:
     yields: Int32  # 1: it yields as MuJoCo's contacts do, by the next two
     damping: real  # deceleration per normal velocity [1/s]
     pull: real  # acceleration by its distance, negative out of a penetration [m/s²]
+    lateral_softness: real
+    lateral_from_forces: Vector2  # as `from_forces`, along both directions of friction
     carried: Vector3  # velocity of a's point relative to b's by the set velocities of fixed bases
     carried_spin: Vector3  # likewise the angular velocity
 
@@ -446,6 +449,7 @@ class LateralRows:
     share: Vector2
     effective_mass: Vector2
     inverse_mass: Vector2
+    kept: Vector2
 
 
 @struct

@@ -76,6 +76,16 @@ def pyramid_share(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b
 
 
 @func
+def lateral_softness(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32) -> real:
+    """By how much more than along its normal a contact yields sideways while it sticks."""
+    share = maximum(shapes.link_mixing[world, a][2], shapes.link_mixing[world, b][2])
+    if share <= 0.0:
+        return real(1.0)
+    friction = terms.friction[0]
+    return share * (1.0 + friction * friction)
+
+
+@func
 def let_contact_yield(
     settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32
 ) -> ContactTerms:
@@ -90,14 +100,16 @@ def let_contact_yield(
     inverse_mass = own[3] + other[3]
     margin = shapes.link_mixing[world, a][1] + shapes.link_mixing[world, b][1]
     distance = terms.distance - margin
-    if distance >= 0.0:
+    if distance >= 0.0 or terms.ignored != 0:
         terms.ignored = Int32(1)
         terms.softness = real(0.0)
+        terms.lateral_softness = real(0.0)
         return terms
     d = impedance_at(reference, impedance, distance)
     stiffness, damping = spring_and_damper(settings, reference, impedance)
     terms.yields = Int32(1)
     terms.damping = damping
     terms.pull = stiffness * d * distance
+    terms.lateral_softness = lateral_softness(shapes, terms, world, a, b) * inverse_mass * (1.0 - d) / d
     terms.softness = inverse_mass * pyramid_share(shapes, terms, world, a, b) * (1.0 - d) / d
     return terms

@@ -7,10 +7,13 @@ from math import inf
 
 from carom.description import Joint, Link
 from carom.description.actuator import ActuatorSpec
+from carom.description.collision_groups import MOVING_GROUP
 from carom.formats.mjcf.compiled.model import CompiledModel
 from carom.formats.placed import PlacedRobot
 
 _OF_CONSTRAINTS = ("contact", "equality", "frictionloss", "limit")
+_ALONE = 1 << 30
+"""A group that is in no mask of a file whose geoms do not collide."""
 _ALL = (*_OF_CONSTRAINTS, "clampctrl", "damper", "spring")
 
 
@@ -51,7 +54,9 @@ def _robot(placed: PlacedRobot, off: set[str]) -> PlacedRobot:
 def _link(link: Link, off: set[str]) -> Link:
     if "contact" not in off:
         return link
-    return replace(link, collisions=tuple(replace(it, mask=0) for it in link.collisions))
+    # Rays still hit them.
+    alone = (replace(it, group=_ALONE, mask=MOVING_GROUP) for it in link.collisions)
+    return replace(link, collisions=tuple(alone))
 
 
 def _joint(joint: Joint, off: set[str]) -> Joint:
