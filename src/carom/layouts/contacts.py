@@ -133,7 +133,7 @@ class Shapes:
     link_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
     link_anisotropy: Vector3Rows  # factors on friction along the axes of the inertial frame
     link_processing_threshold: RealRows  # contacts with a larger distance are not solved [m]
-    # Of links whose contacts yield as MuJoCo's, see `kernels.solver.contact_compliance`.
+    # Of links whose contacts yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
     link_reference: Vector4Rows
     link_impedance: Vector4Rows
     link_mixing: Vector3Rows  # weight among two links, margin [m], and share of pyramids

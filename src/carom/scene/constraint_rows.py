@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import batch_islands, quicksort_order
@@ -121,7 +119,7 @@ class ConstraintRows:
         _use(arrays, len(rows))
         self._written = [self._terms(rows, row, user_rows) for row in range(len(rows))]
         for field, values in zip(_FIELDS, zip(*self._written, strict=True), strict=False):
-            _at(arrays, field, slice(len(rows)))[...] = values
+            arrays.model.numpy[field][_at(arrays, field, slice(len(rows)))] = values
         tree_count = arrays.used["tree"]
         counts = [0] * tree_count
         for constraint in rows:
@@ -162,7 +160,7 @@ class ConstraintRows:
         if terms != self._written[row]:
             for field, value, old in zip(_FIELDS, terms, self._written[row], strict=True):
                 if value != old:
-                    _at(arrays, field, slice(row, row + 1))[...] = value
+                    arrays.model.numpy[field][_at(arrays, field, row)] = value
             self._written[row] = terms
 
     def _terms(self, rows: Sequence[JointConstraint], row: int, user_rows: Mapping[int, int]) -> Terms:
@@ -175,10 +173,9 @@ class ConstraintRows:
         return it.kind, tree, link, place, *bounds, actuator, it.reference, it.impedance, it.margin
 
 
-def _at(arrays: WorldArrays, field: str, rows: slice) -> np.ndarray:
-    """Some rows of a field of the model; those of all worlds, if worlds have their own."""
-    array = arrays.model.numpy[field]
-    return array[:, rows] if array.ndim > 1 else array[rows]
+def _at(arrays: WorldArrays, field: str, rows: int | slice) -> Any:
+    """Index of rows of a field of the model; of those of all worlds, if worlds have their own."""
+    return (slice(None), rows) if arrays.model.numpy[field].ndim > 1 else rows
 
 
 def _use(arrays: WorldArrays, count: int) -> None:

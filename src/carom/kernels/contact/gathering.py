@@ -40,7 +40,7 @@ def is_single_sided(shapes: Shapes, shape: Int32) -> bool:
 
 @func
 def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
-    """Whether contacts of a shape's link yield as MuJoCo's; see `kernels.solver.contact_compliance`."""
+    """Whether contacts of a shape's link yield as MuJoCo's; see `kernels.dynamics.contact_compliance`."""
     return shapes.link_impedance[world, shapes.shape_link[shape]][1] > 0.0
 
 

@@ -2,9 +2,9 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.contact_compliance import let_contact_yield, yields
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.maths.min_max import maximum, minimum, within_bounds
-from carom.kernels.solver.contact_compliance import let_contact_yield, yields
 from carom.kernels.solver.warm_starting import next_warm_start, slides
 from carom.kernels.structs import Contacts, ContactTerms, Model, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
