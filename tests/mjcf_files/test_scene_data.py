@@ -139,7 +139,7 @@ def test_a_pair_of_a_body_with_several_shapes_is_reported(load):
     )
     assert [it.consequence for it in scene.ignored.that_matter] == [
         "all geoms of both bodies collide",
-        "contacts and limits are Carom's own",
+        "contacts yield as the geoms of both bodies say",
     ]
     with pytest.raises(DescriptionError, match="no geom 'no'"):
         load(

@@ -12,7 +12,7 @@ class Compliance:
     """Spring, damper and impedance of a constraint, as `solref` and `solimp` of MJCF files give them.
 
     Without other forces an error r obeys r'' = -b r' - k d r. A force f along the constraint moves it by the
-    acceleration (1 - d) / d A f, where A is the inverse mass along it.
+    acceleration (1 - d) / d A f, where A is an inverse mass.
 
     Attributes:
         time_constant: Of the spring and damper [s], at least two time steps; if not positive, minus the
@@ -23,6 +23,9 @@ class Compliance:
         width: That error [m or rad].
         midpoint: Where between 0 and 1 the curve from one to the other turns.
         power: Its exponent on both sides, at least 1.
+        inverse_mass: Inverse mass for which it yields [1/kg, or 1/(kg m²) of an angle]; 0 for that along the
+            constraint at the time.
+        inverse_inertia: Likewise about axes, of welds [1/(kg m²)].
     """
 
     time_constant: float = 0.02
@@ -32,6 +35,8 @@ class Compliance:
     width: float = 0.001
     midpoint: float = 0.5
     power: float = 2.0
+    inverse_mass: float = 0.0
+    inverse_inertia: float = 0.0
 
     @property
     def reference(self) -> Four:
@@ -40,5 +45,27 @@ class Compliance:
 
     @property
     def impedance(self) -> Four:
-        """Bounds of the impedance, width, and 0."""
-        return (self.least, self.greatest, self.width, 0.0)
+        """Bounds of the impedance, width, and inverse mass."""
+        return (self.least, self.greatest, self.width, self.inverse_mass)
+
+
+@record
+class ContactCompliance:
+    """How the contacts of a link yield, as `<geom>` of MJCF files gives it.
+
+    Attributes:
+        compliance: Spring, damper and impedance; `inverse_mass` is the link's share of that of a contact.
+        weight: Of two links of one rank, both count by their weights.
+        margin: Distance at which contacts begin to push [m]; those of two links add up.
+        pyramids: 0 for round friction cones; for pyramids 1, or less if friction is stiffer than the normal.
+    """
+
+    compliance: Compliance = Compliance()
+    weight: float = 1.0
+    margin: float = 0.0
+    pyramids: float = 1.0
+
+    @property
+    def mixing(self) -> tuple[float, float, float]:
+        """Weight, margin, pyramids."""
+        return (self.weight, self.margin, self.pyramids)

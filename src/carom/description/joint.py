@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
+from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import JointCode
 from carom.record import record
@@ -95,6 +96,9 @@ class Joint:
         spring_reference: Position at which this spring is at rest [rad or m]; of a spherical joint it is
             always the position without rotation.
         friction: Dry friction as the file states it [N m or N]; PyBullet's API does not simulate it.
+        limit_compliance: How its limits yield; None for rigid ones.
+        limit_margin: Distance from a limit at which it begins to act [rad or m].
+        friction_compliance: How its friction yields while it sticks; None for friction that holds it.
     """
 
     name: str
@@ -112,3 +116,6 @@ class Joint:
     spring_reference: float = 0.0
     mimic: Mimic | None = None
     safety: SafetyController | None = None
+    limit_compliance: Compliance | None = None
+    limit_margin: float = 0.0
+    friction_compliance: Compliance | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from pathlib import Path
 
+from carom.description.compliance import ContactCompliance
 from carom.description.geometry import Geometry
 from carom.description.pose import IDENTITY, Pose
 from carom.record import record
@@ -84,6 +85,7 @@ class ContactParameters:
         friction_anchor: Keep a position anchor for friction.
         friction_rank: How friction is combined with that of another link, if both have a rank: the higher one
             decides, and of equal ones the greater coefficients. 0 is none; then coefficients are multiplied.
+        compliance: How contacts yield; None for rigid ones, or those of `stiffness` and `damping`.
     """
 
     lateral_friction: float | None = None
@@ -95,6 +97,7 @@ class ContactParameters:
     inertia_scaling: float | None = None
     friction_anchor: bool = False
     friction_rank: int = 0
+    compliance: ContactCompliance | None = None
 
 
 @record

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
+from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
 from carom.layouts.codes import PathKind
@@ -51,6 +52,8 @@ class TendonSpec:
         spring_range: Lengths between which the spring is slack; None for the length where it is added.
         range: Least and greatest length [m].
         friction: Greatest force of dry friction [N].
+        limit_compliance: How its limit yields; None for a rigid one.
+        limit_margin: Distance from its limit at which it begins to act [m].
     """
 
     name: str
@@ -60,6 +63,8 @@ class TendonSpec:
     spring_range: tuple[float, float] | None = None
     range: tuple[float, float] = (-inf, inf)
     friction: float = 0.0
+    limit_compliance: Compliance | None = None
+    limit_margin: float = 0.0
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the path and the numbers have a meaning."""

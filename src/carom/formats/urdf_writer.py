@@ -189,6 +189,7 @@ def _contact(contact: ContactParameters) -> Iterator[str]:
     values = {field.name: getattr(contact, field.name) for field in fields(contact)}
     values.pop("friction_anchor")
     values.pop("friction_rank")
+    values.pop("compliance")
     stated = {name: value for name, value in values.items() if value is not None}
     if not stated and not contact.friction_anchor:
         return

@@ -133,6 +133,10 @@ class Shapes:
     link_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
     link_anisotropy: Vector3Rows  # factors on friction along the axes of the inertial frame
     link_processing_threshold: RealRows  # contacts with a larger distance are not solved [m]
+    # Of links whose contacts yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
+    link_reference: Vector4Rows
+    link_impedance: Vector4Rows
+    link_mixing: Vector3Rows  # weight among two links, margin [m], and share of pyramids
 
     # Pairs of links whose collisions users have switched on or off, sorted by both link rows.
     filter_link_a: Ints
@@ -299,7 +303,8 @@ class UserConstraints:
     user_polynomial: Vectors4  # of a coupling, see `scene.user_constraints`
     user_erp: Reals
     user_reference: Vectors4  # of a compliant one: time constant, damping ratio, midpoint, power
-    user_impedance: Vectors4  # of a compliant one: bounds, width; see `kernels.tendons.compliance`
+    user_impedance: Vectors4  # of a compliant one, see `kernels.dynamics.yielding`
+    user_inverse_inertia: Reals  # of a compliant one: inverse mass of rows about axes, or 0
     user_first_path: (
         Ints  # parts of the path of a tendon, of a second one, or of the frames of a transmission
     )
@@ -308,7 +313,7 @@ class UserConstraints:
     user_actuator: Ints  # row of the actuator of a transmission
     user_is_wrench: Ints  # 1: a transmission to a site, a wrench along its axes
     user_spring: Vectors4  # of a tendon: stiffness, damping, lengths between which it is slack; see `tendons`
-    user_range: Vectors4  # of a tendon: least and greatest length, and friction; see `tendons`
+    user_range: Vectors4  # of a tendon: least and greatest length, friction, margin; see `tendons`
     user_enabled: IntRows  # 0: no effect
 
     # Parts of paths.
@@ -351,6 +356,7 @@ class ManifoldBlock:
 
     friction_delassus: Matrix8
     friction_share: Vector8
+    friction_softness: Vector8
     friction_inverse_mass: Vector8
     friction_impulse: Vector8
     friction_wanted: Vector8
@@ -389,7 +395,12 @@ class ContactTerms:
     erp: real
     start: Vector3  # initial impulses
     ignored: Int32  # 1: its distance is too large for it to be solved
-    from_forces: real  # change of its normal velocity by forces in this substep, if it has restitution
+    from_forces: real  # change of its normal velocity by forces in this substep, if it counts
+    yields: Int32  # 1: it yields as MuJoCo's contacts do, by the next two
+    damping: real  # deceleration per normal velocity [1/s]
+    pull: real  # acceleration by its distance, negative out of a penetration [m/s²]
+    lateral_softness: real
+    lateral_from_forces: Vector2  # as `from_forces`, along both directions of friction
     carried: Vector3  # velocity of a's point relative to b's by the set velocities of fixed bases
     carried_spin: Vector3  # likewise the angular velocity
 
@@ -438,6 +449,7 @@ class LateralRows:
     share: Vector2
     effective_mass: Vector2
     inverse_mass: Vector2
+    kept: Vector2
 
 
 @struct

@@ -168,6 +168,10 @@ class Model:
     constraint_upper: RealRows
     constraint_twist: RealRows
     constraint_max_impulse: RealRows
+    # Of limits and friction that yield, see `kernels.dynamics.yielding`.
+    constraint_reference: Vector4Rows
+    constraint_impedance: Vector4Rows
+    constraint_margin: RealRows  # distance from a limit at which it begins to act [rad or m]
     # Force = (gain · terms) input + bias · terms, where the terms are 1, length and velocity of the actuator.
     actuator_gain: Vector3Rows
     actuator_bias: Vector3Rows

@@ -126,6 +126,8 @@ def _attach(spec: LinkSpec, node: TreeNode, parent: int) -> None:
     spec.armature = joint.armature
     spec.stiffness = joint.stiffness
     spec.spring_reference = joint.spring_reference
+    spec.limit_compliance, spec.limit_margin = joint.limit_compliance, joint.limit_margin
+    spec.friction_compliance = joint.friction_compliance
     spec.mimic = joint.mimic
 
 

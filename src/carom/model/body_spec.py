@@ -13,6 +13,7 @@ from typing import Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.actuator import ActuatorSpec
+from carom.description.compliance import Compliance
 from carom.description.joint import JOINT_CODE
 from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import IDENTITY, Vector3
@@ -57,6 +58,9 @@ class LinkSpec:
         spring_reference: Position at which this spring is at rest [rad or m]; of a spherical joint it is
             always the position without rotation.
         friction: Dry friction of the joint [N m or N]; not simulated in a body with `is_held`.
+        limit_compliance: How the joint's limits yield; None for rigid ones.
+        limit_margin: Distance from a limit at which it begins to act [rad or m].
+        friction_compliance: How its friction yields while it sticks; None for friction that holds it.
         collisions: Collision shapes, with poses in the link frame.
         visuals: Visual shapes, with poses in the link frame.
         compound_margin: Distance by which the bounds of several shapes, or of one that is not in the
@@ -90,6 +94,9 @@ class LinkSpec:
     armature: float = 0.0
     stiffness: float = 0.0
     spring_reference: float = 0.0
+    limit_compliance: Compliance | None = None
+    limit_margin: float = 0.0
+    friction_compliance: Compliance | None = None
     collisions: tuple[Collision, ...] = ()
     visuals: tuple[Visual, ...] = ()
     compound_margin: float = MARGIN

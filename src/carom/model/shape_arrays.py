@@ -56,6 +56,9 @@ SURFACE_FIELDS = {
     "contact_damping": "link_contact_damping",
     "friction_anchor": "link_friction_anchor",
     "friction_rank": "link_friction_rank",
+    "contact_reference": "link_reference",
+    "contact_impedance": "link_impedance",
+    "contact_mixing": "link_mixing",
     "anisotropic_friction": "link_anisotropy",
     "contact_processing_threshold": "link_processing_threshold",
     "ccd_swept_sphere_radius": "shape_ccd_radius",
@@ -74,6 +77,9 @@ class Surface(Protocol):
     contact_damping: float
     friction_anchor: bool
     friction_rank: int
+    contact_reference: tuple[float, float, float, float]
+    contact_impedance: tuple[float, float, float, float]
+    contact_mixing: tuple[float, float, float]
     collision_margin: float
     ccd_swept_sphere_radius: float
     contact_processing_threshold: float

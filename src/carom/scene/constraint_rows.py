@@ -23,6 +23,9 @@ _FIELDS = (
     "constraint_twist",
     "constraint_max_impulse",
     "constraint_actuator",
+    "constraint_reference",
+    "constraint_impedance",
+    "constraint_margin",
 )
 
 
@@ -116,7 +119,7 @@ class ConstraintRows:
         _use(arrays, len(rows))
         self._written = [self._terms(rows, row, user_rows) for row in range(len(rows))]
         for field, values in zip(_FIELDS, zip(*self._written, strict=True), strict=False):
-            arrays.model.numpy[field][..., : len(rows)] = values
+            arrays.model.numpy[field][_at(arrays, field, slice(len(rows)))] = values
         tree_count = arrays.used["tree"]
         counts = [0] * tree_count
         for constraint in rows:
@@ -157,7 +160,7 @@ class ConstraintRows:
         if terms != self._written[row]:
             for field, value, old in zip(_FIELDS, terms, self._written[row], strict=True):
                 if value != old:
-                    arrays.model.numpy[field][..., row] = value
+                    arrays.model.numpy[field][_at(arrays, field, row)] = value
             self._written[row] = terms
 
     def _terms(self, rows: Sequence[JointConstraint], row: int, user_rows: Mapping[int, int]) -> Terms:
@@ -166,7 +169,13 @@ class ConstraintRows:
         link = it.body.first_link + 1 + it.joint if it.user is None else user_rows[it.user.id]
         tree, place = it.moving_body.rows.tree, self._places[row]
         actuator = it.body.rows.first["actuator"] + it.actuator
-        return it.kind, tree, link, place, it.lower, it.upper, it.twist, it.max_impulse, actuator
+        bounds = (it.lower, it.upper, it.twist, it.max_impulse)
+        return it.kind, tree, link, place, *bounds, actuator, it.reference, it.impedance, it.margin
+
+
+def _at(arrays: WorldArrays, field: str, rows: int | slice) -> Any:
+    """Index of rows of a field of the model; of those of all worlds, if worlds have their own."""
+    return (slice(None), rows) if arrays.model.numpy[field].ndim > 1 else rows
 
 
 def _use(arrays: WorldArrays, count: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, cast
 
+from carom.description.compliance import Compliance, Four
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
@@ -16,6 +17,8 @@ from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
+
+NONE: Four = (0.0, 0.0, 0.0, 0.0)
 
 
 @record(frozen=False, eq=False, hot=True)
@@ -32,6 +35,9 @@ class JointConstraint:
         user: The user constraint, if it is one.
         max_impulse: Maximum impulse of a limit per substep.
         actuator: Number among the actuators of the body, if it is one.
+        reference: Of a limit or friction that yields, see `carom.description.compliance`.
+        impedance: Likewise; 0 if it is rigid.
+        margin: Distance from a limit at which it begins to act [rad or m].
     """
 
     body: Body
@@ -43,6 +49,14 @@ class JointConstraint:
     user: UserConstraint | None = None
     max_impulse: float = DEFAULT_LIMIT_IMPULSE
     actuator: int = 0
+    reference: Four = NONE
+    impedance: Four = NONE
+    margin: float = 0.0
+
+    def yield_as(self, compliance: Compliance | None) -> None:
+        """Let it yield, unless there is no compliance."""
+        if compliance is not None:
+            self.reference, self.impedance = compliance.reference, compliance.impedance
 
     @property
     def moving_body(self) -> Body:
@@ -86,7 +100,10 @@ class JointConstraints:
                         )
                     )
             elif link.limited:
-                self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper))
+                limit = JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper)
+                limit.yield_as(link.limit_compliance)
+                limit.margin = link.limit_margin
+                self.all.append(limit)
         for joint, code in enumerate(body.joint_types):
             if code in MOTOR_KIND:
                 self.all.append(JointConstraint(body, joint, MOTOR_KIND[code]))
@@ -94,6 +111,7 @@ class JointConstraints:
             for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
                 if code in WITH_FRICTION and link.friction > 0.0:
                     friction = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=link.friction)
+                    friction.yield_as(link.friction_compliance)
                     self.all.append(friction)
         for number, actuator in enumerate(body.spec.actuators):
             if not drives_joint(actuator):

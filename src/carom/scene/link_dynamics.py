@@ -32,6 +32,9 @@ class LinkDynamics:
         contact_damping: [N s/m]; -1 if unset.
         friction_anchor: Whether friction has a position anchor.
         friction_rank: How friction is combined, see `carom.description.ContactParameters`.
+        contact_reference: Spring and damper of contacts that yield, see `carom.description.compliance`.
+        contact_impedance: Their impedance and inverse mass; 0 for rigid ones.
+        contact_mixing: How both are combined with those of another link.
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
         contact_processing_threshold: Maximum distance at which a contact is solved [m].
@@ -66,6 +69,9 @@ class LinkDynamics:
     joint_stiffness: float = 0.0
     joint_spring_reference: tuple[float, ...] = ()
     friction_rank: int = 0
+    contact_reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    contact_impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    contact_mixing: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @classmethod
     def of(cls, link: LinkSpec) -> LinkDynamics:
@@ -84,6 +90,10 @@ class LinkDynamics:
             friction_rank=contact.friction_rank,
             collision_margin=collision_margin(link),
         )
+        if (yielding := contact.compliance) is not None:
+            dynamics.contact_reference = yielding.compliance.reference
+            dynamics.contact_impedance = yielding.compliance.impedance
+            dynamics.contact_mixing = yielding.mixing
         stated = {
             "lateral_friction": contact.lateral_friction,
             "rolling_friction": contact.rolling_friction,

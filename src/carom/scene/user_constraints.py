@@ -46,6 +46,7 @@ _FIELDS = (
     "user_erp",
     "user_reference",
     "user_impedance",
+    "user_inverse_inertia",
     "user_pivot_a",
     "user_pivot_b",
     "user_frame_a",
@@ -106,11 +107,13 @@ class UserConstraint:
         is_wrench: Whether a transmission is to a site.
         spring: Of a tendon: stiffness, damping, and the lengths between which it is slack. Of a transmission
             to a site: force along its axes, per force of the actuator.
-        range: Of a tendon: least and greatest length, friction. Of coupled ones: the lengths from which both
-            are counted. Of a transmission to a site: torque about its axes.
+        range: Of a tendon: least and greatest length, friction, margin. Of coupled ones: the lengths from
+            which both are counted. Of a transmission to a site: torque about its axes.
         reference: Of a compliant constraint: time constant and damping ratio, or minus stiffness and damping;
             midpoint and power of the impedance's curve.
-        impedance: Of a compliant constraint: least and greatest impedance, and width; 0 for a rigid one.
+        impedance: Of a compliant constraint: least and greatest impedance, width, and the inverse mass for
+            which it yields, 0 for that at the time; 0 for a rigid one.
+        inverse_inertia: Likewise, of its rows about axes.
     """
 
     id: int
@@ -139,6 +142,7 @@ class UserConstraint:
     range: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    inverse_inertia: float = 0.0
 
     @property
     def both_paths(self) -> Path:
@@ -182,6 +186,7 @@ class UserConstraint:
             self.erp,
             self.reference,
             self.impedance,
+            self.inverse_inertia,
             self.parent_frame.position,
             self.child_frame.position,
             self.parent_frame.orientation,

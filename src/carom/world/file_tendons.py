@@ -101,6 +101,8 @@ def _spec(body: Body, tendon: FileTendon, place: Pose) -> TendonSpec:
         tendon.spring_range,
         tendon.range,
         tendon.friction,
+        tendon.limit_compliance,
+        tendon.limit_margin,
     )
 
 

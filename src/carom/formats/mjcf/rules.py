@@ -13,7 +13,7 @@ from carom.formats.reading.rules import Rule, Rules
 _YET = "not read yet"
 _NO_LOSS = "none for the dynamics"
 _SKETCH = "it is for the window of MuJoCo"
-_SOFT = "contacts and limits are Carom's own"
+_SOFT = "contacts yield as the geoms of both bodies say"
 _RIGID = "the constraint is as stiff as the solver makes it"
 _LAW = "the force of the actuator is another one"
 _SOLVER = "it is for the solvers of MuJoCo"
@@ -57,7 +57,9 @@ _SENSORS = {
     "clock": _SENSOR,
 }
 
-_TENDON = "class damping frictionloss limited name range springlength stiffness"
+_TENDON = (
+    "class damping frictionloss limited margin name range solimplimit solreflimit springlength stiffness"
+)
 _TENDONS = ("fixed", "spatial", "tendon")
 
 _UNBUILT = ("orientation", "pid", "adhesion", "dcmotor", "plugin")
@@ -75,11 +77,12 @@ _READ = {
     "model": "file name",
     "body": f"childclass gravcomp mocap name pos {_TURN}",
     "inertial": f"diaginertia fullinertia mass pos {_TURN}",
-    "joint": "armature axis class damping frictionloss limited name pos range ref springref stiffness type "
+    "joint": "armature axis class damping frictionloss limited margin name pos range ref solimpfriction "
+    "solimplimit solreffriction solreflimit springdamper springref stiffness type "
     "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
     "geom": "class conaffinity condim contype density fitscale friction fromto group hfield mass material "
-    f"mesh name pos priority rgba shellinertia size type {_TURN}",
+    f"margin mesh name pos priority rgba shellinertia size solimp solmix solref type {_TURN}",
     "site": f"class fromto name pos size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize {_TURN}",
     "attach": "body frame model prefix",
@@ -103,9 +106,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("option", "sleep_tolerance", "bodies do not fall asleep", _YET),
     ("body", "sleep", "it does not fall asleep", _YET),
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
-    ("joint", "springdamper springyield", "the joint has another spring", _YET),
-    ("joint", "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET),
-    ("geom", "gap margin solimp solref solmix", _SOFT, _YET),
+    ("joint", "springyield", "the joint has another spring", _YET),
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
     ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
@@ -115,7 +116,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
         for tag in _ACTUATORS
     ],
     ("general", "inheritrange", _LAW, _YET),
-    *[(tag, "margin solimpfriction solimplimit solreffriction solreflimit", _SOFT, _YET) for tag in _TENDONS],
+    *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],
     *[
         (tag, "actuatorfrclimited actuatorfrcrange", "its actuators have no such bound", _YET)
         for tag in _TENDONS
@@ -140,7 +141,7 @@ _WITHOUT_LOSS = {
     "body": "fuse simple user",
     "joint": "group user",
     "freejoint": "group",
-    "geom": "castshadow user",
+    "geom": "castshadow gap user",
     **{tag: f"{'lengthrange ' * (tag != 'muscle')}user {_NOT_OF_JOINTS}" for tag in _ACTUATORS},
     "site": "group material rgba user",
     "camera": "ipd output principal principalpixel projection target user",

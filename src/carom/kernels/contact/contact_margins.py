@@ -26,6 +26,13 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 
 
 @func
+def stated_margin(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
+    """Distance at which contacts of two shapes begin to push, if they yield [m]."""
+    of_a = shapes.link_mixing[world, shapes.shape_link[a]][1]
+    return of_a + shapes.link_mixing[world, shapes.shape_link[b]][1]
+
+
+@func
 def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
     """Largest gap between the bounds of two shapes that can be in contact [m].
 
@@ -36,7 +43,7 @@ def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32
     on_plane = shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
     if not on_plane and (is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b)):
         return ahead
-    return maximum(ahead, breaking_distance(shapes, a, b))
+    return maximum(maximum(ahead, breaking_distance(shapes, a, b)), stated_margin(shapes, world, a, b))
 
 
 @func
@@ -91,9 +98,13 @@ def contact_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int3
     """Contact margin: largest distance of two shapes in contact [m].
 
     Zero for two spheres and for two boxes without a contact so far; the breaking distance for other pairs.
-    With continuous collision detection it is at least the distance that fast shapes can move in a step.
+    With continuous collision detection it is at least the distance that fast shapes can move in a step. It
+    is at least the margin of both links, too.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
+    stated = stated_margin(shapes, world, a, b)
+    if stated > 0.0:
+        return maximum(maximum(ahead, breaking_distance(shapes, a, b)), stated)
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
     if kind_a == SPHERE and kind_b == SPHERE:

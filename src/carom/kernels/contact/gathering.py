@@ -6,7 +6,7 @@ tumbles is never complete: new points come in front, old points remain behind, a
 depth and the sideways scrubbing. Two boxes get up to four new points in a step, those that touch, and keep
 points of earlier steps as well.
 
-What is at rest keeps exactly the points it has.
+What is at rest keeps exactly the points it has. Contacts that yield gather no points.
 """
 
 import warp as wp
@@ -36,6 +36,12 @@ def is_single_sided(shapes: Shapes, shape: Int32) -> bool:
     """Whether a shape is a sphere or consists of triangles, so that its manifolds gather no points."""
     kind = shapes.shape_kind[shape]
     return kind == SPHERE or kind >= TRIANGLES
+
+
+@func
+def has_yielding_contacts(shapes: Shapes, world: Int32, shape: Int32) -> bool:
+    """Whether contacts of a shape's link yield as MuJoCo's; see `kernels.dynamics.contact_compliance`."""
+    return shapes.link_impedance[world, shapes.shape_link[shape]][1] > 0.0
 
 
 @func
@@ -125,6 +131,9 @@ def find_new_points(
         return AT_ONCE
     if pairs.shape_motion[world, a] + pairs.shape_motion[world, b] > 0.0:
         # A fast shape that is stopped at one point only would swing through the surface with its other end.
+        return AT_ONCE
+    if has_yielding_contacts(shapes, world, a) or has_yielding_contacts(shapes, world, b):
+        # Corners that are found late have sunk in by then.
         return AT_ONCE
     if keeps_points(shapes, pairs, world, a, b, first, last):
         return 0

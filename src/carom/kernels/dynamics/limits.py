@@ -6,12 +6,14 @@ import warp as wp
 
 from carom.kernels.dynamics.motors import euler_xyz, joint_quaternion
 from carom.kernels.dynamics.rows import add_row, axis_effective_masses, dof_effective_mass
+from carom.kernels.dynamics.yielding import yielding_row
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 
 _EPSILON = real(2.220446049250313e-16)
 _PI = real(math.pi)
+_UNBOUNDED = real(1e30)
 # Factor on the error of a spherical joint, in addition to the error reduction.
 _SPHERICAL_GAIN = real(0.2)
 
@@ -37,16 +39,27 @@ def limit_rows(
     """Add the rows of the limits that a revolute or prismatic joint has reached; returns the next free row.
 
     A violation is reduced at the joints' error reduction rate. With split impulse, one beyond the split
-    threshold only stops growing.
+    threshold only stops growing. Limits with an impedance yield instead, see `yielding`.
     """
     link = model.constraint[constraint].link
     dof = model.link[link].first_dof
     tree = model.constraint[constraint].tree
     position = state.position[world, model.link[link].first_position]
     velocity = state.dof_velocity[world, dof]
-    below = model.constraint_lower[world, constraint] - position
-    above = position - model.constraint_upper[world, constraint]
+    margin = model.constraint_margin[world, constraint]
+    below = model.constraint_lower[world, constraint] + margin - position
+    above = position - model.constraint_upper[world, constraint] + margin
     if below < 0.0 and above < 0.0:
+        return row
+    if model.constraint_impedance[world, constraint][1] > 0.0:
+        if below >= 0.0:
+            row = yielding_row(
+                model, settings, state, scratch, world, constraint, row, -below, 0.0, _UNBOUNDED
+            )
+        if above >= 0.0:
+            row = yielding_row(
+                model, settings, state, scratch, world, constraint, row, above, -_UNBOUNDED, 0.0
+            )
         return row
     bound = model.constraint_max_impulse[world, constraint]
     effective_mass = dof_effective_mass(model, scratch, world, tree, dof)

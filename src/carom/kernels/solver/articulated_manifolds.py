@@ -12,6 +12,7 @@ from carom.kernels.maths.blocks import add_combination4, add_combination8, combi
 from carom.kernels.solver.rigid_manifolds import (
     bounded_friction,
     bounded_normals,
+    friction_alone,
     friction_residual,
     normal_residual,
     normals_alone,
@@ -64,7 +65,7 @@ def relax_articulated_friction(
     """Relax the friction rows of a manifold block; returns as `relax_articulated_normals`."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
-    wanted = pair_rows.manifold_block[world, manifold_block].friction_share
+    wanted = friction_alone(pair_rows, world, manifold_block)
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[1] + 8 * place[1] * side

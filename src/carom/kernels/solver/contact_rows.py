@@ -2,7 +2,12 @@
 
 import warp as wp
 
-from carom.kernels.solver.contact_terms import friction_change, keep_contact_impulse, normal_change
+from carom.kernels.solver.contact_terms import (
+    friction_change,
+    keep_contact_impulse,
+    lateral_change,
+    normal_change,
+)
 from carom.kernels.solver.pair_rows import write_pair_jacobian, write_row
 from carom.kernels.solver.warm_starting import NOT_RESTING
 from carom.kernels.structs import Contacts, ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
@@ -67,9 +72,12 @@ def add_contact_rows(
             inverse_mass = real(0.0)
         velocity = velocity + wp.dot(terms.carried, linear) + wp.dot(terms.carried_spin, angular)
         change = friction_change(settings, velocity, terms.drift, linear)
+        softness = real(0.0)
+        if place == rows[LATERAL_ROW] or place == rows[LATERAL_ROW] + 1:
+            change = lateral_change(settings, terms, velocity, place - row, linear)
+            softness = terms.lateral_softness + 0.0
         lower = -coefficient
         upper = coefficient
-        softness = real(0.0)
         if place == row:
             change = normal_change(settings, shapes, terms, world, velocity)
             lower = real(0.0)

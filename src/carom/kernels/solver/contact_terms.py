@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.contact_compliance import let_contact_yield, yields
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.maths.min_max import maximum, minimum, within_bounds
 from carom.kernels.solver.warm_starting import next_warm_start, slides
@@ -199,7 +200,25 @@ def contact_terms(
         model, state, world, terms.ends[2]
     )
     terms.from_forces = real(0.0)
-    if combined_restitution(shapes, world, a, b) > 0.0:
+    terms.yields = Int32(0)
+    terms.lateral_softness = real(0.0)
+    rebounds = combined_restitution(shapes, world, a, b) > 0.0
+    yielding = not rebounds and yields(shapes, world, a, b)
+    if yielding:
+        terms = let_contact_yield(settings, shapes, terms, world, a, b)
+    if yielding:
+        first, second = terms.lateral1, terms.lateral2
+        terms.lateral_from_forces[0] = velocity_from_forces(
+            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, first
+        ) - velocity_from_forces(
+            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, first
+        )
+        terms.lateral_from_forces[1] = velocity_from_forces(
+            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, second
+        ) - velocity_from_forces(
+            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, second
+        )
+    if rebounds or yielding:
         terms.from_forces = velocity_from_forces(
             settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
         ) - velocity_from_forces(
@@ -217,7 +236,11 @@ def normal_change(
     A gap may close within the step, but not more. Penetration is corrected at the rate `terms.erp`, in
     addition to restitution. But neither this correction nor the forces of this step make bodies rebound
     faster than they approached; otherwise, at a restitution of 1, they would gain energy with every bounce.
+    Contacts that yield have a spring and damper instead.
     """
+    if terms.yields != 0:
+        before = velocity - terms.from_forces
+        return before - settings.time_step * (terms.damping * before + terms.pull) - velocity
     gap = terms.distance + settings.contact_slop
     parting = -gap / settings.time_step
     if gap <= 0.0:
@@ -235,6 +258,17 @@ def normal_change(
 def friction_change(settings: Settings, velocity: real, drift: Vector3, direction: Vector3) -> real:
     """Change of velocity along a friction direction that stops sliding and corrects a drift."""
     return -velocity - wp.dot(drift, direction) * settings.friction_erp / settings.time_step
+
+
+@func
+def lateral_change(
+    settings: Settings, terms: ContactTerms, velocity: real, row: Int32, direction: Vector3
+) -> real:
+    """Requested change of the velocity of a row of lateral friction, 1 or 2, along its direction."""
+    if terms.yields != 0:
+        before = velocity - terms.lateral_from_forces[row - 1]
+        return before - settings.time_step * terms.damping * before - velocity
+    return friction_change(settings, velocity, terms.drift, direction)
 
 
 @func

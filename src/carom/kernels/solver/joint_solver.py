@@ -40,9 +40,10 @@ def is_constrained(model: Model, state: State, world: Int32, root: Int32) -> boo
                 return True
         elif kind == LIMIT:
             position = state.position[world, model.link[link].first_position]
+            margin = model.constraint_margin[world, constraint]
             if (
-                position <= model.constraint_lower[world, constraint]
-                or position >= model.constraint_upper[world, constraint]
+                position <= model.constraint_lower[world, constraint] + margin
+                or position >= model.constraint_upper[world, constraint] - margin
             ):
                 return True
         else:

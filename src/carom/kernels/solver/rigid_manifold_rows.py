@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
-from carom.kernels.solver.contact_terms import friction_change, normal_change
+from carom.kernels.solver.contact_terms import lateral_change, normal_change
 from carom.kernels.solver.rigid_manifolds import combination, push_manifold_block
 from carom.kernels.structs import ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Int32, Matrix8, Vector3, Vector4, Vector8, func, real
@@ -66,10 +66,13 @@ def write_row_numbers(
         inverse_mass = real(0.0)
     direction = row_direction(terms, row)
     total = velocity + wp.dot(terms.carried, direction)
-    change = friction_change(settings, total, terms.drift, direction)
+    change = real(0.0)
     if row == 0:
         inverse_mass += terms.softness
         change = normal_change(settings, shapes, terms, world, total)
+    else:
+        inverse_mass += terms.lateral_softness
+        change = lateral_change(settings, terms, total, row, direction)
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
@@ -83,6 +86,7 @@ def write_row_numbers(
     else:
         i = 2 * contact + row - 1
         pair_rows.manifold_block[world, manifold_block].friction_share[i] = change * mass
+        pair_rows.manifold_block[world, manifold_block].friction_softness[i] = terms.lateral_softness * mass
         pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i] = inverse_mass
         pair_rows.manifold_block[world, manifold_block].friction_impulse[i] = impulse
     return mass

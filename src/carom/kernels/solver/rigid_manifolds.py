@@ -87,6 +87,14 @@ def normals_alone(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> V
 
 
 @func
+def friction_alone(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
+    """As `normals_alone`, of friction."""
+    softness = pair_rows.manifold_block[world, manifold_block].friction_softness
+    impulse = pair_rows.manifold_block[world, manifold_block].friction_impulse
+    return pair_rows.manifold_block[world, manifold_block].friction_share - wp.cw_mul(softness, impulse)
+
+
+@func
 def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector4:
     """Update the normal impulses of a block by the wanted changes, clamped to >= 0; returns the changes."""
     before = pair_rows.manifold_block[world, manifold_block].normal_impulse
@@ -215,8 +223,9 @@ def relax_rigid_friction(
 ) -> real:
     """Relax the friction rows of a manifold block of rigid bodies; returns as `relax_rigid_normals`."""
     place = pair_rows.manifold_block[world, manifold_block].place
-    share = pair_rows.manifold_block[world, manifold_block].friction_share
-    pair_rows.manifold_block[world, manifold_block].friction_wanted = share
+    pair_rows.manifold_block[world, manifold_block].friction_wanted = friction_alone(
+        pair_rows, world, manifold_block
+    )
     for body in range(2):
         if place[2 * body + 1] > 0:
             weighted = pair_rows.side[world, 2 * manifold_block + body].friction_weighted

@@ -14,7 +14,7 @@ import warp as wp
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.equal_steps import equal_steps
 from carom.kernels.maths.min_max import maximum, within_bounds
-from carom.kernels.solver.contact_terms import friction_change, keep_contact_impulse, normal_change
+from carom.kernels.solver.contact_terms import keep_contact_impulse, lateral_change, normal_change
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.rigid_manifold_rows import row_direction
 from carom.kernels.solver.warm_starting import NOT_RESTING
@@ -133,7 +133,7 @@ def wanted_friction(
         scratch.delta_velocity, world, place[1], pair_rows.single_lateral[world, single].jacobian_b
     )
     return (
-        before
+        wp.cw_mul(before, pair_rows.single_lateral[world, single].kept)
         + pair_rows.single_lateral[world, single].share
         - wp.cw_mul(velocity, pair_rows.single_lateral[world, single].effective_mass)
     )
@@ -297,7 +297,7 @@ def requested_change(
     total = velocity + wp.dot(terms.carried, direction)
     if row == 0:
         return normal_change(settings, shapes, terms, world, total)
-    return friction_change(settings, total, terms.drift, direction)
+    return lateral_change(settings, terms, total, row, direction)
 
 
 @func
@@ -363,7 +363,7 @@ def write_row_of_single(
         point = terms.point_b
         direction = -direction
         body += 1
-    softness = terms.softness if row == 0 else 0.0
+    softness = terms.softness if row == 0 else terms.lateral_softness
     if terms.ignored != 0:
         inverse_mass = real(0.0)
     mass = inverse_or_off(inverse_mass + softness)
@@ -377,6 +377,7 @@ def write_row_of_single(
     else:
         pair_rows.single_lateral[world, single].share[row - 1] = share
         pair_rows.single_lateral[world, single].effective_mass[row - 1] = mass
+        pair_rows.single_lateral[world, single].kept[row - 1] = 1.0 - softness * mass
         pair_rows.single_lateral[world, single].inverse_mass[row - 1] = inverse_mass
 
 

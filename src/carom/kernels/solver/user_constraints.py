@@ -8,7 +8,7 @@ from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
-from carom.kernels.tendons.compliance import is_compliant, write_compliant_row
+from carom.kernels.tendons.compliance import write_holding_row
 from carom.kernels.tendons.rows import add_path_rows
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import (
@@ -146,8 +146,6 @@ def add_user_rows(
     turned = euler_xyz(rotation_matrix(wp.quat_inverse(frame_b) * frame_a))
     directions = held_directions(state, users, world, user, axes)
 
-    bound = users.user_max_impulse[user]
-    compliant = is_compliant(users, user)
     size = error_size(users.user_kind[user], apart, turned)
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
@@ -155,14 +153,10 @@ def add_user_rows(
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
-        if compliant:
-            write_compliant_row(
-                settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
-                error, size, bound, real(0.5) if axis >= 0 else real(1.0),
-            )  # fmt: skip
-        else:
-            change = -velocity - error * settings.joint_erp / settings.time_step
-            write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
+        write_holding_row(
+            settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
+            error, size, real(0.5) if axis >= 0 else real(1.0), real(1.0),
+        )  # fmt: skip
         row += 1
     return row, block
 
@@ -310,15 +304,10 @@ def add_coupling_row(
             )  # fmt: skip
             inverse_mass += inverse_mass_b
             rate += rate_b
-    bound = users.user_max_impulse[user]
-    if is_compliant(users, user):
-        write_compliant_row(
-            settings, model, scratch, users, pair_rows, world, user, row, Int32(-1) if one_tree else tree_b,
-            inverse_mass, rate, error, error, bound, real(1.0),
-        )  # fmt: skip
-    else:
-        change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
-        write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
+    write_holding_row(
+        settings, model, scratch, users, pair_rows, world, user, row, Int32(-1) if one_tree else tree_b,
+        inverse_mass, rate, error, error, real(1.0), users.user_erp[user],
+    )  # fmt: skip
     return row + 1, after
 
 

@@ -13,7 +13,7 @@ from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
-from carom.kernels.tendons.compliance import is_compliant, write_compliant_row
+from carom.kernels.tendons.compliance import is_compliant, write_compliant_row, write_holding_row
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 from carom.layouts.codes import USER_TENDON, USER_TENDON_COUPLING
@@ -90,15 +90,25 @@ def add_tendon_rows(
     row += 1
 
     block = repeat_row(model, pair_rows, world, row, tree, source, block)
-    below, above = users.user_range[user][0] - length, length - users.user_range[user][1]
-    lower, upper, change = real(0.0), real(0.0), real(0.0)
+    margin = users.user_range[user][3]
+    below = users.user_range[user][0] + margin - length
+    above = length + margin - users.user_range[user][1]
+    lower, upper, change, error = real(0.0), real(0.0), real(0.0), real(0.0)
     if below >= 0.0:
         change = limit_change(settings, below) - rate
         upper = _UNBOUNDED
+        error = -below
     elif above >= 0.0:
         change = -limit_change(settings, above) - rate
         lower = -_UNBOUNDED
-    write_row(pair_rows, world, row, inverse_mass, change, 0.0, lower, upper, 0.0)
+        error = above
+    if is_compliant(users, user):
+        write_compliant_row(
+            settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
+            error, real(1.0), lower, upper,
+        )  # fmt: skip
+    else:
+        write_row(pair_rows, world, row, inverse_mass, change, 0.0, lower, upper, 0.0)
     return row + 1, block
 
 
@@ -131,15 +141,10 @@ def add_tendon_coupling_row(
     length = add_path(model, state, scratch, users, pair_rows, world, tree, first, second, real(1.0), block)
     inverse_mass, rate = finish_row(model, state, scratch, pair_rows, world, tree, block)
     error = length - users.user_range[user][0] - wanted
-    bound = users.user_max_impulse[user]
-    if is_compliant(users, user):
-        write_compliant_row(
-            settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
-            error, bound, real(1.0),
-        )  # fmt: skip
-    else:
-        change = -rate - users.user_erp[user] * error * settings.joint_erp / settings.time_step
-        write_row(pair_rows, world, row, inverse_mass, change, 0.0, -bound, bound, 0.0)
+    write_holding_row(
+        settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
+        error, real(1.0), users.user_erp[user],
+    )  # fmt: skip
     return row + 1, after
 
 

@@ -55,6 +55,7 @@ class NamedConstraint:
 def yield_as(constraint: UserConstraint, compliance: Compliance) -> None:
     """Let a constraint yield instead of being rigid; before it is put into its world."""
     constraint.reference, constraint.impedance = compliance.reference, compliance.impedance
+    constraint.inverse_inertia = compliance.inverse_inertia
 
 
 def constraints_of(

@@ -13,6 +13,7 @@ from carom.description.tendon import WORLD, Path, PathPart, TendonSpec
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
 from carom.layouts.codes import PathKind, UserConstraintKind
+from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.sensors.frames import frame_of
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.measure import measured
@@ -68,7 +69,9 @@ def new_tendon(body: Body, spec: TendonSpec, name: str | None = None) -> UserCon
         length = present_length(body, made.path) if spec.stiffness else 0.0
         rest = length, length
     made.spring = (spec.stiffness, spec.damping, *rest)
-    made.range = (*spec.range, spec.friction, 0.0)
+    made.range = (*spec.range, spec.friction, spec.limit_margin)
+    if spec.limit_compliance is not None:
+        yield_as(made, spec.limit_compliance)
     return made
 
 

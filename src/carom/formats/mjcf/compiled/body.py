@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from carom.description import Collision, ContactParameters
+from carom.description import Collision
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.camera import read_camera
 from carom.formats.mjcf.compiled.compiler import ALWAYS, NEVER
+from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.elements import Elements, Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, joint_type, read_joint
@@ -25,7 +26,6 @@ from carom.formats.xml_element import Element
 from carom.native.products import turned_tensor
 
 WORLD = "world"
-_FRICTION = (1.0, 0.005, 0.0001)
 _UNBUILT = ("composite", "flexcomp", "plugin", "light")
 
 
@@ -102,7 +102,7 @@ class BodyReader:
                         self.geom_bodies[geom.name] = body.name
                         self.geoms[geom.name] = geom
                         geoms.append(geom)
-                        body.contact = _contact(within, child, body.contact)
+                        body.contact = read_contact(within, child, body.contact, self.model.options)
                 case "joint" | "freejoint":
                     self._read_joint(child, within, body, is_world=is_world, is_top=is_top)
                 case "inertial":
@@ -219,42 +219,6 @@ def _read_inertial(scope: Scope, element: Element) -> BodyInertia:
         tensor = np.zeros((3, 3))
     turn = np.array(rotation_matrix(pose.orientation))
     return BodyInertia(mass, np.array(pose.position), turned_tensor(turn, tensor))
-
-
-_EQUAL_RANK = 1000
-"""Rank of friction at priority 0."""
-
-
-def _contact(scope: Scope, element: Element, earlier: ContactParameters) -> ContactParameters:
-    """Friction of a body: that of its first geom that collides; another of a later one is reported."""
-    context, attributes = scope.context, scope.attributes(element)
-    values = context.singles(element, "friction", attributes.get("friction", ""))
-    sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
-    dimensions = int(context.number(element, attributes, "condim", 3.0))
-    collides = any(
-        context.number(element, attributes, name, 1.0) != 0.0 for name in ("contype", "conaffinity")
-    )
-    if not collides:
-        return earlier
-    priority = int(context.number(element, attributes, "priority", 0.0))
-    found = ContactParameters(
-        friction_rank=max(1, _EQUAL_RANK + priority),
-        lateral_friction=sliding if dimensions > 1 else 0.0,
-        spinning_friction=spinning if dimensions > 3 else None,
-        rolling_friction=rolling if dimensions > 4 else None,
-    )
-    if earlier.lateral_friction is None:
-        return found
-    if found != earlier:
-        context.leave_out(
-            element,
-            "it has the friction of the first geom",
-            "a body has one",
-            "friction",
-            "condim",
-            "priority",
-        )
-    return earlier
 
 
 def _report_free_terms(scope: Scope, element: Element) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import comb
 
 import numpy as np
 
 from carom.description import Pose
-from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse
 from carom.formats.mjcf.compiled.elements import Scope
@@ -19,6 +19,7 @@ from carom.formats.mjcf.compiled.model import (
     FileTie,
 )
 from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -95,6 +96,7 @@ class EqualityReader:
         else:
             coefficients = _shifted(coefficients, self.names.joints[leader][1].reference)
         constant, first, second, third, fourth = coefficients
+        weight = sum(self.model.joint_weights[name] for name in (follower, leader) if name)
         name, enabled = self._name(scope, element), context.flag(element, attributes, "active", True)
         self.model.couplings.append(
             FileCoupling(
@@ -103,7 +105,7 @@ class EqualityReader:
                 leader or None,
                 (start + constant, first, second, third, fourth),
                 enabled,
-                _compliance(scope, element, attributes),
+                replace(read_compliance(scope, element, attributes), inverse_mass=weight),
             )
         )
 
@@ -117,6 +119,10 @@ class EqualityReader:
             )
             return
         constant, first, second, third, fourth = _coefficients(scope, element, attributes)
+        compliances = [self.model.tendons[name].limit_compliance for name in (follower, leader) if name]
+        weight = (
+            sum(it.inverse_mass for it in compliances) if all(it.inverse_mass for it in compliances) else 0.0
+        )
         self.model.tendon_couplings.append(
             FileTendonCoupling(
                 self._name(scope, element),
@@ -124,7 +130,7 @@ class EqualityReader:
                 leader or None,
                 (constant, first, second, third, fourth),
                 scope.context.flag(element, attributes, "active", True),
-                _compliance(scope, element, attributes),
+                replace(read_compliance(scope, element, attributes), inverse_mass=weight),
             )
         )
 
@@ -164,7 +170,10 @@ class EqualityReader:
         if first[0] == _WORLD:
             first, second = second, first
         enabled = scope.context.flag(element, attributes, "active", True)
-        compliance = _compliance(scope, element, attributes)
+        weights = [self.model.body_weights.get(body, (0.0, 0.0)) for body in (first[0], second[0])]
+        linear, angular = (sum(values) for values in zip(*weights, strict=True))
+        compliance = read_compliance(scope, element, attributes)
+        compliance = replace(compliance, inverse_mass=linear, inverse_inertia=angular)
         self.model.ties.append(FileTie(name, element.tag == "weld", *first, *second, enabled, compliance))
 
     def _name(self, scope: Scope, element: Element) -> str:
@@ -178,16 +187,6 @@ class EqualityReader:
             )
         self._lines[name] = element.line
         return name
-
-
-def _compliance(scope: Scope, element: Element, attributes: Attributes) -> Compliance:
-    """What `solref` and `solimp` say, with MuJoCo's defaults."""
-    stated = Compliance()
-    numbers = [*stated.reference[:2], *stated.impedance[:3], *stated.reference[2:]]
-    for name, first, most in (("solref", 0, 2), ("solimp", 2, 5)):
-        given = scope.context.numbers(element, name, attributes.get(name, ""), 0, most)
-        numbers[first : first + len(given)] = given
-    return Compliance(*numbers)
 
 
 def _coefficients(scope: Scope, element: Element, attributes: Attributes) -> list[float]:

@@ -9,6 +9,7 @@ from carom.description.pose import Vector3
 from carom.description.transform import rotate
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledJoint
+from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
@@ -36,9 +37,9 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     if kind == "ball" and lower <= upper:
         context.leave_out(element, "the joint turns without limit", "limits of balls are not built", "range")
         lower, upper = _UNLIMITED
-    is_limited = lower <= upper
+    limited = lower <= upper
     described = _TYPES[kind]
-    if kind == "hinge" and not is_limited:
+    if kind == "hinge" and not limited:
         described = JointType.CONTINUOUS
     damping = _first(scope, element, attributes, "damping")
     friction = _first(scope, element, attributes, "frictionloss")
@@ -59,8 +60,14 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
         armature=_first(scope, element, attributes, "armature"),
         stiffness=_first(scope, element, attributes, "stiffness"),
         spring_reference=0.0 if kind == "ball" else _position(scope, element, attributes, "springref", kind),
+        limit_compliance=read_compliance(scope, element, attributes, "limit") if limited else None,
+        limit_margin=context.number(element, attributes, "margin", 0.0) if limited else 0.0,
+        friction_compliance=read_compliance(scope, element, attributes, "friction") if friction else None,
     )
-    return CompiledJoint(joint, anchor, reference, element, context, bounds)
+    time_constant, ratio = context.numbers(
+        element, "springdamper", attributes.get("springdamper", "0 0"), 2, 2
+    )
+    return CompiledJoint(joint, anchor, reference, element, context, bounds, (time_constant, ratio))
 
 
 def _triple(scope: Scope, element: Element, attributes: Attributes, name: str, default: Vector3) -> Vector3:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.description.sensor import SensorSpec
     from carom.formats.mjcf.compiled.context import CompiledContext
+    from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
 
 @record(frozen=False, eq=False)
@@ -33,6 +34,7 @@ class CompiledJoint:
         element: The element that states it.
         context: The reading of its file.
         actuator_range: Bounds of the sum of its actuators' forces [N m or N].
+        spring_damper: Time constant [s] and damping ratio of its spring, if both are positive.
     """
 
     joint: Joint
@@ -41,6 +43,7 @@ class CompiledJoint:
     element: Element
     context: CompiledContext
     actuator_range: tuple[float, float] = (-inf, inf)
+    spring_damper: tuple[float, float] = (0.0, 0.0)
 
 
 @record(frozen=False, eq=False)
@@ -232,6 +235,8 @@ class FileTendon:
         spring_range: Lengths between which its spring is slack; None for that at the rest of all springs.
         range: Least and greatest length.
         friction: Greatest force of its friction.
+        limit_compliance: How its limit yields.
+        limit_margin: Distance from its limit at which it begins to act [m].
     """
 
     name: str
@@ -242,6 +247,8 @@ class FileTendon:
     spring_range: tuple[float, float] | None
     range: tuple[float, float]
     friction: float
+    limit_compliance: Compliance = Compliance()
+    limit_margin: float = 0.0
 
 
 @record
@@ -287,6 +294,9 @@ class CompiledModel:
         tendons: By name; those that are not simulated have no robot.
         tendon_couplings: Of tendons, by `<equality>`.
         still: World poses of bodies that do not move, and of the world.
+        weights: Inverse masses of each robot, by name.
+        body_weights: Inverse mass and inverse inertia of each body at the reference, by name.
+        joint_weights: Inverse mass of each joint at the reference, by name.
         sensors: Those that are built, in order; what they refer to has a name of its own in the whole file.
     """
 
@@ -308,3 +318,6 @@ class CompiledModel:
     tendons: dict[str, FileTendon] = field(default_factory=dict)
     tendon_couplings: list[FileTendonCoupling] = field(default_factory=list)
     still: dict[str, Pose] = field(default_factory=dict)
+    weights: dict[str, InverseMasses] = field(default_factory=dict)
+    body_weights: dict[str, tuple[float, float]] = field(default_factory=dict)
+    joint_weights: dict[str, float] = field(default_factory=dict)

@@ -11,15 +11,9 @@ from carom.formats.xml_element import Element
 _SCALARS = ("timestep", "density", "viscosity", "impratio")
 _VECTORS = ("gravity", "wind", "magnetic")
 _WORDS = ("integrator", "cone", "solver", "jacobian")
-_FLAGS = {
-    "clampctrl": "controls have bounds",
-    "constraint": "contacts, limits and other constraints act",
-    "contact": "bodies collide",
-    "damper": "joints have damping",
-    "equality": "equality constraints act",
-    "frictionloss": "joints have friction",
-    "limit": "joints have limits",
-    "spring": "joints have springs",
+_INTEGRATORS = {
+    "RK4": "steps are of first order in time",
+    "implicit": "what rotations do to velocities is not implicit",
 }
 DEFAULTS: dict[str, Any] = {"timestep": 0.002, "gravity": (0.0, 0.0, -9.81)}
 
@@ -43,6 +37,9 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     for name in _WORDS:
         if name in attributes:
             options[name] = attributes[name]
+    if (integrator := attributes.get("integrator")) in _INTEGRATORS:
+        reason = "the only integrator is semi-implicit Euler"
+        context.leave_out(element, _INTEGRATORS[integrator], reason, "integrator")
     if "actuatorgroupdisable" in attributes:
         text = attributes["actuatorgroupdisable"]
         groups = context.numbers(element, "actuatorgroupdisable", text, 0, 31)
@@ -55,5 +52,3 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
             if text not in ("enable", "disable"):
                 raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
             options[f"flag.{name}"] = text == "enable"
-            if name in _FLAGS and text == "disable":
-                context.leave_out(flags, _FLAGS[name], "flags do not switch it off", name)

@@ -14,6 +14,7 @@ from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.equality import EqualityReader
 from carom.formats.mjcf.compiled.families import connected_pairs
+from carom.formats.mjcf.compiled.flags import switch_off
 from carom.formats.mjcf.compiled.inertia import scaled_to_total
 from carom.formats.mjcf.compiled.keyframe import read_keyframes
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
@@ -23,6 +24,7 @@ from carom.formats.mjcf.compiled.pairs import paired_geoms, read_pairs
 from carom.formats.mjcf.compiled.robots import robot_of_body, robot_of_world
 from carom.formats.mjcf.compiled.sensors import SensorReader
 from carom.formats.mjcf.compiled.shapes.mesh_mass import Hull
+from carom.formats.mjcf.compiled.softness import weigh
 from carom.formats.mjcf.compiled.tendons import TendonReader
 from carom.formats.mjcf.defaults import read_defaults
 from carom.formats.mjcf.document import Inclusion, read_root
@@ -83,6 +85,7 @@ def compile_mjcf(
             )
         if context.compiler.total_mass is not None:
             scaled_to_total([body.inertia for body in reader.bodies], context.compiler.total_mass)
+        weigh(model, whole)
         if model.options.get(_FILTER_PARENT, True):
             model.excluded += connected_pairs(whole)
         static = robot_of_world(whole)
@@ -101,6 +104,7 @@ def compile_mjcf(
     EqualityReader(model, names, whole).read(scope)
     SensorReader(model, names).read(scope)
     read_pairs(model, names, scope, reader.geom_bodies, whole)
+    switch_off(model)
     _read_excluded(context, model, {body.name for body in reader.bodies})
     for element in context.root.all("keyframe"):
         read_keyframes(context, element, model)

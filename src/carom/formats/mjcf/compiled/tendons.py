@@ -15,6 +15,7 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
@@ -57,19 +58,24 @@ class TendonReader:
             attributes = section_attributes(of, element, "tendon")
             for copy in self._copies(of, element):
                 parts = self._parts(copy, element)
-                name = self._name(copy, element)
+                name, robot = self._name(copy, element), self._robot(copy, element, parts)
                 spring = copy.context.numbers(
                     element, "springlength", attributes.get("springlength", "-1"), 1, 2
                 )
                 tendon = FileTendon(
                     name,
                     parts,
-                    self._robot(copy, element, parts),
+                    robot,
                     copy.context.number(element, attributes, "stiffness", 0.0),
                     copy.context.number(element, attributes, "damping", 0.0),
                     None if spring[0] == -1.0 else (spring[0], spring[-1]),
                     _range(copy, element, attributes),
                     copy.context.number(element, attributes, "frictionloss", 0.0),
+                    replace(
+                        read_compliance(copy, element, attributes, "limit"),
+                        inverse_mass=self._inverse_mass(robot, parts),
+                    ),
+                    copy.context.number(element, attributes, "margin", 0.0),
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
@@ -144,6 +150,12 @@ class TendonReader:
             scope.context.leave_out(element, _LOST, reason)
             return ""
         return robots.pop()
+
+    def _inverse_mass(self, robot: str, parts: tuple[FilePart, ...]) -> float:
+        """Inverse mass at the reference along a tendon over joints; 0 for others."""
+        if not robot or any(part.kind is not PathKind.JOINT for part in parts):
+            return 0.0
+        return self.model.weights[robot].along((part.on, part.size) for part in parts)
 
     def _check(self, scope: Scope, element: Element, tendon: FileTendon) -> None:
         path = tuple(PathPart(part.kind, size=part.size) for part in tendon.parts)

@@ -1,0 +1,67 @@
+"""How the geoms of a body touch others: friction, and how contacts yield."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from carom.description import ContactParameters
+from carom.description.compliance import ContactCompliance
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.softness import read_compliance
+from carom.formats.xml_element import Element
+
+_FRICTION = (1.0, 0.005, 0.0001)
+_EQUAL_RANK = 1000
+"""Rank of friction at priority 0."""
+
+
+def read_contact(
+    scope: Scope, element: Element, earlier: ContactParameters, options: Mapping[str, Any]
+) -> ContactParameters:
+    """Friction and compliance of a body: those of its first geom that collides; others are reported."""
+    context, attributes = scope.context, scope.attributes(element)
+    values = context.singles(element, "friction", attributes.get("friction", ""))
+    sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
+    dimensions = int(context.number(element, attributes, "condim", 3.0))
+    collides = any(
+        context.number(element, attributes, name, 1.0) != 0.0 for name in ("contype", "conaffinity")
+    )
+    if not collides:
+        return earlier
+    priority = int(context.number(element, attributes, "priority", 0.0))
+    found = ContactParameters(
+        friction_rank=max(1, _EQUAL_RANK + priority),
+        lateral_friction=sliding if dimensions > 1 else 0.0,
+        spinning_friction=spinning if dimensions > 3 else None,
+        rolling_friction=rolling if dimensions > 4 else None,
+        compliance=ContactCompliance(
+            read_compliance(scope, element, attributes),
+            context.number(element, attributes, "solmix", 1.0),
+            context.number(element, attributes, "margin", 0.0),
+            _pyramids(options),
+        ),
+    )
+    if earlier.lateral_friction is None:
+        return found
+    if replace(found, compliance=earlier.compliance) != earlier:
+        context.leave_out(
+            element,
+            "it has the friction of the first geom",
+            "a body has one",
+            "friction",
+            "condim",
+            "priority",
+        )
+    if found.compliance != earlier.compliance:
+        names = ("solref", "solimp", "solmix", "margin")
+        context.leave_out(element, "its contacts yield as those of the first geom", "a body has one", *names)
+    return earlier
+
+
+def _pyramids(options: Mapping[str, Any]) -> float:
+    """See `ContactCompliance.pyramids`."""
+    if options.get("cone", "pyramidal") == "elliptic":
+        return 0.0
+    return 1.0 / max(options.get("impratio", 1.0), 1e-15)

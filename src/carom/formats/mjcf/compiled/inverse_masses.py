@@ -1,0 +1,162 @@
+"""Inverse masses of bodies and joints where all joints are at their references, as MuJoCo estimates them.
+
+That of a body is the mean over all directions of how much its centre of mass is accelerated by a force there,
+its inverse inertia likewise of a torque; that of a joint is by a force or torque of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.description import JointType, Pose
+from carom.description.pose import IDENTITY
+from carom.description.transform import compose, rotation_matrix
+from carom.formats.mjcf.compiled.model import CompiledBody
+from carom.native.products import dots, product
+from carom.record import record
+
+Matrix = NDArray[np.float64]
+_LEAST_PIVOT = 1e-15
+
+
+@record(frozen=False, eq=False)
+class _Part:
+    """A body, the dofs that move it, and its Jacobian: (6, dofs), of its centre of mass, linear first."""
+
+    body: CompiledBody
+    dofs: list[int]
+    jacobian: Matrix
+
+
+class _Tree:
+    """A body of the world with all bodies in it; a dof is a linear and an angular velocity at the origin."""
+
+    def __init__(self, root: CompiledBody) -> None:
+        self.parts: list[_Part] = []
+        self.armature: list[float] = []
+        self.joints: dict[str, list[int]] = {}
+        self._linear: list[Matrix] = []
+        self._angular: list[Matrix] = []
+        pending: list[tuple[CompiledBody, Pose, list[int]]] = [(root, IDENTITY, [])]
+        while pending:
+            body, around, dofs = pending.pop()
+            frame = compose(around, body.pose)
+            dofs = [*dofs, *self._add_dofs(body, frame)]
+            self.parts.append(_Part(body, dofs, self._jacobian(body, frame, dofs)))
+            pending += [(child, frame, dofs) for child in body.children]
+
+    def _add_dofs(self, body: CompiledBody, frame: Pose) -> list[int]:
+        first, turn = len(self.armature), np.array(rotation_matrix(frame.orientation))
+        if body.is_free:
+            for axis in np.eye(3):
+                self._add(np.zeros(3), axis, 0.0)
+            for axis in turn.T:
+                self._add(axis, np.cross(np.array(frame.position), axis), 0.0)
+        for each in body.joints:
+            joint, begin = each.joint, len(self.armature)
+            if joint.type is JointType.PRISMATIC:
+                self._add(np.zeros(3), dots(turn, np.array(joint.axis)), joint.armature)
+            else:
+                anchor = np.array(compose(frame, Pose(each.anchor)).position)
+                is_ball = joint.type is JointType.SPHERICAL
+                for axis in turn.T if is_ball else [dots(turn, np.array(joint.axis))]:
+                    self._add(axis, np.cross(anchor, axis), joint.armature)
+            self.joints[joint.name] = list(range(begin, len(self.armature)))
+        return list(range(first, len(self.armature)))
+
+    def _add(self, angular: Matrix, linear: Matrix, armature: float) -> None:
+        self._angular.append(angular)
+        self._linear.append(linear)
+        self.armature.append(armature)
+
+    def _jacobian(self, body: CompiledBody, frame: Pose, dofs: list[int]) -> Matrix:
+        if not dofs:
+            return np.zeros((6, 0))
+        x, y, z = body.inertia.centre.tolist()
+        centre = np.array(compose(frame, Pose((x, y, z))).position)
+        angular = np.array([self._angular[dof] for dof in dofs])
+        linear = np.array([self._linear[dof] for dof in dofs]) + np.cross(angular, centre)
+        turn = np.array(rotation_matrix(frame.orientation))
+        # Along the axes of the body, in which its tensor is given.
+        return np.vstack([product(turn.T, linear.T), product(turn.T, angular.T)])
+
+    def mass_matrix(self) -> Matrix:
+        total = np.diag(np.array(self.armature))
+        for part in self.parts:
+            inertia = part.body.inertia
+            if not part.dofs or inertia.mass == 0.0:
+                continue
+            linear, angular = part.jacobian[:3], part.jacobian[3:]
+            own = inertia.mass * product(linear.T, linear)
+            own += product(angular.T, product(inertia.tensor, angular))
+            total[np.ix_(part.dofs, part.dofs)] += own
+        return total
+
+
+class InverseMasses:
+    """Inverse masses of a body of the world, of all in it, and of its joints [1/kg, 1/(kg m²)].
+
+    Those of what no force moves are 0, and all are if some joint has no inertia.
+
+    Attributes:
+        bodies: Inverse mass and inverse inertia of each body, by name.
+        joints: Inverse mass of each joint, by name.
+    """
+
+    def __init__(self, root: CompiledBody) -> None:
+        tree = _Tree(root)
+        self._dofs = tree.joints
+        self._count = len(tree.armature)
+        self._lower = _cholesky(tree.mass_matrix())
+        # Forces: of each dof, and those of each body.
+        count = self._count
+        forces = np.zeros((count, count + 6 * len(tree.parts)))
+        forces[:, :count] = np.eye(count)
+        for number, part in enumerate(tree.parts):
+            first = count + 6 * number
+            forces[part.dofs, first : first + 6] = part.jacobian.T
+        answers = self._answers(forces)
+        of_dofs, of_bodies = answers[:count], answers[count:].reshape(-1, 2, 3)
+        self.bodies: dict[str, tuple[float, float]] = {
+            part.body.name: (_mean(linear), _mean(angular))
+            for part, (linear, angular) in zip(tree.parts, of_bodies, strict=True)
+        }
+        self.joints: dict[str, float] = {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
+
+    def along(self, shares: Iterable[tuple[str, float]]) -> float:
+        """The inverse mass along a sum of positions of joints, each by its name and times a share."""
+        force = np.zeros((self._count, 1))
+        for name, share in shares:
+            force[self._dofs[name]] += share
+        return float(self._answers(force)[0])
+
+    def _answers(self, forces: Matrix) -> Matrix:
+        """For each column of forces on the dofs, the acceleration that it causes along itself."""
+        answers, lower = np.zeros(forces.shape[1]), self._lower
+        if lower is None:
+            return answers
+        rest = forces.copy()
+        for row in range(self._count):
+            rest[row] /= lower[row, row]
+            answers += rest[row] * rest[row]
+            rest[row + 1 :] -= lower[row + 1 :, row, None] * rest[row]
+        return answers
+
+
+def _mean(values: Matrix) -> float:
+    return sum(values.tolist()) / len(values)
+
+
+def _cholesky(matrix: Matrix) -> Matrix | None:
+    """The lower triangular factor of a symmetric matrix; None if it is not positive definite."""
+    rest, lower = matrix.copy(), np.zeros_like(matrix)
+    for k in range(len(matrix)):
+        pivot = rest[k, k]
+        if not pivot > _LEAST_PIVOT:
+            return None
+        lower[k:, k] = rest[k:, k] / np.sqrt(pivot)
+        rest[k + 1 :, k + 1 :] -= lower[k + 1 :, k, None] * lower[None, k + 1 :, k]
+    return lower

@@ -1,0 +1,60 @@
+"""`solref` and `solimp`: how constraints yield; and the inverse masses for which they do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from carom.description.compliance import Compliance
+from carom.formats.mjcf.compiled.elements import Scope
+from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.defaults import Attributes
+from carom.formats.xml_element import Element
+
+_LEAST = 1e-15
+
+
+def read_compliance(scope: Scope, element: Element, attributes: Attributes, of: str = "") -> Compliance:
+    """What `solref` and `solimp`, or those of a limit or friction, say, with MuJoCo's defaults."""
+    stated = Compliance()
+    numbers = [*stated.reference[:2], *stated.impedance[:3], *stated.reference[2:]]
+    for name, first, most in ((f"solref{of}", 0, 2), (f"solimp{of}", 2, 5)):
+        given = scope.context.numbers(element, name, attributes.get(name, ""), 0, most)
+        numbers[first : first + len(given)] = given
+    return Compliance(*numbers)
+
+
+def weigh(model: CompiledModel, world: CompiledBody) -> None:
+    """Find the inverse masses of all bodies and joints, and what follows from them."""
+    for root in world.children:
+        weights = model.weights[root.name] = InverseMasses(root)
+        model.body_weights |= weights.bodies
+        model.joint_weights |= weights.joints
+        pending = [root]
+        while pending:
+            body = pending.pop()
+            pending += body.children
+            _weigh_body(model, body)
+
+
+def _weigh_body(model: CompiledModel, body: CompiledBody) -> None:
+    if (yielding := body.contact.compliance) is not None:
+        inverse_mass, _ = model.body_weights[body.name]
+        compliance = replace(yielding.compliance, inverse_mass=inverse_mass)
+        body.contact = replace(body.contact, compliance=replace(yielding, compliance=compliance))
+    for each in body.joints:
+        joint, weight = each.joint, model.joint_weights[each.joint.name]
+        if joint.limit_compliance is not None:
+            joint = replace(joint, limit_compliance=replace(joint.limit_compliance, inverse_mass=weight))
+        if joint.friction_compliance is not None:
+            friction = replace(joint.friction_compliance, inverse_mass=weight)
+            joint = replace(joint, friction_compliance=friction)
+        time_constant, ratio = each.spring_damper
+        if time_constant > 0.0 and ratio > 0.0:
+            inertia = 1.0 / max(weight, _LEAST)
+            joint = replace(
+                joint,
+                stiffness=inertia / (time_constant * ratio) ** 2,
+                damping=2.0 * inertia / time_constant,
+            )
+        each.joint = joint

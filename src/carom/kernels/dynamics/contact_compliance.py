@@ -1,0 +1,115 @@
+"""How contacts between links of MuJoCo's files yield; see `kernels.dynamics.yielding`.
+
+Each link has a reference and an impedance. Of two links the one of higher rank decides, and of equal ranks
+both are mixed by their weights; a link without any leaves it to the other one. The inverse mass of a contact
+is the sum of those of both links.
+"""
+
+import warp as wp
+
+from carom.kernels.dynamics.yielding import impedance_at, spring_and_damper
+from carom.kernels.maths.min_max import maximum
+from carom.kernels.structs import ContactTerms, Settings, Shapes
+from carom.kernels.types import Int32, Vector4, func, real
+
+_LEAST = real(1e-15)
+
+
+@func
+def yields(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
+    """Whether contacts of two links yield as MuJoCo's: if one link has an impedance, and no spring counts."""
+    if shapes.link_stiffness[world, a] >= 0.0 or shapes.link_stiffness[world, b] >= 0.0:
+        return False
+    return shapes.link_impedance[world, a][1] > 0.0 or shapes.link_impedance[world, b][1] > 0.0
+
+
+@func
+def weight_of_first(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
+    """How much the parameters of the first of two links count, from 0 to 1."""
+    if shapes.link_impedance[world, b][1] <= 0.0:
+        return real(1.0)
+    if shapes.link_impedance[world, a][1] <= 0.0:
+        return real(0.0)
+    rank_a, rank_b = shapes.link_friction_rank[world, a], shapes.link_friction_rank[world, b]
+    if rank_a != rank_b:
+        return wp.where(rank_a > rank_b, real(1.0), real(0.0))
+    own, other = shapes.link_mixing[world, a][0], shapes.link_mixing[world, b][0]
+    if own >= _LEAST and other >= _LEAST:
+        return own / (own + other)
+    if own < _LEAST and other < _LEAST:
+        return real(0.5)
+    return wp.where(own >= _LEAST, real(1.0), real(0.0))
+
+
+@func
+def mixed_reference(shapes: Shapes, world: Int32, a: Int32, b: Int32, share: real) -> Vector4:
+    """Reference of the contacts of two links; of stiffnesses and dampings, the greater ones of both."""
+    own, other = shapes.link_reference[world, a], shapes.link_reference[world, b]
+    if share >= 1.0:
+        return own
+    if share <= 0.0:
+        return other
+    mixed = own * share + other * (1.0 - share)
+    if own[0] <= 0.0 or other[0] <= 0.0:
+        mixed[0] = wp.min(own[0], other[0])
+        mixed[1] = wp.min(own[1], other[1])
+    return mixed
+
+
+@func
+def pyramid_share(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32) -> real:
+    """By how much more than along its normal a contact yields whose friction cone is a pyramid.
+
+    Each edge of the pyramid yields, and all share the normal force.
+    """
+    share = maximum(shapes.link_mixing[world, a][2], shapes.link_mixing[world, b][2])
+    friction = terms.friction[0]
+    if share <= 0.0 or friction <= 0.0:
+        return real(1.0)
+    edges = real(2.0)
+    if terms.friction[2] > 0.0:
+        edges = real(3.0)
+    if terms.friction[1] > 0.0:
+        edges = real(5.0)
+    square = friction * friction
+    return share * square * (1.0 + square) / edges
+
+
+@func
+def lateral_softness(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32) -> real:
+    """By how much more than along its normal a contact yields sideways while it sticks."""
+    share = maximum(shapes.link_mixing[world, a][2], shapes.link_mixing[world, b][2])
+    if share <= 0.0:
+        return real(1.0)
+    friction = terms.friction[0]
+    return share * (1.0 + friction * friction)
+
+
+@func
+def let_contact_yield(
+    settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32
+) -> ContactTerms:
+    """The terms of a contact with what two links say about how it yields.
+
+    One that is farther apart than its margin is no contact.
+    """
+    share = weight_of_first(shapes, world, a, b)
+    reference = mixed_reference(shapes, world, a, b, share)
+    own, other = shapes.link_impedance[world, a], shapes.link_impedance[world, b]
+    impedance = own * share + other * (1.0 - share)
+    inverse_mass = own[3] + other[3]
+    margin = shapes.link_mixing[world, a][1] + shapes.link_mixing[world, b][1]
+    distance = terms.distance - margin
+    if distance >= 0.0 or terms.ignored != 0:
+        terms.ignored = Int32(1)
+        terms.softness = real(0.0)
+        terms.lateral_softness = real(0.0)
+        return terms
+    d = impedance_at(reference, impedance, distance)
+    stiffness, damping = spring_and_damper(settings, reference, impedance)
+    terms.yields = Int32(1)
+    terms.damping = damping
+    terms.pull = stiffness * d * distance
+    terms.lateral_softness = lateral_softness(shapes, terms, world, a, b) * inverse_mass * (1.0 - d) / d
+    terms.softness = inverse_mass * pyramid_share(shapes, terms, world, a, b) * (1.0 - d) / d
+    return terms

@@ -1,0 +1,81 @@
+"""MJCF files of the tests of what yields; `record_soft.py` asks MuJoCo how they move."""
+
+WEIGHED = """<mujoco><worldbody><body name="a" pos="0 0 1" euler="10 20 30"><joint name="hinge" axis="0 1 0"
+ damping=".1" armature=".2"/><geom size=".1" pos=".2 0 0"/><body name="b" pos=".4 .1 0"><joint name="ball"
+ type="ball" pos="0 .1 0"/><geom type="box" size=".1 .2 .3" pos=".1 0 .3"/><body name="c" pos="0 0 .5"><joint
+ name="slide" type="slide" axis="1 1 0"/><joint name="other" axis="0 1 1" armature=".1" ref="30"/><geom
+ size=".05"/><body name="d" pos="0 .1 0"><geom size=".1"/></body></body></body></body><body name="free"
+ pos="3 0 0"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 .2 0"/><body name="arm" pos=".3 0 0"><joint
+ name="last" axis="1 0 0"/><geom size=".1" pos="0 .2 0"/></body></body><body name="still"><geom size=".1"/>
+</body></worldbody></mujoco>"""
+
+
+def _pendulum(joint: str, more: str = "", option: str = "", gravity: str = "0 0 -9.81") -> str:
+    return f"""<mujoco><option timestep=".001" gravity="{gravity}">{option}</option><worldbody>
+<body name="a" pos="0 0 1"><joint name="j" axis="0 1 0" {joint}/><geom size=".1" pos=".3 0 0" density="300"/>
+<body name="b" pos=".3 0 0"><joint name="k" type="slide" axis="1 0 0" range="-.1 .1"/><geom size=".05"
+ density="800"/></body></body></worldbody>{more}</mujoco>"""
+
+
+def _ball(plane: str, ball: str, option: str = "") -> str:
+    return f"""<mujoco>{option}<worldbody><geom type="plane" size="5 5 .1" {plane}/><body name="f"
+ pos="0 0 .1999"><freejoint/><geom size=".2" {ball}/></body></worldbody></mujoco>"""
+
+
+def _arm(geom: str, option: str = "") -> str:
+    ball = f'<geom size=".05" pos=".3 0 0" {geom}'
+    return f"""<mujoco>{option}<worldbody><geom type="plane" size="5 5 .1" {geom}/><body name="a"
+ pos="0 0 .25"><joint name="j" axis="0 1 0"/>{ball}/><body name="b" pos=".3 0 0"><joint name="k"
+ axis="0 1 0"/>{ball} solref=".04 .8"/></body></body></worldbody></mujoco>"""
+
+
+_FIXED = '<tendon><fixed name="t" range="-.1 .2" {}><joint joint="j" coef=".5"/><joint joint="k" coef="2"/>'
+MOVED: dict[str, str] = {
+    "limits": _pendulum('range="-30 20"'),
+    "soft limit": _pendulum('range="-30 20" solreflimit=".1 .4" solimplimit=".5 .8 .1 .3 3"'),
+    "limit with a margin": _pendulum('range="-30 20" margin=".2" solreflimit="-600 -30"'),
+    "limit with stiffness": _pendulum('range="-30 20" solreflimit="-900 -10"'),
+    "friction": _pendulum('frictionloss="3.5"'),
+    "soft friction": _pendulum('frictionloss="30" solreffriction=".3 1" solimpfriction=".4 .5 .1"'),
+    "friction that slides": _pendulum('frictionloss=".8" solreffriction=".1 1"'),
+    "springdamper": _pendulum('springdamper=".2 .7" springref="25"'),
+    "tendon limit": _pendulum("", _FIXED.format("") + "</fixed></tendon>"),
+    "soft tendon limit": _pendulum(
+        "", _FIXED.format('solreflimit=".1 .5" solimplimit=".6 .9 .1" margin=".03"') + "</fixed></tendon>"
+    ),
+    "limits off": _pendulum('range="-30 20"', option='<flag limit="disable"/>'),
+    "spring off": _pendulum('stiffness="9" damping=".1"', option='<flag spring="disable"/>'),
+    "damper off": _pendulum('stiffness="9" damping="2"', option='<flag damper="disable"/>'),
+    "friction off": _pendulum('frictionloss="3.5"', option='<flag frictionloss="disable"/>'),
+    "equality off": _pendulum("", '<equality><joint joint1="j"/></equality>', '<flag equality="disable"/>'),
+    "constraint off": _pendulum(
+        'range="-30 20" frictionloss="1"',
+        '<equality><joint joint1="k"/></equality>',
+        '<flag constraint="disable"/>',
+    ),
+    "clampctrl off": _pendulum(
+        "",
+        '<actuator><motor joint="j" ctrlrange="-.1 .1" name="m"/></actuator>',
+        '<flag clampctrl="disable"/>',
+    ),
+    "contact": _ball("", ""),
+    "contact without friction": _ball("", 'condim="1"').replace("<geom type", '<geom condim="1" type'),
+    "little friction": _ball('friction=".5"', 'friction=".3"'),
+    "spinning friction": _ball("", 'condim="4"'),
+    "rolling friction": _ball("", 'condim="6"'),
+    "round cones": _ball("", "", '<option cone="elliptic"/>'),
+    "stiff cones": _ball("", "", '<option impratio="4"/>'),
+    "margins": _ball('margin=".01" gap=".02"', 'margin=".004"'),
+    "mixed contacts": _ball('solref=".05 1" solmix="2"', 'solref=".03 .5" solimp=".7 .8 .01"'),
+    "contact of one stiffness": _ball('solref="-500 -20"', 'solref=".02 .5"'),
+    "contacts of two stiffnesses": _ball('solref="-500 -20"', 'solref="-300 -50"'),
+    "contact of priority": _ball('solref=".1 1" priority="1"', 'solref=".03 .5"'),
+    "contact off": _ball("", "", '<option><flag contact="disable"/></option>'),
+    "arm on a smooth floor": _arm('condim="1"'),
+    "arm on a floor": _arm(""),
+    "arm on a rough floor": _arm('friction="2"'),
+    "arm with round cones": _arm("", '<option cone="elliptic"/>'),
+    "box": """<mujoco><worldbody><geom type="plane" size="5 5 .1"/><body name="f" pos="0 0 .0999"><freejoint/>
+<geom type="box" size=".3 .2 .1" solref=".05 .6"/></body></worldbody></mujoco>""",
+}
+STEPS = (40, 120, 400)

@@ -1,0 +1,96 @@
+"""Limits, friction, contacts and equality constraints yield as in MuJoCo, and flags switch them off."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from soft_cases import MOVED, STEPS, WEIGHED
+
+from carom import World, Worlds
+from carom.formats.mjcf.compiled.reader import compile_mjcf
+from carom.model.from_files import hull_triangles
+
+# MuJoCo's Euler has explicit springs.
+SPRINGS = ("springdamper", "damper off")
+# MuJoCo's contacts push apart what slides; here it comes to rest at the same place on another way.
+SLIDING = ("arm on a floor", "arm on a rough floor", "arm with round cones")
+ANSWERS = json.loads(Path(__file__).with_name("soft_answers.json").read_text())
+
+
+def test_inverse_masses_at_the_reference_are_those_of_mujoco(tmp_path):
+    (tmp_path / "file.xml").write_text(WEIGHED)
+    model = compile_mjcf(tmp_path / "file.xml", hull=hull_triangles)
+    for name, weights in ANSWERS["weights"]["bodies"].items():
+        assert_allclose(model.body_weights[name], weights, rtol=1e-9, atol=1e-15)
+    for name, weight in ANSWERS["weights"]["joints"].items():
+        assert_allclose(model.joint_weights[name], weight, rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", MOVED)
+def test_bodies_move_as_in_mujoco(tmp_path, name):
+    (tmp_path / "file.xml").write_text(MOVED[name])
+    with World() as world:
+        scene = world.load(tmp_path / "file.xml")
+        assert not scene.ignored.that_matter
+        scene.apply_options()
+        # MuJoCo's solver converges.
+        world.parameters.solver_residual_threshold, world.parameters.solver_iterations = 1e-16, 500
+        world.apply_parameters()
+        for actuator in scene.actuators.values():
+            actuator.control = 2.0
+        done = 0
+        for steps, answer in zip(STEPS, ANSWERS[name], strict=True):
+            world.step(steps - done)
+            done = steps
+            free = next((body for body in scene.bodies if body.name == "f"), None)
+            if free is not None:
+                found = np.array(free.links[-1].pose.position)
+            else:
+                body = scene["a"]
+                found = np.concatenate([body.joints[joint].coordinates for joint in ("j", "k")])
+            atol = 5e-3 if name in SPRINGS else 1e-6
+            if name in SLIDING and steps > STEPS[0]:
+                atol = 2e-4 if steps == STEPS[-1] else 0.03
+            assert_allclose(found, answer, atol=atol, err_msg=f"after {steps} steps")
+
+
+@pytest.mark.parametrize("name", ["soft limit", "soft friction", "arm on a floor", "soft tendon limit"])
+def test_saved_worlds_and_copies_yield_alike(tmp_path, name):
+    (tmp_path / "file.xml").write_text(MOVED[name])
+    with World() as world, World() as other:
+        body = world.load(tmp_path / "file.xml")["a"]
+        world.save(tmp_path / "saved")
+        saved = other.load(tmp_path / "saved")["a"]
+        for each in (world, other):
+            each.parameters.time_step = 0.002
+            each.apply_parameters()
+        worlds = Worlds(world, 2)
+        world.step(200)
+        other.step(200)
+        worlds.step(200)
+        positions = body.joints.positions
+        assert_allclose(saved.joints.positions, positions, rtol=0.0, atol=0.0)
+        assert_allclose(worlds.bodies["a"].joint_positions, [positions, positions], rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("integrator", "lost"), [("RK4", 1), ("implicit", 1), ("implicitfast", 0), ("Euler", 0)]
+)
+def test_integrators_of_other_kinds_are_reported(tmp_path, integrator, lost):
+    (tmp_path / "file.xml").write_text(f'<mujoco><option integrator="{integrator}"/></mujoco>')
+    with World() as world:
+        found = world.load(tmp_path / "file.xml").ignored.that_matter
+    assert [(it.element, it.attributes) for it in found] == [("mujoco/option", ("integrator",))] * lost
+
+
+def test_contacts_that_yield_otherwise_than_the_first_geom_are_reported(tmp_path):
+    geoms = '<geom size=".1"/><geom size=".2" solref=".1 1"/>'
+    geoms += '<geom size=".3" contype="0" conaffinity="0" margin="1"/>'
+    (tmp_path / "file.xml").write_text(
+        f'<mujoco><worldbody><body name="b"><freejoint/>{geoms}</body></worldbody></mujoco>'
+    )
+    with World() as world:
+        (found,) = world.load(tmp_path / "file.xml").ignored.that_matter
+    assert (found.consequence, found.count) == ("its contacts yield as those of the first geom", 1)
