@@ -10,7 +10,7 @@ from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vect
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import BASE, body_access, link_or_warning, no_joint
+from pybullet._clients.lookup import BASE, body_access, has_joint, link_or_warning, no_joint
 
 __all__ = ["changeDynamics", "enableJointForceTorqueSensor", "getDynamicsInfo"]
 
@@ -269,7 +269,7 @@ def enableJointForceTorqueSensor(
     problem = "Error: invalid jointIndex."
     access = body_access(bodyUniqueId, physicsClientId, problem, "Error: invalid bodyUniqueId")
     index, enabled = integer(jointIndex, "jointIndex"), integer(enableSensor, "enableSensor") != 0
-    if index not in access.joints:
+    if not has_joint(access.body, index):
         fail(problem, no_joint(access.body, index))
     client = client_of(physicsClientId)
     with client.lock:

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf
-from typing import Any, SupportsFloat
+from math import inf, nan
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
+from carom.layouts.motor_commands import (
+    DEFAULT_POSITION_GAIN,
+    DEFAULT_VELOCITY_GAIN,
+    NO_CLAMP,
+    TARGET_ENTRIES,
+)
 from carom.model.joint_columns import NO_ENTRIES, Column, column_of
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
@@ -24,15 +30,17 @@ from pybullet._calls.builtin import exported
 from pybullet._calls.constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL, TORQUE_CONTROL
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no_joint
+from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, joint_of
 from pybullet._joints.joints import NO_INDICES
-from pybullet._joints.motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+
+if TYPE_CHECKING:
+    from pybullet._bodies.body_access import BodyAccess
 
 __all__ = ["setJointMotorControlMultiDof", "setJointMotorControlMultiDofArray"]
 
 _ILLEGAL_MODE = "Illegal control mode."
-_NO_CLAMP = -1.0
-_NO_DAMPING = 1.0
+_DAMPING = (1.0,)
+_UNUSED = (nan,) * TARGET_ENTRIES
 _ARRAY_MODES = (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL)
 _USUAL_LISTS = frozenset((list, tuple))
 _USUAL_NUMBERS = frozenset((float, int))
@@ -88,16 +96,13 @@ def setJointMotorControlMultiDof(
     kp, kd = _gain(positionGain, "positionGain"), _gain(velocityGain, "velocityGain")
     damped = _gain(damping, "damping")
     clamp = bound(maxVelocity, "maxVelocity")
-    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    access, joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
     mode = integer(controlMode, "controlMode")
-    if mode == TORQUE_CONTROL:
-        joint.add_torques(forces)
-    elif mode == POSITION_CONTROL:
-        if len(position) == _QUATERNION:
-            _check_rotation(position)
-        joint.command_multi_dof(mode, (position, velocity, forces, kp, kd, clamp, damped))
-    else:
+    if mode not in (TORQUE_CONTROL, POSITION_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
+    if mode == POSITION_CONTROL and len(position) == _QUATERNION:
+        _check_rotation(position)
+    _command(access, joint, mode, (position, velocity, forces, kp, kd, damped), clamp)
 
 
 @exported
@@ -159,10 +164,7 @@ def setJointMotorControlMultiDofArray(
     if count == 0 or not {0, count}.issuperset(map(len, lists)):
         return
     access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
-    try:
-        joints = [access.joints[index] for index in requested]
-    except KeyError as missing:
-        fail(OUT_OF_RANGE, no_joint(access.body, missing.args[0]))
+    joints = [joint_of(access.body, index) for index in requested]
     positions = _column(lists[0], "targetPositions", 4)
     velocities = _column(lists[1], "targetVelocities", 3)
     bounds = _column(lists[2], "forces", 3, inf)
@@ -182,10 +184,16 @@ def setJointMotorControlMultiDofArray(
         return
     columns = [column.entries or [()] * count for column in (positions, velocities, bounds)]
     for joint, position, velocity, force, kp, kd in zip(joints, *columns, kps, kds, strict=True):
-        if mode == TORQUE_CONTROL:
-            joint.add_torques(force)
-        else:
-            joint.command_multi_dof(mode, (position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING))
+        lists = (position, velocity, force, (kp,), (kd,), _DAMPING)
+        _command(access, joint, mode, lists, NO_CLAMP)
+
+
+def _command(
+    access: BodyAccess, joint: int, mode: int, lists: Iterable[Sequence[float]], clamp: float
+) -> None:
+    """Tell a joint positions, velocities, forces, two gains and dampings; unused places hold NaN."""
+    padded = [number for given in lists for number in (*given, *_UNUSED[len(given) :])]
+    access.kernels("command_joint", joint, mode, *padded, clamp)
 
 
 def _column(
@@ -232,13 +240,11 @@ def _entries(values: Any, name: str) -> tuple[Any, ...]:
     return () if values is None else sequence(values, f"expected a {name} sequence", name)
 
 
-def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
-    """A checked number, or at most three; an empty sequence is kept and counts as not given."""
-    if type(value) is float or type(value) is int:
-        return quantity(value, name)
+def _gain(value: float | Vector, name: str) -> tuple[float, ...]:
+    """At most three checked numbers, or one; an empty sequence is kept and counts as not given."""
     # An array of one number can be converted to a float, too, but counts as a list.
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
-        return quantity(value, name)
+        return (quantity(value, name),)
     return quantities(value, f"expected a {name} sequence", name)[:3]
 
 
