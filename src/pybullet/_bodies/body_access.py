@@ -36,15 +36,15 @@ class BodyAccess:
 
     Attributes:
         body: The body itself.
-        acts_twice: External forces act twice on it, as in PyBullet, see `Client.maximal`.
         kernels: Calls kernels with numbers after that of the body.
     """
 
     def __init__(self, client: Client, body: Body, quick: QuickBodies) -> None:
         self.body = body
-        self.acts_twice: bool = client.deformable and body.id in client.maximal
         self._client = client
-        self.kernels = quick.kernels_of(body, 2 if self.acts_twice else 1)
+        # As in PyBullet, see `Client.maximal`.
+        acts_twice = client.deformable and body.id in client.maximal
+        self.kernels = quick.kernels_of(body, force_factor=2 if acts_twice else 1)
 
     @property
     def record(self) -> Record:
@@ -87,7 +87,7 @@ class BodyAccess:
             return _state(n)
         self._client.world.prepare_twists()
         n = self.kernels("link_state", link, 1, 0, count=_MOVING_LINK)
-        return (*_state(n), n[21:24], n[24:27])
+        return cast(LinkStateWithVelocity, (*_state(n), n[21:24], n[24:27]))
 
     def _show_links(self) -> None:
         """Let the native library handle calls about links."""

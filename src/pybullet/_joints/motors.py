@@ -212,40 +212,30 @@ def setJointMotorControlArray(
         >>> round(p.getJointState(arm, 0)[1], 2)
         0.5
     """
-    _set_array_carefully(
-        one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
-        jointIndices,
-        controlMode,
-        (targetPositions, targetVelocities, forces, positionGains, velocityGains),
-        physicsClientId,
-    )
-
-
-def _set_array_carefully(
-    body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
-) -> None:
-    """Set the motors after checking, and where needed converting, every argument."""
-    required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
-    client_of(physics_client_id)
-    mode = integer(control_mode, "controlMode")
+    body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray")
+    required("setJointMotorControlArray", jointIndices=jointIndices, controlMode=controlMode)
+    client_of(physicsClientId)
+    mode = integer(controlMode, "controlMode")
     if mode not in MODES:
         fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of joints.")
-    requested = indices(joint_indices, NO_INDICES, "jointIndices")
+    requested = indices(jointIndices, NO_INDICES, "jointIndices")
     if not requested:
         return
-    access = body_access(body, physics_client_id, OUT_OF_RANGE)
+    access = body_access(body, physicsClientId, OUT_OF_RANGE)
     joints = [joint_of(access.body, index) for index in requested]
-    positions, velocities, forces, kps, kds = lists
     count, torque = len(joints), mode == TORQUE_CONTROL
-    checked = [
-        _one_each(velocities, 0.0, count, _WRONG_VELOCITIES, "targetVelocities"),
-        _one_each(positions, 0.0, count, _WRONG_POSITIONS, "targetPositions"),
+    velocities = _one_each(targetVelocities, 0.0, count, _WRONG_VELOCITIES, "targetVelocities")
+    columns = [
+        joints,
+        _one_each(targetPositions, 0.0, count, _WRONG_POSITIONS, "targetPositions"),
+        velocities,
         _one_each(forces, DEFAULT_FORCE, count, _WRONG_FORCES, "forces", infinite=not torque),
-        _one_each(kps, DEFAULT_POSITION_GAIN, count, _WRONG_KPS, "positionGains"),
-        _one_each(kds, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
+        _one_each(positionGains, DEFAULT_POSITION_GAIN, count, _WRONG_KPS, "positionGains"),
+        _one_each(velocityGains, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
+        (NO_CLAMP,) * count,
     ]
-    for joint, velocity, position, force, kp, kd in zip(joints, *checked, strict=True):
-        access.kernels("command_motor", joint, mode, position, velocity, force, kp, kd, NO_CLAMP)
+    rows = [number for row in zip(*columns, strict=True) for number in row]
+    access.kernels("command_each", mode, count, *rows)
 
 
 @overload

@@ -42,8 +42,6 @@ _ILLEGAL_MODE = "Illegal control mode."
 _DAMPING = (1.0,)
 _UNUSED = (nan,) * TARGET_ENTRIES
 _ARRAY_MODES = (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL)
-_USUAL_LISTS = frozenset((list, tuple))
-_USUAL_NUMBERS = frozenset((float, int))
 _QUATERNION = 4
 
 
@@ -168,8 +166,8 @@ def setJointMotorControlMultiDofArray(
     positions = _column(lists[0], "targetPositions", 4)
     velocities = _column(lists[1], "targetVelocities", 3)
     bounds = _column(lists[2], "forces", 3, inf)
-    kps = _gains(lists[3], "positionGains") or [DEFAULT_POSITION_GAIN] * count
-    kds = _gains(lists[4], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
+    kps = [quantity(value, "positionGains") for value in lists[3]] or [DEFAULT_POSITION_GAIN] * count
+    kds = [quantity(value, "velocityGains") for value in lists[4]] or [DEFAULT_VELOCITY_GAIN] * count
     for position in positions.entries:
         if len(position) == _QUATERNION:
             _check_rotation(position)
@@ -199,24 +197,8 @@ def _command(
 def _column(
     entries: Sequence[Vector | None], name: str, most: int, greatest: float = MAX_MAGNITUDE
 ) -> Column:
-    """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
-    if not entries:
-        return NO_ENTRIES
-    if _USUAL_LISTS.issuperset(map(type, entries)):
-        usual = column_of(entries)  # type: ignore[arg-type]
-        try:
-            if max(usual.counts) <= most and -greatest < sum(usual.numbers) < greatest:
-                return usual
-        except (TypeError, ValueError):
-            pass
-    return column_of([_list(values, name, most, greatest) for values in entries])
-
-
-def _gains(values: Sequence[float], name: str) -> Sequence[float]:
-    """Checked finite numbers; plain Python numbers are checked all at once, which is faster."""
-    if _USUAL_NUMBERS.issuperset(map(type, values)) and -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
-        return values
-    return [quantity(value, name) for value in values]
+    """The checked numbers of each joint."""
+    return column_of([_list(values, name, most, greatest) for values in entries]) if entries else NO_ENTRIES
 
 
 def _list(values: Vector | None, name: str, most: int, greatest: float = MAX_MAGNITUDE) -> Sequence[float]:
@@ -224,12 +206,6 @@ def _list(values: Vector | None, name: str, most: int, greatest: float = MAX_MAG
 
     Their magnitude is at most `MAX_MAGNITUDE`, or finite if `greatest` is infinite.
     """
-    if isinstance(values, (list, tuple)) and len(values) <= most:
-        try:
-            if -greatest < sum(values) < greatest:
-                return values
-        except (TypeError, ValueError):
-            pass
     if values is None:
         return ()
     checked = numbers if greatest == inf else quantities
@@ -242,6 +218,8 @@ def _entries(values: Any, name: str) -> tuple[Any, ...]:
 
 def _gain(value: float | Vector, name: str) -> tuple[float, ...]:
     """At most three checked numbers, or one; an empty sequence is kept and counts as not given."""
+    if type(value) is float or type(value) is int:
+        return (quantity(value, name),)
     # An array of one number can be converted to a float, too, but counts as a list.
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
         return (quantity(value, name),)

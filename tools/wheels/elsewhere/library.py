@@ -92,7 +92,7 @@ class Elsewhere:
 
         def work_out(numbers: bytes, results: Any, call: int | None) -> bool:
             memory = Memory(self._layouts)
-            given = ctypes.cast(numbers, ctypes.c_void_p).value or 0
+            given = ctypes.cast(ctypes.c_char_p(numbers), ctypes.c_void_p).value or 0
             memory.add(given, len(numbers))
             found = ctypes.addressof(results)
             memory.add(found, ctypes.sizeof(results))

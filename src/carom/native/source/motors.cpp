@@ -177,6 +177,19 @@ extern "C" CAROM_EXPORT int carom_command_motor(const double* in, double* out, c
     return 1;
 }
 
+// Arguments: body, mode, number of joints; then for each its index and a `Command`.
+extern "C" CAROM_EXPORT int carom_command_each(const double* in, double* out, const Call* call) {
+    const Body& body = *call->body;
+    const int64_t count = static_cast<int64_t>(in[2]);
+    const double* each = in + 3;
+    for (int64_t i = 0; i < count; ++i, each += 1 + sizeof(Command) / sizeof(double)) {
+        Command to;
+        __builtin_memcpy(&to, each + 1, sizeof to);
+        command(body, body.joints[static_cast<int64_t>(each[0])], in[1], to, call->client->time_step);
+    }
+    return 1;
+}
+
 // Arguments: body, mode, connection; then sequences: joints, positions, velocities, forces, position gains, velocity
 // gains.
 extern "C" CAROM_EXPORT int carom_command_motors(const double* in, double* out, const Call* call) {
