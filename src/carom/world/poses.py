@@ -84,11 +84,7 @@ class PoseUpdates(ABC):
 
     def update_link_velocities(self, body: Body) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
-        self.prepare_twists()(body.rows.tree)
-
-    def prepare_twists(self) -> TreeLaunch:
-        """As `prepare_poses`, for the addresses that update link velocities."""
         if self._derived.twist_launch is None:
             self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
             self.quick.set_twist_addresses(self._derived.twist_launch)
-        return self._derived.twist_launch
+        self._derived.twist_launch(body.rows.tree)

@@ -85,7 +85,7 @@ class BodyAccess:
         if not with_velocity:
             n = self.kernels("link_state", link, 0, 0, count=_LINK)
             return _state(n)
-        self._client.world.prepare_twists()
+        self.body.update_link_velocities()
         n = self.kernels("link_state", link, 1, 0, count=_MOVING_LINK)
         return cast(LinkStateWithVelocity, (*_state(n), n[21:24], n[24:27]))
 
