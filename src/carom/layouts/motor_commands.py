@@ -1,25 +1,17 @@
-"""Data of the kernel that sets the motors of several joints."""
+"""Commands to motors of joints."""
 
-from carom.layouts.types import Ints, Reals, struct
-
-# Control modes: velocity, torque in addition to the motor, position, and explicit PD control, which the
-# kernel does not implement. The values are PyBullet's.
+# Control modes: velocity, torque in addition to the motor, position, and explicit PD control. The values are
+# PyBullet's.
 VELOCITY, TORQUE, POSITION, PD = 0, 1, 2, 3
 MODES = (VELOCITY, TORQUE, POSITION, PD)
-# Bits of the quantities that are given.
-POSITIONS, VELOCITIES, FORCES, KPS, KDS = 1, 2, 4, 8, 16
-
-
-@struct
-class MotorCommands:
-    """Commands for motors of one degree of freedom each."""
-
-    joint_dof: Ints
-    joint_lower: Reals  # bounds of the target position
-    joint_upper: Reals
-    joint_position: Reals
-    joint_velocity: Reals
-    joint_force: Reals
-    joint_kp: Reals
-    joint_kd: Reals
-    joint_refused: Ints  # first entry: 1 if a number was not finite; then no motor has been set
+# Defaults of PyBullet's functions: maximum force [N or N m] and gains.
+DEFAULT_FORCE = 100000.0
+DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN = 0.1, 1.0
+# A maximum velocity that changes nothing.
+NO_CLAMP = -1.0
+# The maximum force of a motor that was given a list of targets but no force [N or N m], and its gain if the
+# list of gains has the wrong length.
+UNSTATED_FORCE, UNSTATED_GAIN = 1000000.0, 0.1
+# Lists for a joint with several degrees of freedom: positions, velocities, forces, two gains and dampings, of
+# so many numbers each at most.
+TARGET_LISTS, TARGET_ENTRIES = 6, 4

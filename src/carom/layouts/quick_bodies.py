@@ -2,7 +2,6 @@
 
 from carom.layouts.gates import Gate
 from carom.layouts.model import State
-from carom.layouts.programs import KernelCall
 from carom.layouts.quick_world import Scene
 from carom.layouts.records import At, Double, Int32, Int64, Object, Read, c_record
 
@@ -67,6 +66,7 @@ class Joint:
     Attributes:
         position: Index of its first position among those of the body.
         velocity: Index of its first velocity among those of the body.
+        position_count: Number of its positions, one more than of velocities if it is spherical.
         dof_count: Number of its degrees of freedom.
         has_sensor: It measures reaction forces.
         lower: Least target position.
@@ -75,43 +75,11 @@ class Joint:
 
     position: Int32
     velocity: Int32
+    position_count: Int32
     dof_count: Int32
     has_sensor: Int32
     lower: Double
     upper: Double
-
-
-@c_record()
-class MotorGroup:
-    """Joints of a body that were commanded together, and the kernel for their commands.
-
-    Attributes:
-        command: The kernel.
-        mode: The control mode, among the kernel's arguments.
-        given: The quantities that are given, among the kernel's arguments.
-        time_step: Among the kernel's arguments [s].
-        refused: Not 0 if the last command did nothing because numbers were not finite.
-        position: One number for each joint, as in `MotorCommands`; so are the next four.
-        velocity: See there.
-        force: See there.
-        kp: See there.
-        kd: See there.
-        indices: The joints.
-        count: Number of joints.
-    """
-
-    command: KernelCall
-    mode: At[Int32]
-    given: At[Int32]
-    time_step: At[Double]
-    refused: Read[Int32]
-    position: At[Double]
-    velocity: At[Double]
-    force: At[Double]
-    kp: At[Double]
-    kd: At[Double]
-    indices: Read[Int32]
-    count: Int64
 
 
 @c_record()
@@ -131,7 +99,9 @@ class Body:
         reaction: Force and torque that sensors measure, for each link.
         links: All except the base; null until they are first needed.
         joints: All joints.
-        motors: The group commanded last; null if there is none.
+        position_count: Number of positions.
+        velocity_count: Number of velocities.
+        force_factor: How many times external forces act.
         link_count: Number of links, without the base.
         tree: Row of the tree.
         first_link: Row of the base.
@@ -154,7 +124,9 @@ class Body:
     reaction: Read[Double]
     links: At[Link]
     joints: Read[Joint]
-    motors: Read[MotorGroup]
+    position_count: Int64
+    velocity_count: Int64
+    force_factor: Double
     link_count: Int64
     tree: Int64
     first_link: Int64
@@ -174,8 +146,8 @@ class Client:
         bodies: By number; null where there is none.
         body_count: Number of places in `bodies`.
         gate: The lock.
-        connection: An object with the duration of a step.
-        time_step_name: The name of that attribute.
+        connection: The Python object of the connection.
+        time_step: The duration of a step [s].
         reports_analytics: 1 if steps return statistics of the solver, which Python makes.
         world_bodies: A dictionary with the Python objects of the bodies, by number.
         joint_count_name: Name of an attribute of these.
@@ -187,7 +159,7 @@ class Client:
     body_count: Int64
     gate: At[Gate]
     connection: Object
-    time_step_name: Object
+    time_step: Double
     reports_analytics: Int64
     world_bodies: Object
     joint_count_name: Object

@@ -1,12 +1,14 @@
 """Quick calls: what the library knows of their parameters and results."""
 
-from carom.layouts.records import Double, Int32, Int64, Kernel, Maker, Object, c_record
+from carom.layouts.quick_bodies import Body, Client
+from carom.layouts.records import Double, Int32, Int64, Kernel, Maker, Object, Read, c_record
 
 MAX_CALLS = 192
 MAX_PARAMETERS = 26
 MAX_NUMBERS = 32
 MAX_RESULTS = 32
 MAX_GROUPS = 8
+MAX_SEQUENCES = 6
 
 # Parameters of `changeDynamics`, with their kinds.
 CHANGE_DYNAMICS = {
@@ -38,6 +40,21 @@ CHANGE_DYNAMICS = {
 }
 # How many numbers an argument of each kind is; sequences of any length are handed on as they are.
 NUMBERS_OF_KIND = {"-": 0, "s": 0, "v": 0, "3": 3, "4": 4, "q": 4, "r": 1, "i": 1, "b": 1, "c": 1}
+
+
+@c_record(sequences=MAX_SEQUENCES)
+class Call:
+    """A call of a kernel: what it is about, besides numbers.
+
+    Attributes:
+        client: The connection; null if the function names none.
+        body: The body; likewise.
+        sequences: Arguments of any length (lists, tuples, ranges and arrays); null for those left out.
+    """
+
+    client: Read[Client]
+    body: Read[Body]
+    sequences: Object
 
 
 @c_record()

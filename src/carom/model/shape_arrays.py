@@ -13,6 +13,7 @@ from carom.description.collision_groups import FIXED_GROUP, FIXED_MASK, MOVING_G
 from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.flags import LoadFlags
+from carom.layouts.quick_world import SURFACE
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.builder import TreeRows
@@ -48,12 +49,7 @@ _INDEX_FIELDS = {
 
 # The field of `Shapes` in which each attribute of a `Surface` is kept.
 SURFACE_FIELDS = {
-    "lateral_friction": "link_lateral_friction",
-    "rolling_friction": "link_rolling_friction",
-    "spinning_friction": "link_spinning_friction",
-    "restitution": "link_restitution",
-    "contact_stiffness": "link_stiffness",
-    "contact_damping": "link_contact_damping",
+    **SURFACE,
     "friction_anchor": "link_friction_anchor",
     "friction_rank": "link_friction_rank",
     "contact_reference": "link_reference",

@@ -10,7 +10,6 @@ KERNEL_MODULES = _modules(
     *(
         "contact.stages",
         "dynamics.kinematics",
-        "dynamics.motor_commands",
         "dynamics.step",
         "dynamics.step_ends",
     ),

@@ -78,12 +78,14 @@ class Library:
         function.restype = None
         return function
 
-    def turn(self, kernel: str) -> Any:
-        """The C function of a kernel of `turns.cpp`: takes numbers, an array for the results, and None.
+    def number_kernel(self, kernel: str) -> Any:
+        """The C function of a kernel of quick calls: takes numbers, an array for the results, and a `Call`.
 
-        It returns whether there are results for these numbers.
+        Numbers are bytes, the `Call` is given by its address. It returns whether there are results. The GIL
+        is held meanwhile.
         """
-        return self.symbols[f"carom_{kernel}"]
+        signature = ctypes.PYFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 3)
+        return signature((f"carom_{kernel}", self.symbols))
 
     def _entry(self, kernel: str) -> Mapping[str, Any]:
         entry = self._kernels.get(kernel)

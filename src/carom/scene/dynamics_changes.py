@@ -11,6 +11,7 @@ import numpy as np
 
 from carom.engine.presence import change_presence
 from carom.layouts.flags import ActivationChange, LoadFlags
+from carom.layouts.quick_world import DAMPING
 from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.native.uninterrupted import uninterrupted
@@ -24,11 +25,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 
-OF_BODY = {
-    "linear_damping": "tree_linear_damping",
-    "angular_damping": "tree_angular_damping",
-    "max_joint_velocity": "tree_max_velocity",
-}
+OF_BODY = {**DAMPING, "max_joint_velocity": "tree_max_velocity"}
 _SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")

@@ -10,30 +10,18 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
+from carom.layouts.quick_world import SURFACE
 from carom.model.body_spec import BASE
-from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import OF_BODY, shape_inertia, unit_inertia
 from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS
 from carom.worlds.chosen import Chosen
 
-# Fields of `Shapes` that can differ between worlds, by their public names.
-OF_SURFACE = {
-    name: SURFACE_FIELDS[name]
-    for name in (
-        "lateral_friction",
-        "rolling_friction",
-        "spinning_friction",
-        "restitution",
-        "contact_stiffness",
-        "contact_damping",
-    )
-}
 _QUATERNION = 4
 LIMITS = {"joint_lower_limit": "constraint_lower", "joint_upper_limit": "constraint_upper"}
 FRICTION = "joint_friction"
 _OF_JOINT = (*TERMS, FRICTION)
-_ALL = ("mass", "inertia", *OF_SURFACE, *OF_BODY, *_OF_JOINT, *LIMITS)
+_ALL = ("mass", "inertia", *SURFACE, *OF_BODY, *_OF_JOINT, *LIMITS)
 _NOT_NEGATIVE = ("mass", "inertia", "restitution", *OF_BODY, "joint_damping", *OF_DOFS, FRICTION)
 
 
@@ -81,7 +69,7 @@ def _open_crossed_limits(
 def dynamics_of(engine: Engine, body: Body, link: int) -> dict[str, Array]:
     """See `BodyBatch.dynamics`."""
     row = body.first_link + 1 + link
-    found = {name: engine.parameter("shapes", field, row) for name, field in OF_SURFACE.items()}
+    found = {name: engine.parameter("shapes", field, row) for name, field in SURFACE.items()}
     found |= {name: engine.parameter("model", field, body.rows.tree) for name, field in OF_BODY.items()}
     if link != BASE or not body.fixed_base:
         found["mass"] = engine.parameter("model", "link_mass", row)
@@ -115,8 +103,8 @@ def _writes(
     """The changes of arrays: table, field, rows, numbers (first axis: worlds)."""
     row, tree = body.first_link + 1 + link, body.rows.tree
     for name, numbers in values.items():
-        if name in OF_SURFACE:
-            yield "shapes", OF_SURFACE[name], row, numbers
+        if name in SURFACE:
+            yield "shapes", SURFACE[name], row, numbers
         elif name in OF_BODY:
             yield "model", OF_BODY[name], tree, numbers
         elif name == "mass":

@@ -8,13 +8,13 @@ import numpy as np
 
 from carom.engine.engine import Engine
 from carom.layouts.codes import ABSENT, ConstraintKind
+from carom.layouts.quick_world import SURFACE
 from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
 from carom.scene.dynamics_changes import OF_BODY
 from carom.scene.joint_terms.implicit import OF_DOFS
 from carom.world.world import World
-from carom.worlds.dynamics import OF_SURFACE
 
 
 def lone_world(scene: World, engine: Engine, number: int, time: float, unspent_time: float) -> World:
@@ -58,7 +58,7 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
         body.change_dynamics(BASE, **damping)
         for link in range(BASE, body.joint_count):
             row, dynamics = body.first_link + 1 + link, body.dynamics(link)
-            for name, field in OF_SURFACE.items():
+            for name, field in SURFACE.items():
                 setattr(dynamics, name, float(_row(shapes, field, number)[row]))
             if link >= 0 or not body.fixed_base:
                 dynamics.mass = float(_row(model, "link_mass", number)[row])

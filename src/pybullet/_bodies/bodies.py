@@ -7,8 +7,8 @@ from pybullet._calls.arguments import Vector, integer, rotation, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_vector3
-from pybullet._clients.clients import client_of, clients
-from pybullet._clients.lookup import body_access, body_of, no_body
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import BASE, body_access, body_of, no_body
 
 __all__ = [
     "computeDofCount",
@@ -191,10 +191,8 @@ def getBasePositionAndOrientation(bodyUniqueId: int, physicsClientId: int = 0) -
         >>> position, orientation
         ((0.5, 0.0, 0.025), (0.0, 0.0, 0.0, 1.0))
     """
-    try:
-        return clients[physicsClientId].bodies[bodyUniqueId].base_pose()
-    except (KeyError, TypeError, ValueError):
-        return body_access(bodyUniqueId, physicsClientId, "GetBasePositionAndOrientation failed.").base_pose()
+    access = body_access(bodyUniqueId, physicsClientId, "GetBasePositionAndOrientation failed.")
+    return access.inertial_frame(BASE)
 
 
 @exported
@@ -247,10 +245,7 @@ def getBaseVelocity(bodyUniqueId: int, physicsClientId: int = 0) -> tuple[Vector
         >>> linear
         (0.0, 0.0, 0.0)
     """
-    try:
-        return clients[physicsClientId].bodies[bodyUniqueId].base_velocity()
-    except (KeyError, TypeError, ValueError):
-        return body_access(bodyUniqueId, physicsClientId, "getBaseVelocity failed.").base_velocity()
+    return body_access(bodyUniqueId, physicsClientId, "getBaseVelocity failed.").base_velocity()
 
 
 @exported
@@ -289,9 +284,4 @@ def resetBaseVelocity(
     if angularVelocity is not None:
         angular = optional_vector3(angularVelocity, problem, "angularVelocity") or (0.0, 0.0, 0.0)
     if body is not None:
-        with client.lock:
-            present_linear, present_angular = client.bodies[body.id].base_velocity()
-            body.set_base_velocity(linear or present_linear, angular or present_angular)
-            body.note_reset(moved=False)
-            # As in PyBullet, `getLinkState` returns up-to-date poses from now on.
-            body.update_link_poses()
+        client.bodies[body.id].set_base_velocity(linear, angular)

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from ctypes import addressof
 from functools import cached_property
-from struct import Struct
-from typing import TYPE_CHECKING
+from math import nan
+from typing import TYPE_CHECKING, cast
 
 from carom.description.pose import Quaternion, Vector3
-from carom.description.transform import inverse, multiplied
-from pybullet._joints.joint_access import JointAccess, joint_access
-from pybullet._joints.joint_groups import JointGroup, JointGroups
+from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
 from pybullet._joints.joint_info import JointInfo, joint_info
-from pybullet._maths.rotations import canonical, turned
 
 if TYPE_CHECKING:
     from carom.algorithms.ask import Ask
@@ -21,123 +18,100 @@ if TYPE_CHECKING:
     from carom.layouts.quick_bodies import Body as Record
     from carom.scene.body import Body
     from pybullet._bodies.link_box import LinkBox, SoftBox
-    from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._clients.clients import Client
-
-_POSE, _SPATIAL = Struct("7d"), Struct("6d")
-_read_pose = _POSE.unpack_from
-_read_spatial, _write_spatial = _SPATIAL.unpack_from, _SPATIAL.pack_into
-_AT_REST = (0.0,) * 6
-_NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
 LinkState = tuple[Vector3, Quaternion, Vector3, Quaternion, Vector3, Quaternion]
 LinkStateWithVelocity = tuple[Vector3, Quaternion, Vector3, Quaternion, Vector3, Quaternion, Vector3, Vector3]
+Wrench = tuple[float, ...]
+JointState = tuple[float, float, Wrench, float]
+MultiDofState = tuple[tuple[float, ...], tuple[float, ...], Wrench, tuple[float, ...]]
 
-
-class LinkAccess:
-    """Direct access to the state of one link other than the base."""
-
-    __slots__ = ("frame", "from_inertial", "pose_at", "poses", "rotated", "velocities", "velocity_at")
-
-    def __init__(self, client: Client, body: Body, index: int) -> None:
-        row = body.first_link + 1 + index
-        self.poses = client.world.link_pose_memory
-        self.pose_at = row * _POSE.size
-        self.velocities = client.world.link_velocity_memory
-        self.velocity_at = row * _SPATIAL.size
-        frame = body.link_inertial_frame(index)
-        self.frame = (frame.position, frame.orientation)
-        self.from_inertial = inverse(frame)
-        self.rotated = self.from_inertial.orientation != _NO_TURN
-
-    def state(self) -> LinkState:
-        """World pose of the inertial frame, its pose in the link frame, and world pose of the link frame."""
-        x, y, z, qx, qy, qz, qw = _read_pose(self.poses, self.pose_at)
-        orientation = (qx, qy, qz, qw)
-        dx, dy, dz = turned(orientation, self.from_inertial.position)
-        return (
-            (x, y, z),
-            orientation,
-            *self.frame,
-            (x + dx, y + dy, z + dz),
-            canonical(multiplied(orientation, self.from_inertial.orientation))
-            if self.rotated
-            else orientation,
-        )
-
-    def velocity(self) -> tuple[Vector3, Vector3]:
-        """Velocity of the centre of mass and angular velocity, in world axes."""
-        vx, vy, vz, wx, wy, wz = _read_spatial(self.velocities, self.velocity_at)
-        return ((vx, vy, vz), (wx, wy, wz))
-
-    def pose(self) -> tuple[Vector3, Quaternion]:
-        """World pose of the inertial frame."""
-        x, y, z, qx, qy, qz, qw = _read_pose(self.poses, self.pose_at)
-        return (x, y, z), (qx, qy, qz, qw)
+# Numbers in the results of kernels.
+_POSE, _TWIST, _JOINT, _JOINT_COORDINATES, _LINK, _MOVING_LINK = 7, 6, 9, 16, 21, 27
+_NOT_GIVEN = (nan,) * 3
 
 
 class BodyAccess:
-    """Direct access to the state of one body.
+    """Direct access to the state of one body, by the kernels of quick calls.
 
     Attributes:
         body: The body itself.
-        acts_twice: External forces act twice on it, as in PyBullet, see `Client.maximal`.
-        joints: Access to its joints, by index.
-        groups: Access to groups of its joints, by the tuple of their indices.
-        record: The body's record for the native library; None if Python handles all calls.
+        kernels: Calls kernels with numbers after that of the body.
     """
 
-    def __init__(self, client: Client, body: Body) -> None:
+    def __init__(self, client: Client, body: Body, quick: QuickBodies) -> None:
         self.body = body
-        self.acts_twice: bool = client.deformable and body.id in client.maximal
         self._client = client
-        self._positions = client.world.position_memory
-        self._velocities = client.world.velocity_memory
-        self._position_at = body.first_position * 8
-        self._velocity_at = body.first_velocity * 8
-        self.joints: dict[int, JointAccess] = {
-            index: joint_access(client, body, index) for index in range(body.joint_count)
-        }
-        self.groups = JointGroups(client, self.joints)
-        self.record: Record | None = None
+        # As in PyBullet, see `Client.maximal`.
+        acts_twice = client.deformable and body.id in client.maximal
+        self.kernels = quick.kernels_of(body, force_factor=2 if acts_twice else 1)
 
-    @cached_property
-    def links(self) -> dict[int, LinkAccess]:
-        """Access to the links other than the base, by index."""
-        links = {index: LinkAccess(self._client, self.body, index) for index in range(self.body.joint_count)}
-        if self.record is not None:
-            from pybullet._bodies.quick_bodies import link_records
+    @property
+    def record(self) -> Record:
+        """The body's record for the native library."""
+        return self.kernels.record
 
-            self._link_records = link_records(links.values())
+    def joint_state(self, joint: int) -> JointState:
+        """Position, velocity, reaction wrench and motor torque, as `getJointState` returns them."""
+        position, velocity, *wrench, torque = self.kernels("joint_state", joint, count=_JOINT)
+        return position, velocity, tuple(wrench), torque
+
+    def multi_dof_state(self, joint: int) -> MultiDofState:
+        """As `joint_state`, with tuples of positions, velocities and motor torques."""
+        numbers = self.kernels("joint_coordinates", joint, count=_JOINT_COORDINATES)
+        positions, velocities = self.body.position_count[joint], self.body.velocity_count[joint]
+        if positions == velocities == 3:
+            # PyBullet reports two of the three coordinates of a planar joint.
+            positions = velocities = 2
+        return (
+            numbers[:positions],
+            numbers[4 : 4 + velocities],
+            numbers[7:13],
+            numbers[13 : 13 + velocities],
+        )
+
+    def reset_joint(self, joint: int, position: float, velocity: float) -> None:
+        """Set the state of a joint with one degree of freedom, without physics; others stay as they are.
+
+        As in PyBullet, getLinkState returns current poses afterwards.
+        """
+        with self._client.lock:
+            self._client.world.prepare_poses()
+            self.kernels("reset_joint", joint, position, velocity)
+
+    def link_state(self, link: int, with_velocity: bool) -> LinkState | LinkStateWithVelocity:
+        """As `getLinkState` returns it, for the present poses."""
+        self._show_links()
+        if not with_velocity:
+            n = self.kernels("link_state", link, 0, 0, count=_LINK)
+            return _state(n)
+        self.body.update_link_velocities()
+        n = self.kernels("link_state", link, 1, 0, count=_MOVING_LINK)
+        return cast(LinkStateWithVelocity, (*_state(n), n[21:24], n[24:27]))
+
+    def _show_links(self) -> None:
+        """Let the native library handle calls about links."""
+        if not self.record.links:
+            self._link_records = link_records(self.body)
             self.record.links = addressof(self._link_records)
-        return links
 
     def forget_moments(self, link: int) -> None:
         """Let the moments of a link be computed anew when its mass changes next; -1 is the base."""
-        if self.record is not None and self.record.moments:
+        if self.record.moments:
             self._moments[link + 1].is_known = False
 
     def weighed(self, link: int) -> None:
         """Let the native library handle the next changes of a link's mass; -1 is the base."""
-        if self.record is None:
+        if self.body.spec.soft is not None:
             return
         from carom.layouts.quick_bodies import Moments
         from carom.scene.dynamics_changes import shape_terms
-        from pybullet._bodies.quick_bodies import write_moments
 
         if not self.record.moments:
             self._moments = (Moments * (self.body.joint_count + 1))()
             self.record.moments = addressof(self._moments)
         if not self._moments[link + 1].is_known:
             write_moments(self._moments[link + 1], shape_terms(self.body, link))
-
-    def commanded(self, group: JointGroup) -> None:
-        """Let the native library handle the next commands to this group of joints."""
-        if self.record is not None and group.record is not None:
-            # `_group` keeps the record alive while the library uses it. The old record is withdrawn first.
-            self.record.motors = None
-            self._group = group
-            self.record.motors = addressof(group.record)
 
     @cached_property
     def boxes(self) -> Mapping[int, LinkBox | SoftBox]:
@@ -148,11 +122,8 @@ class BodyAccess:
         if self.body.spec.soft is not None:
             return {-1: SoftBox(self.body)}
         boxes = {index: LinkBox(self._client, self.body, index) for index in range(-1, self.body.joint_count)}
-        if self.record is not None:
-            from pybullet._bodies.quick_bodies import box_records
-
-            self._box_records = box_records(boxes.values())
-            self.record.boxes = addressof(self._box_records)
+        self._box_records = box_records(boxes.values())
+        self.record.boxes = addressof(self._box_records)
         return boxes
 
     @cached_property
@@ -173,39 +144,46 @@ class BodyAccess:
         """Drop only the data that depend on masses and inertias: some scripts change a mass at every step."""
         self.__dict__.pop("mechanism", None)
 
-    def base_pose(self) -> tuple[Vector3, Quaternion]:
-        """World pose of the base's inertial frame."""
-        x, y, z, qx, qy, qz, qw = _read_pose(self._positions, self._position_at)
-        return ((x, y, z), canonical((qx, qy, qz, qw)))
+    def inertial_frame(self, link: int) -> tuple[Vector3, Quaternion]:
+        """World pose of a link's inertial frame; -1 is the base."""
+        x, y, z, *turn = self.kernels("inertial_frame", link, count=_POSE)
+        return (x, y, z), cast(Quaternion, tuple(turn))
 
     def base_velocity(self) -> tuple[Vector3, Vector3]:
         """Velocity of the base's centre of mass and its angular velocity, in world axes."""
-        wx, wy, wz, vx, vy, vz = _read_spatial(self._velocities, self._velocity_at)
-        return ((vx, vy, vz), (wx, wy, wz))
-
-    def inertial_frame(self, link: int) -> tuple[Vector3, Quaternion]:
-        """World pose of a link's inertial frame; -1 is the base."""
-        return self.base_pose() if link < 0 else self.links[link].pose()
+        vx, vy, vz, wx, wy, wz = self.kernels("base_velocity", count=_TWIST)
+        return (vx, vy, vz), (wx, wy, wz)
 
     def place_base(self, position: Vector3, orientation: Quaternion) -> None:
         """Set the pose of the base and its velocity to 0, as `resetBasePositionAndOrientation` does."""
+        body, world = self.body, self._client.world
         with self._client.lock:
-            if self.body.spec.soft is not None:
-                self.body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-            _write_spatial(self._velocities, self._velocity_at, *_AT_REST)
-            before = self.body.coordinates()
-            self.body.set_base_pose(position, orientation)
-            self.body.note_reset(moved=self.body.coordinates() != before)
+            if body.spec.soft is None:
+                world.prepare_poses()
+                self.kernels("place_base", *position, *orientation)
+                return
+            body.set_base_velocity((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+            world.velocity[body.first_velocity : body.first_velocity + _TWIST] = 0.0
+            before = body.coordinates()
+            body.set_base_pose(position, orientation)
+            body.note_reset(moved=body.coordinates() != before)
 
-    def push(self, link: int, force: Vector3, torque: Vector3) -> None:
-        """Add a force [N] and a torque about the centre of mass [N m] to a link, in world axes; -1: base."""
-        wrenches = self._client.world.link_force_memory
-        at = (self.body.first_link + 1 + link) * _SPATIAL.size
-        fx, fy, fz, tx, ty, tz = _read_spatial(wrenches, at)
-        (x, y, z), (rx, ry, rz) = force, torque
-        if self.acts_twice:
-            x, y, z, rx, ry, rz = 2.0 * x, 2.0 * y, 2.0 * z, 2.0 * rx, 2.0 * ry, 2.0 * rz
-        _write_spatial(wrenches, at, fx + x, fy + y, fz + z, tx + rx, ty + ry, tz + rz)
+    def set_base_velocity(self, linear: Vector3 | None, angular: Vector3 | None) -> None:
+        """Set velocities of the base, as `resetBaseVelocity` does; None does not change one."""
+        body, world = self.body, self._client.world
+        with self._client.lock:
+            if body.spec.soft is None:
+                world.prepare_poses()
+                self.kernels("set_base_velocity", *(linear or _NOT_GIVEN), *(angular or _NOT_GIVEN))
+                return
+            present_linear, present_angular = self.base_velocity()
+            body.set_base_velocity(linear or present_linear, angular or present_angular)
+            body.note_reset(moved=False)
+            body.update_link_poses()
+
+
+def _state(n: tuple[float, ...]) -> LinkState:
+    return cast(LinkState, (n[0:3], n[3:7], n[7:10], n[10:14], n[14:17], n[17:21]))
 
 
 class BodyTable(dict[int, BodyAccess]):
@@ -214,24 +192,28 @@ class BodyTable(dict[int, BodyAccess]):
     The id of a body that does not exist raises `KeyError`.
 
     Attributes:
-        client: The client, which sets this attribute when it is created.
+        client: The client.
         forces_of_motion: The functions for `calculateInverseDynamics`, by body id; a plain dictionary,
             because its look-up is fastest.
-        quick: The records of these bodies for the native library; None if Python handles all calls.
+        quick: The records of these bodies for the native library.
     """
 
     __slots__ = ("client", "forces_of_motion", "quick")
 
     def __init__(self) -> None:
         super().__init__()
-        self.client: Client
         self.forces_of_motion: dict[int, Ask] = {}
-        self.quick: QuickBodies | None = None
+        self.client: Client
+        self.quick: QuickBodies
+
+    def belong_to(self, client: Client) -> None:
+        """Set the client, once, when it is made."""
+        self.client = client
+        self.quick = QuickBodies(client)
 
     def forget(self, body_id: int) -> None:
         """Drop the access to a body, because data that it caches change."""
-        if self.quick is not None:
-            self.quick.hide(body_id)
+        self.quick.hide(body_id)
         self.pop(body_id, None)
         self.forces_of_motion.pop(body_id, None)
 
@@ -244,14 +226,12 @@ class BodyTable(dict[int, BodyAccess]):
 
     def forget_all(self) -> None:
         """Drop the access to all bodies."""
-        if self.quick is not None:
-            self.quick.hide_all()
+        self.quick.hide_all()
         self.clear()
         self.forces_of_motion.clear()
 
     def __missing__(self, body_id: int) -> BodyAccess:
-        access = BodyAccess(self.client, self.client.world.bodies[body_id])
+        access = BodyAccess(self.client, self.client.world.bodies[body_id], self.quick)
         self[body_id] = access
-        if self.quick is not None:
-            self.quick.show(access)
+        self.quick.show(access.body, access.kernels)
         return access

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
+from carom.layouts.quick_calls import CHANGE_DYNAMICS
 from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import BASE, body_access, link_or_warning, no_joint
+from pybullet._clients.lookup import BASE, body_access, has_joint, link_or_warning, no_joint
 
 __all__ = ["changeDynamics", "enableJointForceTorqueSensor", "getDynamicsInfo"]
 
@@ -31,24 +33,17 @@ _OF_BODY = frozenset(
     {"sleep_threshold", "linear_damping", "angular_damping"}
     | {"activation_state", "max_joint_velocity", "collision_margin"}
 )
-# Arguments that are numbers, in PyBullet's order, after those that come first: parameter and conversion.
-_NUMBERS: dict[str, tuple[str, Callable[[Any, str], float]]] = {
-    "mass": ("mass", real),
-    "lateralFriction": ("lateral_friction", real),
-    "spinningFriction": ("spinning_friction", real),
-    "rollingFriction": ("rolling_friction", real),
-    "linearDamping": ("linear_damping", real),
-    "angularDamping": ("angular_damping", real),
-    "jointDamping": ("joint_damping", real),
-    "restitution": ("restitution", real),
-    "contactStiffness": ("contact_stiffness", real),
-    "contactDamping": ("contact_damping", real),
-    "frictionAnchor": ("friction_anchor", integer),
-    "ccdSweptSphereRadius": ("ccd_swept_sphere_radius", real),
-    "activationState": ("activation_state", integer),
-    "contactProcessingThreshold": ("contact_processing_threshold", real),
-    "maxJointVelocity": ("max_joint_velocity", real),
-    "collisionMargin": ("collision_margin", real),
+# Arguments that are numbers, in PyBullet's order, after those that come first.
+_IN_ORDER = (
+    *("mass", "lateralFriction", "spinningFriction", "rollingFriction", "linearDamping", "angularDamping"),
+    *("jointDamping", "restitution", "contactStiffness", "contactDamping", "frictionAnchor"),
+    *("ccdSweptSphereRadius", "activationState", "contactProcessingThreshold", "maxJointVelocity"),
+    "collisionMargin",
+)
+_CONVERSIONS: dict[str, Callable[[Any, str], float]] = {"r": real, "i": integer}
+# Their parameters and conversions.
+_NUMBERS = {
+    name: (re.sub("([A-Z])", r"_\1", name).lower(), _CONVERSIONS[CHANGE_DYNAMICS[name]]) for name in _IN_ORDER
 }
 # Changes of these parameters make a whole `BodyAccess` outdated, or only its equations of motion.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
@@ -269,7 +264,7 @@ def enableJointForceTorqueSensor(
     problem = "Error: invalid jointIndex."
     access = body_access(bodyUniqueId, physicsClientId, problem, "Error: invalid bodyUniqueId")
     index, enabled = integer(jointIndex, "jointIndex"), integer(enableSensor, "enableSensor") != 0
-    if index not in access.joints:
+    if not has_joint(access.body, index):
         fail(problem, no_joint(access.body, index))
     client = client_of(physicsClientId)
     with client.lock:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from carom.description.transform import subtracted
 from pybullet._calls.arguments import Vector, integer, numbers, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import LINK_FRAME, WORLD_FRAME
 from pybullet._calls.errors import fail, warn_once_here
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import BASE, link_of, no_body
-from pybullet._maths.camera_maths import cross
 from pybullet._maths.rotations import turned
 
 if TYPE_CHECKING:
@@ -69,12 +67,7 @@ def applyExternalForce(
     access = _body(client, objectUniqueId, linkIndex, "applyExternalForce")
     if access is None:
         return
-    position, orientation = access.inertial_frame(linkIndex)
-    if frame == LINK_FRAME:
-        force, arm = turned(orientation, force), turned(orientation, point)
-    else:
-        arm = subtracted(point, position)
-    access.push(linkIndex, force, cross(arm, force))
+    access.kernels("apply_force", linkIndex, *force, *point, frame)
 
 
 @exported
@@ -108,9 +101,7 @@ def applyExternalTorque(
     access = _body(client, objectUniqueId, linkIndex, "applyExternalTorque")
     if access is None:
         return
-    if frame == LINK_FRAME:
-        torque = turned(access.inertial_frame(linkIndex)[1], torque)
-    access.push(linkIndex, (0.0, 0.0, 0.0), torque)
+    access.kernels("apply_torque", linkIndex, *torque, frame)
 
 
 def _of_any_size(values: Any, problem: str, name: str) -> Vector3:

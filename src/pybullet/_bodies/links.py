@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from pybullet._calls.arguments import Indices, few, indices, integer
+from pybullet._calls.arguments import Indices, indices, integer
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
-from pybullet._clients.clients import clients
-from pybullet._clients.lookup import body_access
+from pybullet._clients.lookup import body_access, has_joint
 
 if TYPE_CHECKING:
     from pybullet._bodies.body_access import BodyAccess, LinkState, LinkStateWithVelocity
@@ -80,18 +79,6 @@ def getLinkState(
         >>> [round(x, 3) for x in state[4]]
         [0.0, 0.0, 1.261]
     """
-    try:
-        access = clients[physicsClientId].bodies[bodyUniqueId]
-        link = access.links[linkIndex]
-        if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
-            if computeForwardKinematics:
-                access.body.update_link_poses()
-            if not computeLinkVelocity:
-                return link.state()
-            access.body.update_link_velocities()
-            return link.state() + link.velocity()
-    except (KeyError, TypeError, ValueError):
-        pass
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     index = integer(linkIndex, "linkIndex")
     if index < 0:
@@ -154,37 +141,19 @@ def getLinkStates(
         >>> [round(state[4][2], 3) for state in p.getLinkStates(arm, [5, 6])]
         [1.18, 1.261]
     """
-    try:
-        access = clients[physicsClientId].bodies[bodyUniqueId]
-        links = [access.links[index] for index in few(linkIndices)]
-        if type(computeLinkVelocity) is type(computeForwardKinematics) is int:
-            if computeForwardKinematics:
-                access.body.update_link_poses()
-            if not computeLinkVelocity:
-                return tuple([link.state() for link in links])
-            access.body.update_link_velocities()
-            return tuple([link.state() + link.velocity() for link in links])
-    except (KeyError, TypeError, ValueError):
-        pass
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(linkIndices, "expected a sequence of joint indices", "linkIndices")
     with_velocity = _prepare(access, computeLinkVelocity, computeForwardKinematics)
-    return tuple(_state(access, index, with_velocity) for index in requested)
+    return tuple([_state(access, index, with_velocity) for index in requested])
 
 
 def _prepare(access: BodyAccess, compute_velocity: Any, compute_kinematics: Any) -> bool:
-    """Update poses and velocities as the arguments request; return whether they request velocities."""
+    """Update poses as the arguments request; return whether they request velocities."""
     with_velocity = integer(compute_velocity, "computeLinkVelocity") != 0
-    with_kinematics = integer(compute_kinematics, "computeForwardKinematics") != 0
-    if with_kinematics:
+    if integer(compute_kinematics, "computeForwardKinematics") != 0:
         access.body.update_link_poses()
-    if with_velocity:
-        access.body.update_link_velocities()
     return with_velocity
 
 
 def _state(access: BodyAccess, index: int, with_velocity: bool) -> LinkState | LinkStateWithVelocity | None:
-    link = access.links.get(index)
-    if link is None:
-        return None
-    return (*link.state(), *link.velocity()) if with_velocity else link.state()
+    return access.link_state(index, with_velocity) if has_joint(access.body, index) else None

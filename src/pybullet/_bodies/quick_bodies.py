@@ -10,8 +10,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Collection
 from ctypes import Array, addressof, c_void_p
+from math import inf
 from typing import TYPE_CHECKING, Any
 
+from carom.description.transform import inverse
 from carom.layouts.quick_bodies import (
     MOTOR_NUMBERS,
     POSE_NUMBERS,
@@ -23,11 +25,13 @@ from carom.layouts.quick_bodies import (
     Link,
     Moments,
 )
+from carom.layouts.quick_calls import Call
+from carom.native.number_kernels import worked_out
 
 if TYPE_CHECKING:
     from carom.model.inertia import MassTerms
     from carom.native.quick_calls import QuickCalls
-    from pybullet._bodies.body_access import BodyAccess, LinkAccess
+    from carom.scene.body import Body as SceneBody
     from pybullet._bodies.link_box import LinkBox
     from pybullet._clients.clients import Client as Connection
 
@@ -35,39 +39,67 @@ _DOUBLE = 8
 _POSE_ROW, _SPATIAL_ROW, _MOTOR_ROW = (
     numbers * _DOUBLE for numbers in (POSE_NUMBERS, SPATIAL_NUMBERS, MOTOR_NUMBERS)
 )
+_NO_TURN = (0.0, 0.0, 0.0, 1.0)
 # CPython interns names of attributes.
-_TIME_STEP = sys.intern("time_step")
 _JOINT_COUNT, _NAMES = sys.intern("joint_count"), sys.intern("_encoded_names")
 _FIRST_ROOM = 16
 # Python handles bodies whose id is not less than this.
 _MAX_ROOM = 1 << 20
 
 
+class BodyKernels:
+    """Calls kernels of quick calls on a body.
+
+    Attributes:
+        record: The body's record.
+    """
+
+    __slots__ = ("_address", "_kept", "record")
+
+    def __init__(self, client: Client, record: Body, *kept: Any) -> None:
+        call = Call(client=addressof(client), body=addressof(record))
+        self.record = record
+        self._kept = client, call, kept
+        self._address = addressof(call)
+
+    def __call__(self, kernel: str, *numbers: float, count: int = 0) -> tuple[float, ...]:
+        """The results, so many, of a kernel for the numbers that follow the body among its arguments."""
+        results = worked_out(kernel, (0.0, *numbers), count, self._address)
+        assert results is not None, kernel
+        return results
+
+
 class QuickBodies:
-    """The records of a connection's bodies for quick calls, by its number; in use until `close`."""
+    """The records of a connection and its bodies.
 
-    __slots__ = ("_clients", "_kept", "_number", "_places", "_record", "_shown")
+    Attributes:
+        record: The record of the connection.
+    """
 
-    def __init__(self, calls: QuickCalls, number: int, client: Connection) -> None:
-        self._clients = calls.clients
-        self._number: int | None = number
+    __slots__ = ("_clients", "_kept", "_number", "_places", "_shown", "record")
+
+    def __init__(self, client: Connection) -> None:
+        self._clients: Any = None
+        self._number: int | None = None
         self._places: Array[c_void_p] = (c_void_p * _FIRST_ROOM)()
-        # The objects that the addresses in each record point to, by body id.
-        self._shown: dict[int, Any] = {}
+        # What calls the kernels of each body, and keeps alive what its record points to, by body id.
+        self._shown: dict[int, BodyKernels] = {}
         self._kept = client.world.quick, client.world.listing
-        self._record = Client(
+        self.record: Any = Client(
             scene=client.world.quick.address,
             bodies=addressof(self._places),
             body_count=_FIRST_ROOM,
-            gate=calls.gates[number],
             connection=id(client),
-            time_step_name=id(_TIME_STEP),
-            reports_analytics=client.report_analytics,
             world_bodies=id(client.world.listing),
             joint_count_name=id(_JOINT_COUNT),
             encoded_names_name=id(_NAMES),
         )
-        self._clients[number] = addressof(self._record)
+
+    def open(self, calls: QuickCalls, number: int) -> None:
+        """Let the native library handle calls for the connection of this number, until `close`."""
+        self.record.gate = calls.gates[number]
+        self._clients, self._number = calls.clients, number
+        self._clients[number] = addressof(self.record)
 
     def close(self) -> None:
         """Let Python handle all calls for the connection."""
@@ -75,24 +107,14 @@ class QuickBodies:
             self._clients[self._number] = None
             self._number = None
 
-    def report_analytics(self, value: bool) -> None:
-        """Tell the native library whether steps return statistics of the solver."""
-        self._record.reports_analytics = value
-
     # A script may end, or unload the module, without disconnecting.
     __del__ = close
 
-    def show(self, access: BodyAccess) -> None:
-        """Give the record of a body to the native library, unless Python handles it.
-
-        It does if the body is soft, if external forces act twice on it, and if its id is too high.
-        """
-        body = access.body
-        if body.spec.soft is not None or access.acts_twice or body.id >= _MAX_ROOM:
-            return
+    def kernels_of(self, body: SceneBody, force_factor: int) -> BodyKernels:
+        """What calls kernels on a body, on which external forces act so many times."""
         state = body.world.arrays.state.struct()
         row = body.first_link
-        joints = _joint_records(access)
+        joints = _joint_records(body)
         record = Body(
             position=state.position.data + body.first_position * _DOUBLE,
             velocity=state.dof_velocity.data + body.first_velocity * _DOUBLE,
@@ -105,6 +127,9 @@ class QuickBodies:
             motor_impulse=state.dof_motor_impulse.data + body.first_velocity * _DOUBLE,
             reaction=state.link_reaction.data + row * _SPATIAL_ROW,
             joints=addressof(joints),
+            position_count=body.rows.count["position"],
+            velocity_count=body.rows.count["dof"],
+            force_factor=force_factor,
             link_count=body.joint_count,
             tree=body.rows.tree,
             first_link=row,
@@ -112,11 +137,16 @@ class QuickBodies:
             handle=id(body),
             derived=id(body.derived),
         )
-        access.record = record
+        return BodyKernels(self.record, record, body, state, joints, body.all_dynamics, body.derived)
+
+    def show(self, body: SceneBody, kernels: BodyKernels) -> None:
+        """Give the record of a body to the native library, unless it is soft or its id is too high."""
+        if body.spec.soft is not None or body.id >= _MAX_ROOM:
+            return
         if body.id >= len(self._places):
             self._make_room(body.id + 1)
-        self._shown[body.id] = record, access, state, joints, body.all_dynamics, body.derived
-        self._places[body.id] = addressof(record)
+        self._shown[body.id] = kernels
+        self._places[body.id] = addressof(kernels.record)
 
     def hide(self, body_id: int) -> None:
         """Withdraw the record of a body."""
@@ -126,49 +156,46 @@ class QuickBodies:
 
     def hide_all(self) -> None:
         """Withdraw all records."""
-        self._record.body_count = 0
+        self.record.body_count = 0
         for body_id in self._shown:
             self._places[body_id] = None
         self._shown.clear()
-        self._record.body_count = len(self._places)
+        self.record.body_count = len(self._places)
 
     def _make_room(self, count: int) -> None:
         places = (c_void_p * max(count, 2 * len(self._places)))()
         places[: len(self._places)] = self._places[:]
         # While the count is 0, the library finds no bodies, so it never uses a wrong table.
-        self._record.body_count = 0
-        self._record.bodies = addressof(places)
+        self.record.body_count = 0
+        self.record.bodies = addressof(places)
         self._places = places
-        self._record.body_count = len(places)
+        self.record.body_count = len(places)
 
 
-def _joint_records(access: BodyAccess) -> Array[Joint]:
-    body = access.body
-    first, first_velocity = body.first_position, body.first_velocity
-    return (Joint * body.joint_count)(
-        *[
-            Joint(
-                joint.q - first,
-                joint.u - first_velocity,
-                freedoms,
-                joint.has_sensor,
-                joint.motor.lower,
-                joint.motor.upper,
-            )
-            for joint, freedoms in zip(access.joints.values(), body.velocity_count, strict=True)
-        ]
-    )
+def _joint_records(body: SceneBody) -> Array[Joint]:
+    records = (Joint * body.joint_count)()
+    for index, record in enumerate(records):
+        dynamics = body.dynamics(index)
+        lower, upper = dynamics.joint_lower_limit, dynamics.joint_upper_limit
+        record.position = body.position_index[index] - body.first_position
+        record.velocity = body.velocity_index[index] - body.first_velocity
+        record.position_count = body.position_count[index]
+        record.dof_count = body.velocity_count[index]
+        record.has_sensor = body.has_sensor(index)
+        # Without limits the lower one is greater.
+        record.lower, record.upper = (lower, upper) if lower <= upper else (-inf, inf)
+    return records
 
 
-def link_records(links: Collection[LinkAccess]) -> Array[Link]:
+def link_records(body: SceneBody) -> Array[Link]:
     """The records of a body's links, except the base, for the native library."""
-    records = (Link * len(links))()
-    for record, link in zip(records, links, strict=True):
-        position, orientation = link.frame
-        back = link.from_inertial
-        record.inertial_frame[:] = (*position, *orientation)
+    records = (Link * body.joint_count)()
+    for index, record in enumerate(records):
+        frame = body.link_inertial_frame(index)
+        back = inverse(frame)
+        record.inertial_frame[:] = (*frame.position, *frame.orientation)
         record.from_inertial_frame[:] = (*back.position, *back.orientation)
-        record.is_turned = link.rotated
+        record.is_turned = back.orientation != _NO_TURN
     return records
 
 

@@ -1,7 +1,7 @@
 """Checks and conversions of arguments: a wrong argument raises a clear error and never corrupts the world.
 
-Getters and setters that are called every step first use the arguments as they are. Only if that fails do they
-call these functions, which raise the error or convert arguments of unusual types.
+Calls that loops make every step read usual arguments in the native library; what that leaves to Python comes
+here: these functions raise the error, or convert arguments of unusual types.
 """
 
 from __future__ import annotations
@@ -23,8 +23,6 @@ _PLAIN = frozenset((list, tuple, range))
 _MIN_INT, _MAX_INT = -(2**31), 2**31 - 1
 MAX_ITEMS = 1 << 24
 """Greatest length of sequences whose length no other argument determines."""
-# Greatest length of lists of joints or links that getters and setters take as they are.
-_MANY = 1 << 16
 
 # For a type checker, lists, tuples, ranges and NumPy arrays are all iterables, but not all sequences. At run
 # time only those are accepted that have a length, which is checked before anything is read.
@@ -258,17 +256,6 @@ def sequence(values: Any, problem: str, name: str, most: int = MAX_ITEMS) -> tup
         return tuple(values) if type(values) in _PLAIN else tuple(islice(values, count))
     except TypeError:
         fail(problem, f"{name} is {values!r}.")
-
-
-def few(values: Any) -> tuple[Any, ...]:
-    """The items of a sequence that is not very long; raises `TypeError` or `ValueError` for other values."""
-    try:
-        count = len(values)
-        if count <= _MANY:
-            return tuple(values) if type(values) in _PLAIN else tuple(islice(values, count))
-    except OverflowError:
-        pass
-    raise ValueError("too many items")
 
 
 def indices(values: Any, problem: str, name: str) -> tuple[int, ...]:

@@ -41,7 +41,6 @@ class Client:
         method: Connection method: `DIRECT`, `GUI`, ...
         bodies: Direct access to the state of bodies, by id; made on first use and dropped whenever bodies are
             added or removed, because that moves the rows of the state arrays.
-        time_step: `fixedTimeStep` [s].
         origins: The calls that loaded bodies from files, by body id.
         maximal: Ids of the bodies for which the script asked for maximal coordinates; external forces act
             twice on them in a deformable world.
@@ -57,12 +56,10 @@ class Client:
     latest_search_path: ClassVar[Path | None] = None
 
     def __init__(self, method: int, world: World, bodies: BodyTable, window: Window, lock: Any) -> None:
-        self._report_analytics = False
         self.method = method
         self.world = world
         self.bodies = bodies
         self.window = window
-        self.time_step = world.parameters.time_step
         self.real_time = 0
         self.deformable = False
         self.search_path: Path | None = None
@@ -75,18 +72,26 @@ class Client:
         self.clock: RealTimeClock | None = None
         self.server: Served | None = None
         self.lock = lock
-        bodies.client = self
+        bodies.belong_to(self)
+        self.time_step = world.parameters.time_step
+
+    @property
+    def time_step(self) -> float:
+        """`fixedTimeStep` [s]."""
+        return self.bodies.quick.record.time_step
+
+    @time_step.setter
+    def time_step(self, value: float) -> None:
+        self.bodies.quick.record.time_step = value
 
     @property
     def report_analytics(self) -> bool:
         """Whether `stepSimulation` returns the statistics of the solver."""
-        return self._report_analytics
+        return bool(self.bodies.quick.record.reports_analytics)
 
     @report_analytics.setter
     def report_analytics(self, value: bool) -> None:
-        self._report_analytics = value
-        if self.bodies.quick is not None:
-            self.bodies.quick.report_analytics(value)
+        self.bodies.quick.record.reports_analytics = value
 
     def body(self, body_id: Any) -> Body | None:
         """The body with an id, or None; raises `TypeError` if the id is not an integer."""
@@ -105,8 +110,7 @@ class Client:
 
     def close(self) -> None:
         """Stops background threads and finishes files."""
-        if self.bodies.quick is not None:
-            self.bodies.quick.close()
+        self.bodies.quick.close()
         if self.server is not None:
             self.server.close()
             self.server = None

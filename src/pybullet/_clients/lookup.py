@@ -11,7 +11,6 @@ from pybullet._clients.clients import Client, client_of
 if TYPE_CHECKING:
     from carom.scene.body import Body
     from pybullet._bodies.body_access import BodyAccess
-    from pybullet._joints.joint_access import JointAccess
 
 BASE = -1
 """Index of the base among the links."""
@@ -27,6 +26,19 @@ def no_body(body_id: int) -> str:
 def no_joint(body: Body, index: int) -> str:
     """Error message: no such joint."""
     return f"Body {body.id} ({body.spec.name}) has {body.joint_count} joints, so there is no joint {index}."
+
+
+def has_joint(body: Body, index: int) -> bool:
+    """Whether a body has a joint of this index, which is also that of the link that it moves."""
+    return 0 <= index < body.joint_count
+
+
+def joint_of(body: Body, joint_index: Any) -> int:
+    """The index of a joint of a body; raises `pybullet.error` if there is none."""
+    index = integer(joint_index, "jointIndex")
+    if not has_joint(body, index):
+        fail(OUT_OF_RANGE, no_joint(body, index))
+    return index
 
 
 def body_of(client: Client, body_id: Any, problem: str) -> Body:
@@ -69,22 +81,19 @@ def body_access(body_id: Any, physics_client_id: Any, problem: str, negative: st
     return client.bodies[number]
 
 
-def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint to set it; raises `pybullet.error` if there is no such body or joint."""
+def joint_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> tuple[BodyAccess, int]:
+    """A body and the index of a joint, to set it; raises `pybullet.error` if there is none."""
     access = body_access(body_id, physics_client_id, OUT_OF_RANGE)
-    index = integer(joint_index, "jointIndex")
-    if index not in access.joints:
-        fail(OUT_OF_RANGE, no_joint(access.body, index))
-    return access.joints[index]
+    return access, joint_of(access.body, joint_index)
 
 
-def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> JointAccess:
-    """Access to a joint to read it: the slow path, for wrong ids and for integers such as 0-d arrays."""
+def state_access(body_id: Any, joint_index: Any, physics_client_id: Any) -> tuple[BodyAccess, int]:
+    """A body and the index of a joint, to read its state; raises `pybullet.error` if there is none."""
     access = body_access(
         body_id, physics_client_id, "getJointState failed.", "getJointState failed; invalid bodyUniqueId"
     )
     index = integer(joint_index, "jointIndex")
-    if index not in access.joints:
+    if not has_joint(access.body, index):
         problem = "getJointState failed; invalid jointIndex" if index < 0 else "getJointState failed (2)."
         fail(problem, no_joint(access.body, index))
-    return access.joints[index]
+    return access, index

@@ -201,12 +201,11 @@ def _new_client(slot: int, method: int, target: Target) -> Client:
 
 def _let_quick_calls_in(slot: int, client: Client) -> None:
     """Lets the native library access the bodies of a client that has neither a window nor a server."""
-    from pybullet._bodies.quick_bodies import QuickBodies
     from pybullet._calls.quick import install
 
     calls = install()
     if calls is not None:
-        client.bodies.quick = QuickBodies(calls, slot, client)
+        client.bodies.quick.open(calls, slot)
 
 
 def _serve(slot: int, target: Target) -> None:

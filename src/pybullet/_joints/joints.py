@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pybullet._calls.arguments import (
-    MAX_MAGNITUDE,
     Indices,
     Vector,
     Vectors,
     check_rotation,
-    few,
     indices,
     integer,
     quantities,
@@ -20,10 +18,18 @@ from pybullet._calls.arguments import (
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of, clients
-from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no_joint, state_access
+from pybullet._clients.lookup import (
+    body_access,
+    has_joint,
+    joint_access,
+    joint_of,
+    no_joint,
+    state_access,
+)
 
 if TYPE_CHECKING:
-    from pybullet._joints.joint_access import JointAccess, JointState, MultiDofState
+    from carom.scene.body import Body
+    from pybullet._bodies.body_access import BodyAccess, JointState, MultiDofState
     from pybullet._joints.joint_info import JointInfo
 
 __all__ = [
@@ -41,8 +47,6 @@ NO_INDICES = "expected a sequence of joint indices"
 _NO_STATE = "getJointState failed."
 _NEGATIVE_BODY = "getJointState failed; invalid bodyUniqueId"
 _NO_LISTS = "Expected an position and/or velocity list."
-
-_LEAST = -MAX_MAGNITUDE
 
 
 @exported
@@ -112,10 +116,8 @@ def getJointState(bodyUniqueId: int, jointIndex: int, physicsClientId: int = 0) 
         >>> position, velocity
         (0.0, 0.0)
     """
-    try:
-        return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].state()
-    except (KeyError, TypeError, ValueError):
-        return state_access(bodyUniqueId, jointIndex, physicsClientId).state()
+    access, index = state_access(bodyUniqueId, jointIndex, physicsClientId)
+    return access.joint_state(index)
 
 
 @exported
@@ -139,21 +141,15 @@ def getJointStates(
         >>> [state[0] for state in p.getJointStates(arm, range(7))]
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
-    try:
-        joints = clients[physicsClientId].bodies[bodyUniqueId].joints
-        return tuple([joints[index].state() for index in few(jointIndices)]) or None
-    except (KeyError, TypeError, ValueError):
-        client_of(physicsClientId)
-        if integer(bodyUniqueId, "bodyUniqueId") < 0:
-            body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
-        requested = indices(jointIndices, NO_INDICES, "jointIndices")
-        if not requested:
-            return None
-        access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
-        for index in requested:
-            if index not in access.joints:
-                fail(OUT_OF_RANGE, no_joint(access.body, index))
-        return tuple(access.joints[index].state() for index in requested)
+    client_of(physicsClientId)
+    if integer(bodyUniqueId, "bodyUniqueId") < 0:
+        body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+    requested = indices(jointIndices, NO_INDICES, "jointIndices")
+    if not requested:
+        return None
+    access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
+    joints = [joint_of(access.body, index) for index in requested]
+    return tuple([access.joint_state(joint) for joint in joints])
 
 
 @exported
@@ -178,10 +174,8 @@ def getJointStateMultiDof(bodyUniqueId: int, jointIndex: int, physicsClientId: i
         >>> position, velocity
         ((0.0,), (0.0,))
     """
-    try:
-        return clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex].multi_dof_state()
-    except (KeyError, TypeError, ValueError):
-        return state_access(bodyUniqueId, jointIndex, physicsClientId).multi_dof_state()
+    access, index = state_access(bodyUniqueId, jointIndex, physicsClientId)
+    return access.multi_dof_state(index)
 
 
 @exported
@@ -208,9 +202,9 @@ def getJointStatesMultiDof(
     access = body_access(bodyUniqueId, physicsClientId, _NO_STATE, _NEGATIVE_BODY)
     requested = indices(jointIndex, NO_INDICES, "jointIndex")
     for index in requested:
-        if index not in access.joints:
+        if not has_joint(access.body, index):
             fail("getJointState failed (2).", no_joint(access.body, index))
-    return tuple(access.joints[index].multi_dof_state() for index in requested) or None
+    return tuple([access.multi_dof_state(index) for index in requested]) or None
 
 
 @exported
@@ -240,16 +234,9 @@ def resetJointState(
         >>> p.getJointState(arm, 3)[:2]
         (0.5, 0.1)
     """
-    try:
-        joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
-        if _LEAST < targetValue < MAX_MAGNITUDE and _LEAST < targetVelocity < MAX_MAGNITUDE:
-            # Arrays may pass the comparison, so both numbers are converted before either is written.
-            joint.reset(float(targetValue), float(targetVelocity))
-            return
-    except (KeyError, TypeError, ValueError):
-        pass
-    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
-    joint.reset(quantity(targetValue, "targetValue"), quantity(targetVelocity, "targetVelocity"))
+    access, index = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    position = quantity(targetValue, "targetValue")
+    access.reset_joint(index, position, quantity(targetVelocity, "targetVelocity"))
 
 
 @exported
@@ -280,12 +267,12 @@ def resetJointStateMultiDof(
         >>> p.getJointState(arm, 3)[:2]
         (0.5, 0.1)
     """
-    client_of(physicsClientId)
+    client = client_of(physicsClientId)
     position, velocity = _targets(targetValue, targetVelocity)
-    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
-    _check_turn(joint, position)
-    with joint.client.lock:
-        _reset(joint, position, velocity)
+    access, index = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    _check_turn(access.body, index, position)
+    with client.lock:
+        _reset(access, index, position, velocity)
 
 
 @exported
@@ -330,15 +317,15 @@ def resetJointStatesMultiDof(
             )
     resets = []
     for place, index in enumerate(requested):
-        joint = joint_access(bodyUniqueId, index, physicsClientId)
+        access, joint = joint_access(bodyUniqueId, index, physicsClientId)
         position, velocity = _targets(
             positions[place] if positions else (), velocities[place] if velocities else None
         )
-        _check_turn(joint, position)
-        resets.append((joint, position, velocity))
+        _check_turn(access.body, joint, position)
+        resets.append((access, joint, position, velocity))
     with client.lock:
-        for joint, position, velocity in resets:
-            _reset(joint, position, velocity)
+        for reset in resets:
+            _reset(*reset)
 
 
 def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -350,19 +337,21 @@ def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[flo
     return positions, velocities
 
 
-def _check_turn(joint: JointAccess, position: tuple[float, ...]) -> None:
+def _check_turn(body: Body, joint: int, position: tuple[float, ...]) -> None:
     """Raise `pybullet.error` for a position of a spherical joint that cannot be normalised."""
-    count = joint.body.position_count[joint.index]
-    if len(position) == count != joint.body.velocity_count[joint.index]:
+    count = body.position_count[joint]
+    if len(position) == count != body.velocity_count[joint]:
         check_rotation(position, "expected a targetValue sequence.", "targetValue")
 
 
-def _reset(joint: JointAccess, position: tuple[float, ...], velocity: tuple[float, ...]) -> None:
-    body, index = joint.body, joint.index
-    if not position or len(position) != body.position_count[index]:
-        joint.refresh()
-        return
+def _reset(access: BodyAccess, index: int, position: tuple[float, ...], velocity: tuple[float, ...]) -> None:
+    body = access.body
     freedoms = body.velocity_count[index]
+    if not position or len(position) != body.position_count[index]:
+        # As after any reset, the body is up to date.
+        body.note_reset(moved=False)
+        body.update_link_poses()
+        return
     before = body.coordinates()
     body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)
     body.note_reset(moved=body.coordinates() != before)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from struct import error as StructError
 from typing import Any, overload
 
-from carom.layouts.motor_commands import MODES
+from carom.layouts.motor_commands import (
+    DEFAULT_FORCE,
+    DEFAULT_POSITION_GAIN,
+    DEFAULT_VELOCITY_GAIN,
+    MODES,
+    NO_CLAMP,
+)
 from pybullet._calls.arguments import (
-    MAX_MAGNITUDE,
     Indices,
     Vector,
     bound,
-    few,
     indices,
     integer,
     length,
@@ -24,10 +27,9 @@ from pybullet._calls.arguments import (
 from pybullet._calls.builtin import exported_as
 from pybullet._calls.constants import POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
 from pybullet._calls.errors import error, fail
-from pybullet._clients.clients import client_of, clients
-from pybullet._clients.lookup import joint_access
+from pybullet._clients.clients import client_of
+from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, joint_of
 from pybullet._joints.joints import NO_INDICES
-from pybullet._joints.motor_defaults import DEFAULT_FORCE, DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
 
 __all__ = ["setJointMotorControl", "setJointMotorControl2", "setJointMotorControlArray"]
 
@@ -38,7 +40,6 @@ _WRONG_VELOCITIES = "number of target velocies should match the number of joint 
 _WRONG_FORCES = "number of forces should match the joint indices"
 _WRONG_KPS = "number of kps should match the joint indices"
 _WRONG_KDS = "number of kds should match the number of joint indices"
-_NO_CLAMP = -1.0
 
 
 @overload
@@ -123,20 +124,9 @@ def setJointMotorControl2(
         >>> round(p.getJointState(arm, 3)[0], 2)
         0.5
     """
-    try:
-        check = targetPosition + targetVelocity + force + positionGain + velocityGain + maxVelocity
-        # Any other type, such as an array, would raise an error only after a part of the motor was written.
-        if isinstance(check, float) and -MAX_MAGNITUDE < check < MAX_MAGNITUDE and bodyIndex is None:
-            joint = clients[physicsClientId].bodies[bodyUniqueId].joints[jointIndex]
-            joint.motor.command(
-                controlMode, targetPosition, targetVelocity, force, positionGain, velocityGain, maxVelocity
-            )
-            return
-    except (KeyError, TypeError, ValueError, StructError):
-        pass
     body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControl2")
     required("setJointMotorControl2", jointIndex=jointIndex, controlMode=controlMode)
-    joint = joint_access(body, jointIndex, physicsClientId)
+    access, joint = joint_access(body, jointIndex, physicsClientId)
     mode = integer(controlMode, "controlMode")
     # A torque has to be finite, the maximum force of a motor may be infinite.
     checked_force = real if mode == TORQUE_CONTROL else bound
@@ -150,7 +140,7 @@ def setJointMotorControl2(
     )
     if mode not in MODES:
         fail(_ILLEGAL_MODE, f"{mode} is not a control mode for a single joint.")
-    joint.motor.command(mode, *command)
+    access.kernels("command_motor", joint, mode, *command)
 
 
 @overload
@@ -222,47 +212,30 @@ def setJointMotorControlArray(
         >>> round(p.getJointState(arm, 0)[1], 2)
         0.5
     """
-    try:
-        access = clients[physicsClientId].bodies[bodyUniqueId]
-        group = access.groups[few(jointIndices)]
-        group.command(controlMode, targetPositions, targetVelocities, forces, positionGains, velocityGains)
-        access.commanded(group)
-        return
-    except (KeyError, TypeError, ValueError, OverflowError, StructError):
-        pass
-    _set_array_carefully(
-        one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray"),
-        jointIndices,
-        controlMode,
-        (targetPositions, targetVelocities, forces, positionGains, velocityGains),
-        physicsClientId,
-    )
-
-
-def _set_array_carefully(
-    body: Any, joint_indices: Any, control_mode: Any, lists: tuple[Any, ...], physics_client_id: Any
-) -> None:
-    """Set the motors after checking, and where needed converting, every argument."""
-    required("setJointMotorControlArray", jointIndices=joint_indices, controlMode=control_mode)
-    client_of(physics_client_id)
-    mode = integer(control_mode, "controlMode")
+    body = one_body(bodyUniqueId, bodyIndex, "setJointMotorControlArray")
+    required("setJointMotorControlArray", jointIndices=jointIndices, controlMode=controlMode)
+    client_of(physicsClientId)
+    mode = integer(controlMode, "controlMode")
     if mode not in MODES:
         fail(_ILLEGAL_MODE, f"{mode} is not a control mode for an array of joints.")
-    requested = indices(joint_indices, NO_INDICES, "jointIndices")
+    requested = indices(jointIndices, NO_INDICES, "jointIndices")
     if not requested:
         return
-    joints = [joint_access(body, index, physics_client_id) for index in requested]
-    positions, velocities, forces, kps, kds = lists
+    access = body_access(body, physicsClientId, OUT_OF_RANGE)
+    joints = [joint_of(access.body, index) for index in requested]
     count, torque = len(joints), mode == TORQUE_CONTROL
-    checked = [
-        _one_each(velocities, 0.0, count, _WRONG_VELOCITIES, "targetVelocities"),
-        _one_each(positions, 0.0, count, _WRONG_POSITIONS, "targetPositions"),
+    velocities = _one_each(targetVelocities, 0.0, count, _WRONG_VELOCITIES, "targetVelocities")
+    columns = [
+        joints,
+        _one_each(targetPositions, 0.0, count, _WRONG_POSITIONS, "targetPositions"),
+        velocities,
         _one_each(forces, DEFAULT_FORCE, count, _WRONG_FORCES, "forces", infinite=not torque),
-        _one_each(kps, DEFAULT_POSITION_GAIN, count, _WRONG_KPS, "positionGains"),
-        _one_each(kds, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
+        _one_each(positionGains, DEFAULT_POSITION_GAIN, count, _WRONG_KPS, "positionGains"),
+        _one_each(velocityGains, DEFAULT_VELOCITY_GAIN, count, _WRONG_KDS, "velocityGains"),
+        (NO_CLAMP,) * count,
     ]
-    for joint, velocity, position, force, kp, kd in zip(joints, *checked, strict=True):
-        joint.motor.command(mode, position, velocity, force, kp, kd, _NO_CLAMP)
+    rows = [number for row in zip(*columns, strict=True) for number in row]
+    access.kernels("command_each", mode, count, *rows)
 
 
 @overload
@@ -336,12 +309,11 @@ def setJointMotorControl(*arguments: Any, physicsClientId: int = 0) -> None:
         torque = values[0]
     else:
         fail(_UNPARSED, f"Mode {mode} cannot be used with {count} arguments.")
-    joint = joint_access(body, index, physicsClientId)
+    access, joint = joint_access(body, index, physicsClientId)
     if mode not in (POSITION_CONTROL, VELOCITY_CONTROL, TORQUE_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position, velocity nor torque control.")
-    joint.motor.command(
-        mode, position, velocity, torque if mode == TORQUE_CONTROL else force, kp, kd, _NO_CLAMP
-    )
+    strength = torque if mode == TORQUE_CONTROL else force
+    access.kernels("command_motor", joint, mode, position, velocity, strength, kp, kd, NO_CLAMP)
 
 
 def _one_each(

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf
-from typing import Any, SupportsFloat
+from math import inf, nan
+from typing import TYPE_CHECKING, Any, SupportsFloat
 
+from carom.layouts.motor_commands import (
+    DEFAULT_POSITION_GAIN,
+    DEFAULT_VELOCITY_GAIN,
+    NO_CLAMP,
+    TARGET_ENTRIES,
+)
 from carom.model.joint_columns import NO_ENTRIES, Column, column_of
 from pybullet._calls.arguments import (
     MAX_MAGNITUDE,
@@ -24,18 +30,18 @@ from pybullet._calls.builtin import exported
 from pybullet._calls.constants import PD_CONTROL, POSITION_CONTROL, STABLE_PD_CONTROL, TORQUE_CONTROL
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
-from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, no_joint
+from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, joint_of
 from pybullet._joints.joints import NO_INDICES
-from pybullet._joints.motor_defaults import DEFAULT_POSITION_GAIN, DEFAULT_VELOCITY_GAIN
+
+if TYPE_CHECKING:
+    from pybullet._bodies.body_access import BodyAccess
 
 __all__ = ["setJointMotorControlMultiDof", "setJointMotorControlMultiDofArray"]
 
 _ILLEGAL_MODE = "Illegal control mode."
-_NO_CLAMP = -1.0
-_NO_DAMPING = 1.0
+_DAMPING = (1.0,)
+_UNUSED = (nan,) * TARGET_ENTRIES
 _ARRAY_MODES = (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL)
-_USUAL_LISTS = frozenset((list, tuple))
-_USUAL_NUMBERS = frozenset((float, int))
 _QUATERNION = 4
 
 
@@ -88,16 +94,13 @@ def setJointMotorControlMultiDof(
     kp, kd = _gain(positionGain, "positionGain"), _gain(velocityGain, "velocityGain")
     damped = _gain(damping, "damping")
     clamp = bound(maxVelocity, "maxVelocity")
-    joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
+    access, joint = joint_access(bodyUniqueId, jointIndex, physicsClientId)
     mode = integer(controlMode, "controlMode")
-    if mode == TORQUE_CONTROL:
-        joint.add_torques(forces)
-    elif mode == POSITION_CONTROL:
-        if len(position) == _QUATERNION:
-            _check_rotation(position)
-        joint.command_multi_dof(mode, (position, velocity, forces, kp, kd, clamp, damped))
-    else:
+    if mode not in (TORQUE_CONTROL, POSITION_CONTROL):
         fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
+    if mode == POSITION_CONTROL and len(position) == _QUATERNION:
+        _check_rotation(position)
+    _command(access, joint, mode, (position, velocity, forces, kp, kd, damped), clamp)
 
 
 @exported
@@ -159,15 +162,12 @@ def setJointMotorControlMultiDofArray(
     if count == 0 or not {0, count}.issuperset(map(len, lists)):
         return
     access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
-    try:
-        joints = [access.joints[index] for index in requested]
-    except KeyError as missing:
-        fail(OUT_OF_RANGE, no_joint(access.body, missing.args[0]))
+    joints = [joint_of(access.body, index) for index in requested]
     positions = _column(lists[0], "targetPositions", 4)
     velocities = _column(lists[1], "targetVelocities", 3)
     bounds = _column(lists[2], "forces", 3, inf)
-    kps = _gains(lists[3], "positionGains") or [DEFAULT_POSITION_GAIN] * count
-    kds = _gains(lists[4], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
+    kps = [quantity(value, "positionGains") for value in lists[3]] or [DEFAULT_POSITION_GAIN] * count
+    kds = [quantity(value, "velocityGains") for value in lists[4]] or [DEFAULT_VELOCITY_GAIN] * count
     for position in positions.entries:
         if len(position) == _QUATERNION:
             _check_rotation(position)
@@ -182,33 +182,23 @@ def setJointMotorControlMultiDofArray(
         return
     columns = [column.entries or [()] * count for column in (positions, velocities, bounds)]
     for joint, position, velocity, force, kp, kd in zip(joints, *columns, kps, kds, strict=True):
-        if mode == TORQUE_CONTROL:
-            joint.add_torques(force)
-        else:
-            joint.command_multi_dof(mode, (position, velocity, force, kp, kd, _NO_CLAMP, _NO_DAMPING))
+        lists = (position, velocity, force, (kp,), (kd,), _DAMPING)
+        _command(access, joint, mode, lists, NO_CLAMP)
+
+
+def _command(
+    access: BodyAccess, joint: int, mode: int, lists: Iterable[Sequence[float]], clamp: float
+) -> None:
+    """Tell a joint positions, velocities, forces, two gains and dampings; unused places hold NaN."""
+    padded = [number for given in lists for number in (*given, *_UNUSED[len(given) :])]
+    access.kernels("command_joint", joint, mode, *padded, clamp)
 
 
 def _column(
     entries: Sequence[Vector | None], name: str, most: int, greatest: float = MAX_MAGNITUDE
 ) -> Column:
-    """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
-    if not entries:
-        return NO_ENTRIES
-    if _USUAL_LISTS.issuperset(map(type, entries)):
-        usual = column_of(entries)  # type: ignore[arg-type]
-        try:
-            if max(usual.counts) <= most and -greatest < sum(usual.numbers) < greatest:
-                return usual
-        except (TypeError, ValueError):
-            pass
-    return column_of([_list(values, name, most, greatest) for values in entries])
-
-
-def _gains(values: Sequence[float], name: str) -> Sequence[float]:
-    """Checked finite numbers; plain Python numbers are checked all at once, which is faster."""
-    if _USUAL_NUMBERS.issuperset(map(type, values)) and -MAX_MAGNITUDE < sum(values) < MAX_MAGNITUDE:
-        return values
-    return [quantity(value, name) for value in values]
+    """The checked numbers of each joint."""
+    return column_of([_list(values, name, most, greatest) for values in entries]) if entries else NO_ENTRIES
 
 
 def _list(values: Vector | None, name: str, most: int, greatest: float = MAX_MAGNITUDE) -> Sequence[float]:
@@ -216,12 +206,6 @@ def _list(values: Vector | None, name: str, most: int, greatest: float = MAX_MAG
 
     Their magnitude is at most `MAX_MAGNITUDE`, or finite if `greatest` is infinite.
     """
-    if isinstance(values, (list, tuple)) and len(values) <= most:
-        try:
-            if -greatest < sum(values) < greatest:
-                return values
-        except (TypeError, ValueError):
-            pass
     if values is None:
         return ()
     checked = numbers if greatest == inf else quantities
@@ -232,13 +216,13 @@ def _entries(values: Any, name: str) -> tuple[Any, ...]:
     return () if values is None else sequence(values, f"expected a {name} sequence", name)
 
 
-def _gain(value: float | Vector, name: str) -> float | tuple[float, ...]:
-    """A checked number, or at most three; an empty sequence is kept and counts as not given."""
+def _gain(value: float | Vector, name: str) -> tuple[float, ...]:
+    """At most three checked numbers, or one; an empty sequence is kept and counts as not given."""
     if type(value) is float or type(value) is int:
-        return quantity(value, name)
+        return (quantity(value, name),)
     # An array of one number can be converted to a float, too, but counts as a list.
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
-        return quantity(value, name)
+        return (quantity(value, name),)
     return quantities(value, f"expected a {name} sequence", name)[:3]
 
 

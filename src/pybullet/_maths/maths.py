@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from carom.description.pose import Quaternion, Vector3
-from carom.native.turns import worked_out
+from carom.native.number_kernels import worked_out
 from pybullet._calls.arguments import Vector, quantity, real, rotation, vector3, vector4
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail

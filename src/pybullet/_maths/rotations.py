@@ -1,21 +1,10 @@
-"""Quaternions: PyBullet's sign convention, normalisation, and rotation of vectors."""
+"""Quaternions: normalisation, and rotation of vectors."""
 
 from __future__ import annotations
 
 from math import sqrt
 
 from carom.description.pose import Quaternion, Vector3
-
-
-def canonical(quaternion: Quaternion) -> Quaternion:
-    """A quaternion with the sign that PyBullet reports.
-
-    PyBullet computes quaternions from rotation matrices: w is positive if the trace is positive, otherwise
-    the largest of x, y and z is positive.
-    """
-    x, y, z, w = quaternion
-    leading = w if w * w > 0.25 else max(x, y, z, key=abs)
-    return (-x, -y, -z, -w) if leading < 0.0 else quaternion
 
 
 def unit(quaternion: Quaternion) -> Quaternion:

@@ -24,7 +24,7 @@ struct Call {
     uint64_t size;            // of the image
     uint64_t pointer_count;   // places in it that hold an offset in it, to be made addresses
     uint64_t function_count;  // places in it that the address of a function belongs to
-    uint64_t first, second;   // offsets of the arguments
+    uint64_t first, second, third;  // offsets of the arguments; a function may have two
 };
 
 struct FunctionPlace {
@@ -102,7 +102,8 @@ static void make(const struct Call* call) {
         const uint64_t value = (uintptr_t)symbol(functions[i].function);
         memcpy(image + functions[i].offset, &value, sizeof value);
     }
-    ((void (*)(void*, void*))symbol(call->function))(image + call->first, image + call->second);
+    void (*function)(void*, void*, void*) = (void (*)(void*, void*, void*))symbol(call->function);
+    function(image + call->first, image + call->second, image + call->third);
     if (fwrite(image, 1, call->size, stdout) != call->size || fflush(stdout))
         fail("nobody reads the", "results");
 }

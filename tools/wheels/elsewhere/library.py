@@ -16,17 +16,19 @@ from pathlib import Path
 from typing import Any
 
 from tools.wheels.elsewhere.memory import Layouts, Memory
+from tools.wheels.elsewhere.quick_calls import add_call
 
 from carom.native import library as native
 from carom.scene import changes
 
 _NAME_BYTES = 64
-_CALL = struct.Struct(f"<{_NAME_BYTES}s5Q")
+_CALL = struct.Struct(f"<{_NAME_BYTES}s6Q")
 _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
 # What `Interpreter` asks of `carom_perform`: addresses of a program, worlds, substeps and a counter; numbers.
 _RUN = struct.Struct("<4Q6i")
 # A program: address and stride of statuses, ends of the five parts, and for each launch five addresses.
 _PROGRAM = struct.Struct("<7q")
+_KERNEL_CALL = struct.Struct("<3Q")
 _LAUNCH = struct.Struct("<5Q")
 _INT = 4
 
@@ -82,17 +84,23 @@ class Elsewhere:
 
         return replace
 
-    def turn(self, kernel: str) -> Any:
-        """What works out a rotation; there is no result where the first number has not been written."""
+    def number_kernel(self, kernel: str) -> Any:
+        """What calls a kernel of quick calls.
 
-        def work_out(numbers: Any, results: Any, _: None) -> bool:
+        Without a world there is no result where the first number has not been written; with one there is.
+        """
+
+        def work_out(numbers: bytes, results: Any, call: int | None) -> bool:
             memory = Memory(self._layouts)
-            addresses = [ctypes.addressof(array) for array in (numbers, results)]
-            for address, array in zip(addresses, (numbers, results), strict=True):
-                memory.add(address, ctypes.sizeof(array))
+            given = ctypes.cast(ctypes.c_char_p(numbers), ctypes.c_void_p).value or 0
+            memory.add(given, len(numbers))
+            found = ctypes.addressof(results)
+            memory.add(found, ctypes.sizeof(results))
+            if call is not None:
+                add_call(memory, call, partial(self._add_kernel, memory))
             results[0] = math.nan
-            self._call(f"carom_{kernel}", memory, *addresses)
-            return not math.isnan(results[0])
+            self._call(f"carom_{kernel}", memory, given, found, call)
+            return call is not None or not math.isnan(results[0])
 
         return work_out
 
@@ -120,15 +128,19 @@ class Elsewhere:
         for index in range(ends[-1]):
             place = program + _PROGRAM.size + index * _LAUNCH.size
             memory.add(place, _LAUNCH.size)
-            function, bounds, arguments, _, _ = _LAUNCH.unpack(ctypes.string_at(place, _LAUNCH.size))
-            kernel = self._names[function]
-            memory.add_function(place, self._layouts.symbol(kernel))
-            memory.add_launch(kernel, bounds, arguments)
-            memory.add_pointer(place + 8, self._layouts.bounds_bytes(kernel))
-            memory.add_pointer(place + 16, self._layouts.argument_bytes(kernel))
+            self._add_kernel(memory, place)
             memory.add_pointer(place + 24, _INT)
             memory.add_pointer(place + 32, _INT)
         self._call("carom_perform", memory, address, address)
+
+    def _add_kernel(self, memory: Memory, place: int) -> None:
+        """Add a kernel whose address, and those of its bounds and arguments, are at a place."""
+        function, bounds, arguments = _KERNEL_CALL.unpack(ctypes.string_at(place, _KERNEL_CALL.size))
+        kernel = self._names[function]
+        memory.add_function(place, self._layouts.symbol(kernel))
+        memory.add_launch(kernel, bounds, arguments)
+        memory.add_pointer(place + 8, self._layouts.bounds_bytes(kernel))
+        memory.add_pointer(place + 16, self._layouts.argument_bytes(kernel))
 
     def _function(self, kernel: str) -> Any:
         """What stands for a kernel here: a C function that has it run elsewhere."""
@@ -146,11 +158,12 @@ class Elsewhere:
             traceback.print_exc()
             os._exit(1)
 
-    def _call(self, function: str, memory: Memory, first: int, second: int) -> None:
+    def _call(self, function: str, memory: Memory, first: int, second: int, third: int | None = None) -> None:
         # Threads that share an image of the world's memory take turns.
         with self._alone:
             image, pointers, functions = memory.image()
-            numbers = len(image), len(pointers), len(functions), memory.offset(first), memory.offset(second)
+            arguments = [memory.offset(place) for place in (first, second, third or first)]
+            numbers = len(image), len(pointers), len(functions), *arguments
             self._write(
                 _CALL.pack(function.encode(), *numbers)
                 + struct.pack(f"<{len(pointers)}Q", *pointers)

@@ -27,7 +27,8 @@ Pose pose_of(const Body& body, int64_t link) {
 
 void push(const Body& body, int64_t link, Vector force, Vector torque) {
     double* row = body.wrench + (link + 1) * SPATIAL_NUMBERS;
-    put(put(row, vector_at(row) + force), vector_at(row + 3) + torque);
+    const double factor = body.force_factor;
+    put(put(row, vector_at(row) + factor * force), vector_at(row + 3) + factor * torque);
 }
 
 }  // namespace
@@ -35,6 +36,15 @@ void push(const Body& body, int64_t link, Vector force, Vector torque) {
 // Arguments: body, connection.
 CAROM_QUICK(base_pose) {
     const Pose pose = pose_of(*call->body, -1);
+    put(put(out, pose.position), pose.orientation);
+    return 2;
+}
+
+// Arguments: body, link; -1 is the base.
+CAROM_QUICK(inertial_frame) {
+    if (!has_link(*call->body, in[1]))
+        return 0;
+    const Pose pose = pose_of(*call->body, static_cast<int64_t>(in[1]));
     put(put(out, pose.position), pose.orientation);
     return 2;
 }
@@ -82,7 +92,7 @@ CAROM_QUICK(place_base) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
     const Lock lock(*call->client);
-    if (!lock.is_held || !scene.find_poses.call.function || *scene.contact_count > scene.contact_room)
+    if (!lock.is_held || !scene.find_poses.call.function)
         return 0;
     const Quaternion q = quaternion_at(in + 4);
     const double squared = dot(q, q);
@@ -98,7 +108,7 @@ CAROM_QUICK(place_base) {
     for (int i = 0; i < POSE_NUMBERS; ++i)
         moved |= body.position[i] != before[i];
     note_reset(scene, body.tree, moved);
-    for (int32_t i = 0; i < *scene.contact_count; ++i)
+    for (int32_t i = 0; i < *scene.contact_count && i < scene.contact_room; ++i)
         scene.contact_warm_starts[i] = 0.0;
     run(scene.find_poses, body.tree);
     return 1;

@@ -23,22 +23,19 @@ Contact contact_at(const ContactColumns& found, int32_t i) {
 // Arguments: first body, second body, link of the first, link of the second, connection.
 extern "C" CAROM_EXPORT PyObject* carom_contact_points(const double* in, const Call* call) {
     const ContactLister& report = call->client->scene->report;
-    double seconds;
     if (!report.call.function || *report.there > MAX_CONTACTS)
         return nullptr;
     if (*report.there > report.room || report.there[contacts::OVERLAPS] > report.room)
         return nullptr;
     if (!*report.there)
         return python.PyTuple_New(0);
-    if (!read_time_step(*call->client, &seconds))
-        return nullptr;
     {
         const TemporaryValue<int32_t> count(report.asked.count, *report.there);
         const TemporaryValue<int32_t> body_a(report.asked.body_a, static_cast<int32_t>(in[0]));
         const TemporaryValue<int32_t> body_b(report.asked.body_b, static_cast<int32_t>(in[1]));
         const TemporaryValue<int32_t> link_a(report.asked.link_a, static_cast<int32_t>(in[2]));
         const TemporaryValue<int32_t> link_b(report.asked.link_b, static_cast<int32_t>(in[3]));
-        const TemporaryValue<double> time_step(report.asked.time_step, seconds);
+        const TemporaryValue<double> time_step(report.asked.time_step, call->client->time_step);
         run(report.call);
     }
     const int32_t found = *report.found.count;

@@ -8,30 +8,59 @@ namespace {
 
 enum { MAX_JOINTS = 64 };
 
+// The state of a joint; what it does not have is 0.
 struct State {
-    double position, velocity, torque;
-    double wrench[SPATIAL_NUMBERS];
-    bool has_sensor;
+    double position[4], velocity[3], wrench[SPATIAL_NUMBERS], torque[3];
 };
+enum { STATE_NUMBERS = sizeof(State) / sizeof(double) };
+
+// PyBullet reports two of the three coordinates of a planar joint.
+bool is_planar(const Joint& joint) { return joint.dof_count > 1 && !is_spherical(joint); }
+int positions_of(const Joint& joint) { return is_planar(joint) ? 2 : joint.position_count; }
+int velocities_of(const Joint& joint) { return is_planar(joint) ? 2 : joint.dof_count; }
 
 State state_of(const Body& body, int64_t index, double seconds) {
     const Joint& joint = body.joints[index];
     State state = {};
-    if (joint.dof_count) {
-        state.position = body.position[joint.position];
-        state.velocity = body.velocity[joint.velocity];
+    for (int i = 0; i < positions_of(joint); ++i)
+        state.position[i] = body.position[joint.position + i];
+    for (int i = 0; i < velocities_of(joint); ++i) {
+        state.velocity[i] = body.velocity[joint.velocity + i];
+        state.torque[i] = body.motor_impulse[joint.velocity + i] / seconds;
     }
-    if (joint.dof_count == 1)
-        state.torque = body.motor_impulse[joint.velocity] / seconds;
-    state.has_sensor = joint.has_sensor;
     if (joint.has_sensor)
         __builtin_memcpy(state.wrench, body.reaction + (index + 1) * SPATIAL_NUMBERS, sizeof state.wrench);
     return state;
 }
 
-// Whether torques can be told from impulses, which takes the duration of a step.
-bool read_duration(const Call& call, double* seconds) {
-    return read_time_step(*call.client, seconds) && *seconds != 0.0;
+// The torque that `getJointState` returns.
+double torque_of(const State& state, int dof_count) { return dof_count == 1 ? state.torque[0] : 0.0; }
+
+// Several joints and their states, read before the first object is made.
+struct States {
+    State states[MAX_JOINTS];
+    Joint joints[MAX_JOINTS];
+    intptr_t count;
+
+    bool read(const Call& call) {
+        const Body& body = *call.body;
+        int64_t indices[MAX_JOINTS];
+        count = read_indices(call.sequences[0], body.link_count, MAX_JOINTS, indices);
+        for (intptr_t i = 0; i < count; ++i) {
+            joints[i] = body.joints[indices[i]];
+            states[i] = state_of(body, indices[i], call.client->time_step);
+        }
+        return count > 0;
+    }
+};
+
+PyObject* tuple_of(const State& state, const Joint& joint) {
+    Row row(4);
+    row.add(::tuple_of(state.position, positions_of(joint)));
+    row.add(::tuple_of(state.velocity, velocities_of(joint)));
+    row.add(::tuple_of(state.wrench, SPATIAL_NUMBERS));
+    row.add(::tuple_of(state.torque, velocities_of(joint)));
+    return row.tuple;
 }
 
 }  // namespace
@@ -39,41 +68,52 @@ bool read_duration(const Call& call, double* seconds) {
 // Arguments: body, joint, connection.
 extern "C" CAROM_EXPORT int carom_joint_state(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
-    double seconds;
-    if (!has_joint(body, in[1]) || !read_duration(*call, &seconds))
+    if (!has_joint(body, in[1]))
         return 0;
-    const State state = state_of(body, static_cast<int64_t>(in[1]), seconds);
-    *out++ = state.position;
-    *out++ = state.velocity;
+    const int64_t index = static_cast<int64_t>(in[1]);
+    const State state = state_of(body, index, call->client->time_step);
+    *out++ = state.position[0];
+    *out++ = state.velocity[0];
     __builtin_memcpy(out, state.wrench, sizeof state.wrench);
-    out[SPATIAL_NUMBERS] = state.torque;
+    out[SPATIAL_NUMBERS] = torque_of(state, body.joints[index].dof_count);
     return 4;
+}
+
+// Arguments: body, joint. Results: positions, velocities, wrench and torques, as many as fit any joint.
+extern "C" CAROM_EXPORT int carom_joint_coordinates(const double* in, double* out, const Call* call) {
+    if (!has_joint(*call->body, in[1]))
+        return 0;
+    const State state = state_of(*call->body, static_cast<int64_t>(in[1]), call->client->time_step);
+    __builtin_memcpy(out, &state, sizeof state);
+    return STATE_NUMBERS;
+}
+
+// Arguments: body, joint, connection.
+extern "C" CAROM_EXPORT PyObject* carom_joint_state_multi_dof(const double* in, const Call* call) {
+    if (!has_joint(*call->body, in[1]))
+        return nullptr;
+    const Joint joint = call->body->joints[static_cast<int64_t>(in[1])];
+    return tuple_of(state_of(*call->body, static_cast<int64_t>(in[1]), call->client->time_step), joint);
 }
 
 // Arguments: body, connection; a sequence of joints.
 extern "C" CAROM_EXPORT PyObject* carom_joint_states(const double* in, const Call* call) {
-    const Body& body = *call->body;
-    State states[MAX_JOINTS];
-    int64_t joints[MAX_JOINTS];
-    double seconds;
-    const intptr_t count = read_indices(call->sequences[0], body.link_count, MAX_JOINTS, joints);
-    if (count < 1 || !read_duration(*call, &seconds))
+    States read;
+    if (!read.read(*call))
         return nullptr;
-    for (intptr_t i = 0; i < count; ++i)
-        states[i] = state_of(body, joints[i], seconds);
     // From here on the body may be gone: making a tuple can start garbage collection, which may run any code.
     const double zeros[SPATIAL_NUMBERS] = {};
     PyObject* no_wrench = tuple_of(zeros, SPATIAL_NUMBERS);
-    Row all(static_cast<int>(count));
-    for (intptr_t i = 0; no_wrench && i < count; ++i) {
-        const State& state = states[i];
+    Row all(static_cast<int>(read.count));
+    for (intptr_t i = 0; no_wrench && i < read.count; ++i) {
+        const State& state = read.states[i];
         Row row(4);
-        row.add(state.position);
-        row.add(state.velocity);
-        if (!state.has_sensor)
+        row.add(state.position[0]);
+        row.add(state.velocity[0]);
+        if (!read.joints[i].has_sensor)
             python.Py_IncRef(no_wrench);
-        row.add(state.has_sensor ? tuple_of(state.wrench, SPATIAL_NUMBERS) : no_wrench);
-        row.add(state.torque);
+        row.add(read.joints[i].has_sensor ? tuple_of(state.wrench, SPATIAL_NUMBERS) : no_wrench);
+        row.add(torque_of(state, read.joints[i].dof_count));
         all.add(row.tuple);
     }
     if (no_wrench)
@@ -83,7 +123,18 @@ extern "C" CAROM_EXPORT PyObject* carom_joint_states(const double* in, const Cal
     return all.tuple;
 }
 
-// Arguments: body, joint, position, velocity, connection.
+// Arguments: body, connection; a sequence of joints.
+extern "C" CAROM_EXPORT PyObject* carom_joint_states_multi_dof(const double* in, const Call* call) {
+    States read;
+    if (!read.read(*call))
+        return nullptr;
+    Row all(static_cast<int>(read.count));
+    for (intptr_t i = 0; all.tuple && i < read.count; ++i)
+        all.add(tuple_of(read.states[i], read.joints[i]));
+    return all.tuple;
+}
+
+// Arguments: body, joint, position, velocity, connection. Only joints with one degree of freedom move.
 extern "C" CAROM_EXPORT int carom_reset_joint(const double* in, double* out, const Call* call) {
     const Body& body = *call->body;
     const Scene& scene = *call->client->scene;
@@ -91,11 +142,13 @@ extern "C" CAROM_EXPORT int carom_reset_joint(const double* in, double* out, con
         return 0;
     const Joint joint = body.joints[static_cast<int64_t>(in[1])];
     const Lock lock(*call->client);
-    if (!lock.is_held || !scene.find_poses.call.function || joint.dof_count != 1)
+    if (!lock.is_held || !scene.find_poses.call.function)
         return 0;
-    note_reset(scene, body.tree, body.position[joint.position] != in[2]);
-    body.position[joint.position] = in[2];
-    body.velocity[joint.velocity] = in[3];
+    note_reset(scene, body.tree, joint.dof_count == 1 && body.position[joint.position] != in[2]);
+    if (joint.dof_count == 1) {
+        body.position[joint.position] = in[2];
+        body.velocity[joint.velocity] = in[3];
+    }
     run(scene.find_poses, body.tree);
     return 1;
 }

@@ -32,6 +32,8 @@ Guard guards[MAX_CALLS];
 Arrangement arrangements[MAX_CALLS];
 const Client* clients[MOST_CLIENTS];
 
+}  // namespace
+
 bool read_number(PyObject* value, double* number) {
     if (value->type == python.float_type || value->type == python.float64_type) {
         *number = python.PyFloat_AsDouble(value);
@@ -46,6 +48,8 @@ bool read_number(PyObject* value, double* number) {
     }
     return __builtin_fabs(*number) <= magnitudes::MAX_MAGNITUDE;
 }
+
+namespace {
 
 bool read_array(PyObject* value, int count, double* numbers) {
     PyBuffer buffer;
@@ -256,31 +260,27 @@ struct Entries<0> {
 
 }  // namespace
 
-bool read_numbers(PyObject* value, int count, double* numbers) {
-    const bool is_tuple = value->type == python.tuple_type;
-    if (!is_tuple && value->type != python.list_type)
-        return python.ndarray_type && value->type == python.ndarray_type && read_array(value, count, numbers);
-    if ((is_tuple ? python.PyTuple_Size(value) : python.PyList_Size(value)) != count)
-        return false;
-    for (int i = 0; i < count; ++i) {
-        PyObject* item = is_tuple ? python.PyTuple_GetItem(value, i) : python.PyList_GetItem(value, i);
-        if (!read_number(item, &numbers[i]))
-            return false;
-    }
-    return true;
+intptr_t length_of_list(PyObject* value) {
+    if (value->type == python.tuple_type)
+        return python.PyTuple_Size(value);
+    return value->type == python.list_type ? python.PyList_Size(value) : -1;
 }
 
-bool read_time_step(const Client& client, double* seconds) {
-    PyObject* value = python.PyObject_GetAttr(client.connection, client.time_step_name);
-    if (!value) {
-        python.PyErr_Clear();
+PyObject* item_of_list(PyObject* value, intptr_t place) {
+    const bool is_tuple = value->type == python.tuple_type;
+    return is_tuple ? python.PyTuple_GetItem(value, place) : python.PyList_GetItem(value, place);
+}
+
+bool read_numbers(PyObject* value, int count, double* numbers) {
+    const intptr_t length = length_of_list(value);
+    if (length < 0)
+        return python.ndarray_type && value->type == python.ndarray_type && read_array(value, count, numbers);
+    if (length != count)
         return false;
-    }
-    const bool well = value->type == python.float_type;
-    if (well)
-        *seconds = python.PyFloat_AsDouble(value);
-    python.Py_DecRef(value);
-    return well;
+    for (int i = 0; i < count; ++i)
+        if (!read_number(item_of_list(value, i), &numbers[i]))
+            return false;
+    return true;
 }
 
 PyObject* tuple_of(const double* numbers, int count) {

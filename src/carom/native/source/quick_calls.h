@@ -4,20 +4,19 @@
 #include "gate.h"
 #include "perform.h"
 
-struct Call {
-    const Client* client;
-    const Body* body;
-    // Arguments of any length (lists, tuples, ranges and arrays); null for those left out.
-    PyObject* sequences[6];
-};
-
 PyObject* tuple_of(const double* numbers, int count);
+
+// Reads a number; false if it is none.
+bool read_number(PyObject* value, double* number);
+
+// The length of a list or tuple; that of an array is not known before it is read. -1 for anything else.
+intptr_t length_of_list(PyObject* value);
+
+// An item of a list or tuple, as a borrowed reference.
+PyObject* item_of_list(PyObject* value, intptr_t place);
 
 // Reads a list, a tuple or an array of `count` numbers; false if it is none of these, or of another length.
 bool read_numbers(PyObject* value, int count, double* numbers);
-
-// The duration of a step [s]; false if it is not known.
-bool read_time_step(const Client& client, double* seconds);
 
 // A connection by its number; null if Python has to handle its calls, as while another thread is in one of them.
 const Client* find_client(double number);
@@ -30,6 +29,8 @@ inline bool has_link(const Body& body, double index) { return -1.0 <= index && i
 
 // Whether a body has a joint of this index. It is also the index of a link, the one that the joint moves.
 inline bool has_joint(const Body& body, double index) { return 0.0 <= index && has_link(body, index); }
+
+inline bool is_spherical(const Joint& joint) { return joint.position_count > joint.dof_count; }
 
 // Reads a Python integer that fits into 32 bits; false if it is none.
 bool read_integer(PyObject* value, double* number);
@@ -75,13 +76,13 @@ struct TemporaryValue {
     T before;
 };
 
-// Takes the lock of a world if it is free, and releases it on destruction.
+// Takes the lock of a world if it is free, and releases it on destruction. Where there is none, Python holds its own.
 struct Lock {
-    explicit Lock(const Client& client) : gate(*client.gate), is_held(enter_at_once(gate) == ENTERED) {}
+    explicit Lock(const Client& client) : gate(client.gate), is_held(!gate || enter_at_once(*gate) == ENTERED) {}
     ~Lock() {
-        if (is_held)
-            leave(gate);
+        if (gate && is_held)
+            leave(*gate);
     }
-    Gate& gate;
+    Gate* gate;
     const bool is_held;
 };

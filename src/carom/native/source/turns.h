@@ -24,6 +24,7 @@ inline double* put(double* at, Quaternion q) {
 
 inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(double s, Vector v) { return {s * v.x, s * v.y, s * v.z}; }
 inline Vector operator-(Vector v) { return {-v.x, -v.y, -v.z}; }
 inline Quaternion operator-(Quaternion q) { return {-q.x, -q.y, -q.z, -q.w}; }
 inline Quaternion conjugate(Quaternion q) { return {-q.x, -q.y, -q.z, q.w}; }
