@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,7 @@ from carom.native.kernels import (
     motion_kernel,
 )
 from carom.native.launch import Launch
+from carom.native.made_once import made_once
 from carom.native.tables import NUMPY_REAL, ArrayTable, array_view, numbers_of, writer_of
 
 if TYPE_CHECKING:
@@ -144,21 +144,21 @@ class Mechanism:
         rows = _finite(self._rows(self._output), "Jacobian")
         return rows[:3], rows[3:]
 
-    @cached_property
+    @made_once
     def forces_of_motion(self) -> Ask:
         """The function that computes the forces of a motion."""
         return forces_of_motion(self)
 
-    @cached_property
+    @made_once
     def forces_in_pybullet(self) -> Ask:
         """The same with PyBullet's coordinates, and PyBullet's direction of gravity."""
         return forces_of_motion(self, as_pybullet=True)
 
-    @cached_property
+    @made_once
     def _find_forces(self) -> Callable[[], None]:
         return self._launch(inverse_dynamics_kernel)
 
-    @cached_property
+    @made_once
     def _find_mass_matrix(self) -> Callable[[], None]:
         return self._launch(mass_matrix_kernel)
 

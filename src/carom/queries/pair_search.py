@@ -52,13 +52,13 @@ class PairSearch:
         self._quick = quick
         self._shapes = contact_arrays.shapes.table.numpy
         self._remembered: dict[tuple[Sequence[int], Sequence[int]], ShapePairs] = {}
-        self._asked: ShapePairs | None = None
         self._search = Question(
             closest_points_kernel,
             structs,
             "searches",
             ArrayTable(Searches, 1),
             {"max_distance": NUMPY_REAL(0.0)},
+            self._view,
         )
         self._view()
 
@@ -74,13 +74,9 @@ class PairSearch:
     def __call__(self, pairs: ShapePairs, max_distance: float) -> list[NearestPoints]:
         """The nearest points of those pairs of shapes whose distance is at most `max_distance` [m]."""
         count = len(pairs.links)
-        if pairs is not self._asked:
-            if count > self._search.room:
-                self._search.reserve(count)
-                self._view()
-            size = count * _INDEX.itemsize
-            self._first[:size], self._second[:size] = pairs.first, pairs.second
-            self._asked = pairs
+        self._search.reserve(count)
+        size = count * _INDEX.itemsize
+        self._first[:size], self._second[:size] = pairs.first, pairs.second
         self._search(count, max_distance)
         found = self._count[0]
         if not found:

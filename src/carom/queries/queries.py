@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from functools import cached_property
 from itertools import chain, islice
 from struct import Struct
 from typing import TYPE_CHECKING
@@ -23,6 +22,7 @@ from carom.layouts.magnitudes import MAX_DISTANCE
 from carom.model.bounds import Bounds, turned_box
 from carom.native.kernels import link_poses_kernel, place_shapes_kernel, prepare_rays_kernel
 from carom.native.launch import KernelStructs, Launch
+from carom.native.made_once import made_once
 from carom.native.tables import NUMPY_REAL, ArrayTable
 from carom.queries.contact_search import NO_CONTACTS, ContactColumns, ContactSearch
 from carom.queries.pair_search import NearestPoints, PairSearch
@@ -84,26 +84,26 @@ class Queries:
         self._placement.changes = NEVER
         self._has_asked = False
 
-    @cached_property
+    @made_once
     def _make_ready(self) -> dict[int, Launch]:
         return {
             PLACED: self._structs.launch(place_shapes_kernel),
             IN_HIERARCHY: self._structs.launch(prepare_rays_kernel, first_world=0),
         }
 
-    @cached_property
+    @made_once
     def _cast(self) -> RayCast:
         return RayCast(self._structs)
 
-    @cached_property
+    @made_once
     def _search(self) -> PairSearch:
         return PairSearch(self._structs, self._touch, self._quick)
 
-    @cached_property
+    @made_once
     def _contacts(self) -> ContactSearch:
         return ContactSearch(self._structs, self._touch.contacts, self._quick)
 
-    @cached_property
+    @made_once
     def _extents(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Minimum and maximum corner of each shape, whether it is unbounded (a plane), and its link row."""
         rows = slice(self._shape_count)
@@ -111,7 +111,7 @@ class Queries:
         endless = (self._shapes["shape_kind"][rows] == PLANE) & (lowest[:, 0] <= highest[:, 0])
         return lowest, highest, endless, self._shapes["shape_link"][rows]
 
-    @cached_property
+    @made_once
     def _without_shapes(self) -> list[tuple[int, Bounds]]:
         """Rows of links without shapes of rigid bodies, and their bounds in the link frame."""
         counts = self._shapes["link_shape_count"][: self._link_count].tolist()

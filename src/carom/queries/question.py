@@ -8,6 +8,7 @@ from typing import Any
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
+from carom.native.uninterrupted import uninterrupted
 
 # Up to this many items a kernel runs with the GIL held: releasing it would take longer than the kernel.
 _FEW = 64
@@ -29,6 +30,7 @@ class Question:
         name: Name of the kernel argument that takes the arrays.
         arrays: The arrays.
         asked: Scalar arguments that may differ between calls, with their initial values.
+        see: Called when the arrays have been replaced; whoever keeps views of them takes new ones.
         **fixed: The other scalar arguments.
     """
 
@@ -39,6 +41,7 @@ class Question:
         name: str,
         arrays: ArrayTable,
         asked: dict[str, Any],
+        see: Callable[[], None],
         **fixed: int,
     ) -> None:
         self.arrays = arrays
@@ -48,19 +51,22 @@ class Question:
         self._scalars = {"count": 0, **asked, **fixed}
         indices = kernel.indices
         self._places = [indices[scalar] for scalar in ("count", *asked)]
+        self._see = see
         self._prepare()
 
     def reserve(self, count: int) -> None:
         """Make room for `count` rows; if the arrays have fewer, they are replaced by longer ones."""
-        if self.arrays.reserve(dict.fromkeys(self.arrays.capacity, count)):
+        if count <= self.room:
+            return
+        with uninterrupted:
+            self.arrays.reserve(dict.fromkeys(self.arrays.capacity, count))
             self._prepare()
+            self._see()
 
     def __call__(self, *asked: float) -> None:
         """Run the kernel with these scalar arguments: the count, then those of `asked`."""
-        if asked != self._asked:
-            self._asked = asked
-            for place, value in zip(self._places, asked, strict=True):
-                self.launch.replace(place, value)
+        for place, value in zip(self._places, asked, strict=True):
+            self.launch.replace(place, value)
         (self._run_briefly if asked[0] <= _FEW else self._run)()
 
     def _prepare(self) -> None:
@@ -69,4 +75,3 @@ class Question:
         self.launch: Launch = self._structs.launch(self._kernel, **self._scalars)
         self._run: Callable[[], None] = self.launch.function
         self._run_briefly: Callable[[], None] = self.launch.brief_function
-        self._asked: tuple[float, ...] = ()

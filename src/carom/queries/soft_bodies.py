@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,7 @@ import numpy as np
 from carom.layouts.soft import TOUCHES_PER_FACE, TOUCHES_PER_NODE
 from carom.native.kernels import find_touches_kernel
 from carom.native.launch import KernelStructs, Launch
+from carom.native.made_once import made_once
 from carom.native.products import dots, length
 from carom.native.tables import ArrayTable
 from carom.queries.contact_search import ContactColumns
@@ -61,7 +61,7 @@ class SoftQueries:
         self._places = places
         self._present_poses = present_poses
 
-    @cached_property
+    @made_once
     def _find_touches(self) -> Launch:
         return self._structs.launch(find_touches_kernel, world=0)
 
