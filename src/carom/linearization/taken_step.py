@@ -1,0 +1,73 @@
+"""A step that has been performed: what it started from, and what it led to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.codes import PD_MAX_FORCE
+from carom.layouts.model import Model
+from carom.linearization.stepping import Copies
+
+if TYPE_CHECKING:
+    from carom.engine.parameters import EngineParameters
+    from carom.linearization.tangent import TangentSpace
+    from carom.world.world import World
+
+# Fields of the model with an axis of worlds.
+_OF_WORLDS = frozenset(name for name, field in Model.fields.items() if getattr(field, "ndim", 0) == 2)
+
+
+class TakenStep:
+    """State before a step, and results of it.
+
+    Attributes:
+        time_step: Duration [s].
+        gravity: Gravity [m/s²], (3,).
+        parameters: Parameters of the engine.
+        model: Fields of the model, without an axis of worlds.
+        position: Positions of all coordinates before it.
+        joint_position: Positions of the dofs of joints with one, (n,); 0 for others.
+        velocity: Velocities of the dofs before it, (n,).
+        free_velocity: Those after free motion.
+        after: Those after it.
+        motor: Settings of motors, (n, 8).
+        drive: Settings of explicit PD control, (n, 8); None if there is none.
+        link_pose: Poses of links before it.
+        link_wrench: Forces and torques applied to them.
+        angular, linear: Motion subspaces, (n, 3), linear ones at the centre of mass of the base.
+        activation: Activations of all actuators before it.
+        control: Controls of all actuators.
+        state: Fields of the state after it, without an axis of worlds.
+    """
+
+    def __init__(self, world: World, space: TangentSpace, copies: Copies) -> None:
+        copies.apply_forces()
+        before = copies.engine.arrays.state.numpy
+        parameters = world.parameters
+        self.time_step: float = parameters.substep_time
+        self.gravity: np.ndarray = np.array(parameters.gravity)
+        self.parameters: EngineParameters = parameters
+        self.model: dict[str, np.ndarray] = {
+            name: array[0] if name in _OF_WORLDS else array for name, array in copies.model.items()
+        }
+        self.position: np.ndarray = before["position"][0].copy()
+        self.velocity: np.ndarray = before["dof_velocity"][0, space.dofs]
+        self.joint_position: np.ndarray = space.scalars(self.position)
+        self.motor: np.ndarray = before["dof_motor"][0, space.dofs]
+        drive = before["dof_pd"][0, space.dofs]
+        self.drive: np.ndarray | None = drive if (drive[:, PD_MAX_FORCE] > 0.0).any() else None
+        self.activation: np.ndarray = before["actuator_activation"][0].copy()
+        self.control: np.ndarray = before["actuator_control"][0].copy()
+        self.link_wrench: np.ndarray = before["link_wrench"][0].copy()
+        copies.step()
+        self.state: dict[str, np.ndarray] = {
+            name: array[0] for name, array in copies.engine.arrays.state.numpy.items()
+        }
+        scratch = copies.engine.workspace.scratch.numpy
+        self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
+        self.free_velocity: np.ndarray = self.velocity + self.time_step * scratch["dof_force"][0, space.dofs]
+        self.angular: np.ndarray = scratch["dof_angular"][0, space.dofs]
+        self.linear: np.ndarray = scratch["dof_linear"][0, space.dofs]
+        self.link_pose: np.ndarray = self.state["link_pose"].copy()
