@@ -9,9 +9,12 @@ import numpy as np
 
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
 from carom.linearization.free_motion import FreeMotion
+from carom.linearization.contact_rows import ContactRows
+from carom.linearization.pair_rows import Places
 from carom.linearization.rows import JointRows, Rows, bounded_control
 from carom.linearization.stepping import Copies
 from carom.linearization.taken_step import TakenStep
+from carom.linearization.user_rows import UserRows
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
@@ -45,7 +48,10 @@ def step_derivatives(
     free_q, free_v = motion.derivatives(taken.free_velocity)
     free_u = motion.input_derivatives(taken.free_velocity, inputs)
     rows = Rows(space, inputs)
-    total = motion.effective @ (taken.after - taken.free_velocity)
+    places = Places(space, motion)
+    UserRows(space, taken, places, rows).add_all(taken.user_count)
+    ContactRows(space, taken, places, motion, rows).add_all()
+    total = motion.effective @ (taken.after - taken.free_velocity) - rows.generalized_impulses()
     JointRows(space, taken, rows, total).add_all(world.arrays.used["constraint"])
     after_q, after_v, after_u = free_q, free_v, free_u
     dofs, active = len(space), len(space.activations)
@@ -54,26 +60,24 @@ def step_derivatives(
         after_q, after_v = motion.derivatives(taken.after)
         after_u = motion.input_derivatives(taken.after, inputs)
         jacobian = np.stack(rows.jacobian)
-        response = motion.inverse @ jacobian.T
-        alpha = np.array(rows.alpha)[:, None]
-        beta = np.diag(np.concatenate(rows.beta))
         through = np.stack(rows.by_free_velocity)
-        delassus = jacobian @ response
-        system = alpha * delassus + beta
-        if smoothing:
-            # Of a row at a bound λ = bound + s α (…): it keeps a share of what it did when it held.
-            system += smoothing * np.diag(np.diag(delassus) * alpha[:, 0])
-        sides = np.concatenate(
+        of_after = np.zeros((len(rows), dofs))
+        pushed = np.zeros((dofs, dofs))
+        for row, hessian in rows.hessians.items():
+            pushed += rows.impulses[row] * hessian
+            of_after[row] = taken.after @ hessian
+        after_q = after_q + motion.inverse @ pushed
+        change = _changes_of_rows(
+            rows,
+            motion.inverse @ jacobian.T,
             [
-                np.stack(rows.by_position) + through @ free_q - alpha * (jacobian @ after_q),
-                through @ free_v - alpha * (jacobian @ after_v),
-                np.stack(rows.by_activation),
-                np.stack(rows.by_input) + through @ free_u - alpha * (jacobian @ after_u),
+                (np.stack(rows.by_position) + through @ free_q, jacobian @ after_q + of_after),
+                (through @ free_v, jacobian @ after_v),
+                (np.stack(rows.by_activation), np.zeros((len(rows), active))),
+                (np.stack(rows.by_input) + through @ free_u, jacobian @ after_u),
             ],
-            axis=1,
+            smoothing,
         )
-        scale = np.maximum(np.abs(system).max(axis=1, keepdims=True), 1e-300)
-        change = response @ np.linalg.lstsq(system / scale, sides / scale, rcond=_REDUNDANT)[0]
         after_q, after_v = after_q + change[:, :dofs], after_v + change[:, dofs : 2 * dofs]
         after_a = change[:, 2 * dofs : 2 * dofs + active]
         after_u = after_u + change[:, 2 * dofs + active :]
@@ -96,6 +100,27 @@ def step_derivatives(
     by_state[2 * dofs :, 2 * dofs :] = np.diag(acted)
     by_input[dofs : 2 * dofs], by_input[:dofs], by_input[2 * dofs :] = after_u, moved @ after_u, driven
     return by_state, by_input, tuple(rows.names)
+
+
+def _changes_of_rows(
+    rows: Rows, response: np.ndarray, sides: list[tuple[np.ndarray, np.ndarray]], smoothing: float
+) -> np.ndarray:
+    """Changes of velocities (n, columns) by the changes of all impulses.
+
+    Args:
+        rows: The rows.
+        response: M⁻¹ Jᵀ, (n, rows).
+        sides: Right sides of the rows, and changes of their rates at constant impulses, for some columns each.
+        smoothing: As in `step_derivatives`.
+    """
+    alpha, beta = rows.matrix(rows.alpha), rows.matrix(rows.beta)
+    delassus = np.stack(rows.jacobian) @ response
+    if smoothing:
+        beta = beta + smoothing * alpha * np.diag(delassus)
+    system = alpha @ delassus + beta
+    wanted = np.concatenate([side - alpha @ rate for side, rate in sides], axis=1)
+    scale = np.maximum(np.abs(system).max(axis=1, keepdims=True), 1e-300)
+    return response @ np.linalg.lstsq(system / scale, wanted / scale, rcond=_REDUNDANT)[0]
 
 
 def _activations(

@@ -46,10 +46,7 @@ class FreeMotion:
         dofs = space.dofs
         self._stiffness, self._damping = taken.model["dof_stiffness"][dofs], taken.model["dof_implicit_damping"][dofs]
         self._yielding = self._damping + h * self._stiffness
-        self._stretch, self._stretch_q = np.zeros(count), np.zeros((count, count))
-        if self._stiffness.any():
-            rest = taken.model["position_spring"]
-            self._stretch, self._stretch_q = space.stretch(taken.position, rest)
+        self._stretch, self._stretch_q = space.stretch(taken.position, taken.model["position_spring"])
         self.effective: np.ndarray = np.zeros((count, count))
         self.inverse: np.ndarray = np.zeros((count, count))
 
@@ -124,6 +121,21 @@ class FreeMotion:
                     regressors[place] = _regressor(body, taken, own, accelerations[own], self.spatial[place])
                 found[own, column] = self._by_inertia(given, body, own, regressors[place], self.spatial[place])
         return h * self.inverse @ found
+
+    def mass_derivatives(self, response: np.ndarray) -> np.ndarray:
+        """Derivatives of M response by positions, (n, n), for a constant `response` (n,)."""
+        found = np.zeros((len(response), len(response)))
+        for body, (first, size), spatial in zip(
+            self._space.bodies, self._space.places, self.spatial, strict=True
+        ):
+            own = slice(first, first + size)
+            if response[own].any():
+                with_it, without = (
+                    _inverse_derivatives(body, self._taken, own, response[own] * share, spatial)[0]
+                    for share in (1.0, 0.0)
+                )
+                found[own, own] = with_it - without
+        return found
 
     def _by_inertia(
         self, given: Input, body: Body, own: slice, regressor: np.ndarray, spatial: Spatial

@@ -1,7 +1,7 @@
-"""Rows of the solver, linearised: motors, limits, friction of joints, actuators.
+"""Rows of the solver, linearised; here those of joints: motors, limits, friction, actuators.
 
-Each row is α J dv⁺ + β dλ = the right side: where it holds within its bounds α is not 0, and at a bound of
-its impulse α is 0.
+Together they are α d(J v⁺) + β dλ = the right side, with matrices α and β over the rows. A row that holds within
+its bounds has an entry of α on the diagonal, one at a bound of its impulse only entries of β.
 """
 
 from __future__ import annotations
@@ -53,8 +53,10 @@ class Rows:
         self.names: list[tuple[str, str]] = []
         self.jacobian: list[np.ndarray] = []
         self.impulses: list[float] = []
-        self.alpha: list[float] = []
-        self.beta: list[np.ndarray] = []
+        # Entries of the matrices α and β, (row, column, value).
+        self.alpha: list[tuple[int, int, float]] = []
+        self.beta: list[tuple[int, int, float]] = []
+        self.hessians: dict[int, np.ndarray] = {}
         self.by_position: list[np.ndarray] = []
         self.by_free_velocity: list[np.ndarray] = []
         self.by_activation: list[np.ndarray] = []
@@ -69,13 +71,32 @@ class Rows:
         self.names.append((name, status))
         self.jacobian.append(jacobian)
         self.impulses.append(impulse)
-        self.alpha.append(alpha)
-        self.beta.append(np.array([beta]))
+        row = len(self.names) - 1
+        self.alpha.append((row, row, alpha))
+        self.beta.append((row, row, beta))
         self.by_position.append(np.zeros(dofs))
         self.by_free_velocity.append(np.zeros(dofs))
         self.by_activation.append(np.zeros(active))
         self.by_input.append(np.zeros(inputs))
-        return len(self.names) - 1
+        return row
+
+    def set_hessian(self, row: int, hessian: np.ndarray) -> None:
+        """Set the derivatives of a row's Jacobian by positions: of entry i by dof j, (n, n)."""
+        self.hessians[row] = hessian
+
+    def matrix(self, entries: list[tuple[int, int, float]]) -> np.ndarray:
+        """`alpha` or `beta` as a matrix."""
+        found = np.zeros((len(self), len(self)))
+        for row, column, value in entries:
+            found[row, column] += value
+        return found
+
+    def generalized_impulses(self) -> np.ndarray:
+        """Jᵀ λ of all rows, (n,)."""
+        found = np.zeros(self._width[0])
+        for jacobian, impulse in zip(self.jacobian, self.impulses, strict=True):
+            found += impulse * jacobian
+        return found
 
     def add_of_dof(self, name: str, status: str, dof: int, impulse: float, alpha: float, beta: float) -> int:
         """As `add`, for a row on one dof."""

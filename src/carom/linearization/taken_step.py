@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.layouts.codes import PD_MAX_FORCE
+from carom.layouts.contacts import Shapes, UserConstraints
 from carom.layouts.model import Model
 from carom.linearization.stepping import Copies
 
@@ -15,8 +16,12 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
-# Fields of the model with an axis of worlds.
-_OF_WORLDS = frozenset(name for name, field in Model.fields.items() if getattr(field, "ndim", 0) == 2)
+def _of_first_world(struct: Any, arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Fields of a table with parameters, without the axis of worlds that some have."""
+    return {
+        name: array[0] if getattr(struct.fields.get(name), "ndim", 1) == 2 else array
+        for name, array in arrays.items()
+    }
 
 
 class TakenStep:
@@ -40,6 +45,8 @@ class TakenStep:
         activation: Activations of all actuators before it.
         control: Controls of all actuators.
         state: Fields of the state after it, without an axis of worlds.
+        user_count: Number of user constraints in the engine.
+        users, shapes, contacts: Fields of these tables after it, likewise.
     """
 
     def __init__(self, world: World, space: TangentSpace, copies: Copies) -> None:
@@ -49,9 +56,7 @@ class TakenStep:
         self.time_step: float = parameters.substep_time
         self.gravity: np.ndarray = np.array(parameters.gravity)
         self.parameters: EngineParameters = parameters
-        self.model: dict[str, np.ndarray] = {
-            name: array[0] if name in _OF_WORLDS else array for name, array in copies.model.items()
-        }
+        self.model: dict[str, np.ndarray] = _of_first_world(Model, copies.engine.arrays.model.numpy)
         self.position: np.ndarray = before["position"][0].copy()
         self.velocity: np.ndarray = before["dof_velocity"][0, space.dofs]
         self.joint_position: np.ndarray = space.scalars(self.position)
@@ -64,6 +69,13 @@ class TakenStep:
         copies.step()
         self.state: dict[str, np.ndarray] = {
             name: array[0] for name, array in copies.engine.arrays.state.numpy.items()
+        }
+        contact_arrays = copies.engine.contact_arrays
+        self.user_count: int = contact_arrays.user_count
+        self.users: dict[str, np.ndarray] = _of_first_world(UserConstraints, contact_arrays.users.numpy)
+        self.shapes: dict[str, np.ndarray] = _of_first_world(Shapes, contact_arrays.shapes.table.numpy)
+        self.contacts: dict[str, np.ndarray] = {
+            name: array[0] for name, array in contact_arrays.contacts.numpy.items()
         }
         scratch = copies.engine.workspace.scratch.numpy
         self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
