@@ -1,7 +1,7 @@
 """Rows of contacts, linearised: normals and lateral friction.
 
-How a contact moves is known exactly where a ball, capsule, box or polyhedron touches a plane that does not move,
-and where two balls touch.
+How a contact moves is known exactly where a ball, the end of a capsule, or a corner touches a plane or a face, and
+where two balls touch.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom.layouts.codes import BOX, CAPSULE, HULL, PLANE, SPHERE, ShapeKind
+from carom.layouts.codes import SPHERE, ShapeKind
 from carom.layouts.contacts import THERE
+from carom.linearization.contact_features import touches_with_face, touching_radius
 from carom.linearization.pair_rows import Places, Point
 from carom.linearization.rows import HOLDS, LOWER, Rows, status_of
 from carom.linearization.turns import cross_matrix
@@ -27,7 +28,6 @@ _STICKS = 1.0 - 1e-7
 _MAX_FRICTION = 10.0
 _HALF_ROOT = float(np.sqrt(0.5))
 _DEFAULT_DAMPING = 0.1
-_ON_PLANES = (SPHERE, CAPSULE, BOX, HULL)
 
 
 class _Contact(NamedTuple):
@@ -62,7 +62,8 @@ class ContactRows:
 
     def _contact(self, number: int) -> _Contact:
         """A contact with its geometry; `NotImplementedError` if that has no exact derivatives."""
-        contacts, shapes = self._taken.contacts, self._taken.shapes
+        taken = self._taken
+        contacts, shapes = taken.contacts, taken.shapes
         shape_a, shape_b, link_a, link_b = contacts["contact_shapes"][number].tolist()
         kinds = shapes["shape_kind"][shape_a], shapes["shape_kind"][shape_b]
         described = " and ".join(ShapeKind(int(kind)).name.lower() for kind in kinds)
@@ -80,28 +81,31 @@ class ContactRows:
             moving = a.moving - radii[0] * turned, b.moving + radii[1] * turned
             ends = (a._replace(position=points[0], moving=moving[0]), b._replace(position=points[1], moving=moving[1]))
             return _Contact(number, name, *ends, normal, turned)
-        if PLANE not in kinds or (kinds[0] if kinds[1] == PLANE else kinds[1]) not in _ON_PLANES:
-            raise NotImplementedError(f'a {name} has no exact derivatives: use method="differences"')
-        side = 0 if kinds[1] == PLANE else 1
-        fixed = self._places.point((link_b, link_a)[side], points[1 - side])
-        if fixed.moving.any():
-            raise NotImplementedError(f'a {name}, a plane that moves, has no exact derivatives')
-        shape = (shape_a, shape_b)[side]
-        radius = 0.0
-        if kinds[side] in (SPHERE, CAPSULE):
-            radius = float(shapes["shape_size"][shape][0])
-        elif kinds[side] == HULL:
-            radius = float(shapes["shape_margin"][shape])
-        outward = normal if side == 0 else -normal
-        core = self._places.point((link_a, link_b)[side], points[side] + radius * outward)
-        touching = core._replace(position=points[side])
-        ends = (touching, fixed) if side == 0 else (fixed, touching)
-        return _Contact(number, name, *ends, normal, turned)
+        for side in (0, 1):
+            shape, other = (shape_a, shape_b)[side], (shape_b, shape_a)[side]
+            outward = normal if side == 0 else -normal
+            radius = touching_radius(taken, shape, points[side], outward)
+            if radius is None or not touches_with_face(taken, other, outward):
+                continue
+            core = self._places.point((link_a, link_b)[side], points[side] + radius * outward)
+            face = self._places.point((link_b, link_a)[side], points[1 - side])
+            turned = np.cross(face.turning.T, normal).T
+            sign = 1.0 if side == 0 else -1.0
+            moving = core.moving - sign * radius * turned
+            # The point on the face is the projection of the other one.
+            gap = points[0] - points[1]
+            parting = normal @ (core.moving - face.moving)
+            beside = moving - sign * (np.outer(normal, sign * parting) + (gap @ normal) * turned)
+            own = core._replace(position=points[side], moving=moving)
+            on_face = face._replace(moving=beside)
+            ends = (own, on_face) if side == 0 else (on_face, own)
+            return _Contact(number, name, *ends, normal, turned)
+        raise NotImplementedError(f'a {name} has no exact derivatives: use method="differences"')
 
     def _add(self, contact: _Contact) -> None:
         taken, rows = self._taken, self._rows
         link_a, link_b = taken.contacts["contact_shapes"][contact.number, 2:].tolist()
-        friction = self._friction(contact, link_a, link_b)
+        friction, rolling, spinning = self._friction(contact, link_a, link_b)
         softness, erp = self._stiffness(link_a, link_b)
         gap = float(taken.contacts["contact_distance"][contact.number]) + taken.parameters.contact_slop
         gain = (1.0 if gap > 0.0 else erp) / taken.time_step
@@ -112,7 +116,11 @@ class ContactRows:
         normal = rows.add(contact.name, HOLDS, jacobian, float(impulses[0]), 1.0, softness)
         rows.set_hessian(normal, hessian)
         rows.by_position[normal] = -gain * (contact.normal @ (contact.a.moving - contact.b.moving))
-        self._add_friction(contact, normal, friction, (link_a, link_b))
+        directions, turns = self._directions(contact)
+        lateral = [self._row_of(contact, *it) for it in zip(directions, turns, strict=True)]
+        self._add_pair(contact, "friction", normal, friction, lateral, impulses[1:].tolist())
+        if rolling > 0.0 or spinning > 0.0:
+            self._add_torsion(contact, normal, rolling, spinning, (directions, turns))
 
     def _stiffness(self, a: int, b: int) -> tuple[float, float]:
         """Softness and error reduction of a normal row."""
@@ -130,21 +138,25 @@ class ContactRows:
         denominator = h * stiffness + damping
         return 1.0 / (denominator * h), h * stiffness / denominator
 
-    def _friction(self, contact: _Contact, a: int, b: int) -> float:
-        """The coefficient of lateral friction."""
+    def _friction(self, contact: _Contact, a: int, b: int) -> tuple[float, float, float]:
+        """The coefficients of lateral, rolling and spinning friction."""
         shapes = self._taken.shapes
         own = [float(shapes["link_lateral_friction"][link]) for link in (a, b)]
         ranks = [int(shapes["link_friction_rank"][link]) for link in (a, b)]
-        for what in ("rolling", "spinning"):
-            if any(shapes[f"link_{what}_friction"][link] > 0.0 for link in (a, b)):
-                raise NotImplementedError(f'{what} friction has no exact derivatives: use method="differences"')
         if any((shapes["link_anisotropy"][link] != 1.0).any() for link in (a, b)):
             raise NotImplementedError(f"{contact.name}: anisotropic friction has no exact derivatives")
         if any(shapes["link_friction_anchor"][link] for link in (a, b)):
             raise NotImplementedError(f"{contact.name}: friction anchors have no exact derivatives")
-        if min(ranks) > 0:
-            return max(own) if ranks[0] == ranks[1] else own[int(ranks[1] > ranks[0])]
-        return min(max(own[0] * own[1], -_MAX_FRICTION), _MAX_FRICTION)
+        found: list[float] = []
+        for what in ("lateral", "rolling", "spinning"):
+            x, y = (float(shapes[f"link_{what}_friction"][link]) for link in (a, b))
+            if min(ranks) > 0:
+                combined = max(x, y) if ranks[0] == ranks[1] else (x, y)[int(ranks[1] > ranks[0])]
+            else:
+                combined = x * y if what == "lateral" else x * own[1] + y * own[0]
+            found.append(min(max(combined, -_MAX_FRICTION), _MAX_FRICTION))
+        lateral, rolling, spinning = found
+        return lateral, rolling, spinning
 
     def _check_restitution(self, contact: _Contact, jacobian: np.ndarray, a: int, b: int) -> None:
         shapes, taken = self._taken.shapes, self._taken
@@ -153,22 +165,61 @@ class ContactRows:
         if restitution > 0.0 and approach >= taken.parameters.restitution_velocity_threshold:
             raise NotImplementedError(f"{contact.name}: a bounce has no exact derivatives")
 
-    def _add_friction(self, contact: _Contact, normal: int, friction: float, links: tuple[int, int]) -> None:
+    def _row_of(
+        self, contact: _Contact, direction: np.ndarray, turned: np.ndarray, *, angular: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Jacobian and its derivatives of a row along a direction, or about it, which turns by `turned`."""
+        changes = np.zeros((2, 3, len(self._space)))
+        changes[int(angular)] = turned
+        linear, about = (_NONE, direction) if angular else (direction, _NONE)
+        return self._places.row(contact.a, contact.b, linear, about, changes)
+
+    def _add_torsion(
+        self, contact: _Contact, normal: int, rolling: float, spinning: float, along: tuple[np.ndarray, np.ndarray]
+    ) -> None:
+        """Add rows of rolling and of spinning friction."""
+        found = self._taken.torsion_impulses(contact.number)
+        if found is None:
+            raise NotImplementedError(
+                f"{contact.name}: rolling and spinning friction have no exact derivatives where bodies are solved in "
+                'several groups: use method="differences"'
+            )
+        if rolling > 0.0:
+            jacobians = [self._row_of(contact, *it, angular=True) for it in zip(*along, strict=True)]
+            self._add_pair(contact, "rolling friction", normal, rolling, jacobians, found[:2])
+        if spinning > 0.0:
+            own = self._row_of(contact, contact.normal, contact.turned, angular=True)
+            self._add_pair(contact, "spinning friction", normal, spinning, [own], found[2:])
+
+    def _add_pair(
+        self,
+        contact: _Contact,
+        what: str,
+        normal: int,
+        friction: float,
+        parts: list[tuple[np.ndarray, np.ndarray]],
+        along: list[float],
+    ) -> None:
+        """Add two rows of friction, or one, that the impulse of a normal row bounds.
+
+        Args:
+            contact: The contact.
+            what: Name of the rows.
+            normal: The normal row.
+            friction: Coefficient of friction.
+            parts: Jacobian and its derivatives of each row.
+            along: Their impulses.
+        """
         taken, rows = self._taken, self._rows
-        _, *along = taken.contacts["contact_impulse"][contact.number].tolist()
         push = rows.impulses[normal]
         bound = friction * push
-        directions, turns = self._directions(contact)
         first = len(rows)
-        jacobians: list[np.ndarray] = []
-        for direction, turned, impulse in zip(directions, turns, along, strict=True):
-            changes = np.stack([turned, np.zeros_like(turned)])
-            jacobian, hessian = self._places.row(contact.a, contact.b, direction, _NONE, changes)
-            rows.set_hessian(rows.add(f"friction of {contact.name}", HOLDS, jacobian, impulse, 0.0, 0.0), hessian)
-            jacobians.append(jacobian)
+        for (jacobian, hessian), impulse in zip(parts, along, strict=True):
+            row = rows.add(f"{what} of {contact.name}", HOLDS, jacobian, impulse, 0.0, 0.0)
+            rows.set_hessian(row, hessian)
         cone = taken.parameters.cone_friction or taken.parameters.isotropic_friction
-        if not cone:
-            for row, impulse in zip((first, first + 1), along, strict=True):
+        if len(parts) == 1 or not cone:
+            for row, impulse in enumerate(along, first):
                 status = status_of(impulse, -bound * _STICKS, bound * _STICKS)
                 rows.names[row] = (rows.names[row][0], status)
                 if status == HOLDS:
@@ -176,38 +227,44 @@ class ContactRows:
                     continue
                 sign = -1.0 if status == LOWER else 1.0
                 rows.beta += [(row, row, 1.0), (row, normal, -sign * friction)]
-                self._set_friction(row, sign * push, links)
+                self._set_friction(row, sign * push, contact, what)
             return
+        second = first + 1
         size = float(np.hypot(*along))
         if size < bound * _STICKS:
-            rows.alpha += [(first, first, 1.0), (first + 1, first + 1, 1.0)]
+            rows.alpha += [(first, first, 1.0), (second, second, 1.0)]
             return
-        for row in (first, first + 1):
+        for row in (first, second):
             rows.names[row] = (rows.names[row][0], SLIDES)
-        # The impulse is as great as the bound, ...
         x, y = along
         if size == 0.0:
-            rows.beta += [(first, first, 1.0), (first + 1, first + 1, 1.0)]
+            rows.beta += [(first, first, 1.0), (second, second, 1.0)]
             return
-        rows.beta += [(first, first, x / size), (first, first + 1, y / size), (first, normal, -friction)]
-        self._set_friction(first, push, links)
+        # The impulse is as great as the bound, ...
+        rows.beta += [(first, first, x / size), (first, second, y / size), (first, normal, -friction)]
+        self._set_friction(first, push, contact, what)
         # ... and opposite to the change of the impulses that the rows still ask for.
-        rates = np.array([jacobian @ taken.after for jacobian in jacobians])
-        masses, changes = self._masses(jacobians, [rows.hessians[first], rows.hessians[first + 1]])
-        second = first + 1
+        jacobians = [jacobian for jacobian, _ in parts]
+        rates = np.array([jacobian @ taken.solved for jacobian in jacobians])
+        masses, changes = self._masses(jacobians, [hessian for _, hessian in parts])
         rows.alpha += [(second, first, masses[0] * y), (second, second, -masses[1] * x)]
         rows.beta += [(second, second, masses[0] * rates[0]), (second, first, -masses[1] * rates[1])]
         rows.by_position[second] = x * rates[1] * changes[1] - y * rates[0] * changes[0]
 
-    def _set_friction(self, row: int, derivative: float, links: tuple[int, int]) -> None:
+    def _set_friction(self, row: int, derivative: float, contact: _Contact, what: str) -> None:
+        """Set the derivatives of a row's right side by the lateral friction of both links."""
         shapes = self._taken.shapes
-        for link, other in (links, links[::-1]):
-            share = float(shapes["link_lateral_friction"][other])
-            if shapes["link_friction_rank"][link] > 0 and shapes["link_friction_rank"][other] > 0:
-                own = float(shapes["link_lateral_friction"][link])
-                ranks = [int(shapes["link_friction_rank"][it]) for it in (link, other)]
-                share = float(ranks[0] > ranks[1] or (ranks[0] == ranks[1] and own >= share))
-            self._rows.set_input(row, "link_lateral_friction", (link,), derivative * share)
+        links = self._taken.contacts["contact_shapes"][contact.number, 2:].tolist()
+        # Rolling and spinning coefficients are multiplied by the lateral one of the other link.
+        kind = {"friction": "lateral", "rolling friction": "rolling", "spinning friction": "spinning"}[what]
+        ranks = [int(shapes["link_friction_rank"][link]) for link in links]
+        own = [float(shapes[f"link_{kind}_friction"][link]) for link in links]
+        for k in (0, 1):
+            share = own[1 - k]
+            if min(ranks) > 0:
+                greater = ranks[k] > ranks[1 - k] or (ranks[0] == ranks[1] and own[k] >= own[1 - k])
+                share = float(greater and kind == "lateral")
+            self._rows.set_input(row, "link_lateral_friction", (links[k],), derivative * share)
 
     def _masses(self, jacobians: list[np.ndarray], hessians: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """Effective masses of two rows, and their derivatives by positions, (2, n).

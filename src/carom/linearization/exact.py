@@ -51,21 +51,21 @@ def step_derivatives(
     places = Places(space, motion)
     UserRows(space, taken, places, rows).add_all(taken.user_count)
     ContactRows(space, taken, places, motion, rows).add_all()
-    total = motion.effective @ (taken.after - taken.free_velocity) - rows.generalized_impulses()
+    total = motion.effective @ (taken.solved - taken.free_velocity) - rows.generalized_impulses()
     JointRows(space, taken, rows, total).add_all(world.arrays.used["constraint"])
     after_q, after_v, after_u = free_q, free_v, free_u
     dofs, active = len(space), len(space.activations)
     after_a = np.zeros((dofs, active))
     if len(rows):
-        after_q, after_v = motion.derivatives(taken.after)
-        after_u = motion.input_derivatives(taken.after, inputs)
+        after_q, after_v = motion.derivatives(taken.solved)
+        after_u = motion.input_derivatives(taken.solved, inputs)
         jacobian = np.stack(rows.jacobian)
         through = np.stack(rows.by_free_velocity)
         of_after = np.zeros((len(rows), dofs))
         pushed = np.zeros((dofs, dofs))
         for row, hessian in rows.hessians.items():
             pushed += rows.impulses[row] * hessian
-            of_after[row] = taken.after @ hessian
+            of_after[row] = taken.solved @ hessian
         after_q = after_q + motion.inverse @ pushed
         change = _changes_of_rows(
             rows,
@@ -87,7 +87,7 @@ def step_derivatives(
             for body, (_, size) in zip(space.bodies, space.places, strict=True)
         ]
     )
-    moving = np.where(np.abs(taken.after) < bound, 1.0, 0.0)[:, None]
+    moving = np.where(np.abs(taken.solved) < bound, 1.0, 0.0)[:, None]
     after_q, after_v, after_a, after_u = (moving * it for it in (after_q, after_v, after_a, after_u))
     turned, moved = space.integration(taken.after, taken.time_step)
     acted, driven = _activations(space, taken, inputs)

@@ -279,7 +279,7 @@ class JointRows:
         drive = float(taken.activation[actuator]) if filtered else control
         gain, bias = model["actuator_gain"][actuator], model["actuator_bias"][actuator]
         length = gear * taken.joint_position[dof]
-        before, after = gear * taken.free_velocity[dof], gear * taken.after[dof]
+        before, after = gear * taken.free_velocity[dof], gear * taken.solved[dof]
         terms = gain * drive + bias
         # Of length and velocity, those at the end count where the force falls with them.
         soft = terms[1] < 0.0, terms[2] < 0.0

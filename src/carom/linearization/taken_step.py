@@ -36,6 +36,7 @@ class TakenStep:
         joint_position: Positions of the dofs of joints with one, (n,); 0 for others.
         velocity: Velocities of the dofs before it, (n,).
         free_velocity: Those after free motion.
+        solved: Those of the solver, before they are limited to the greatest velocity.
         after: Those after it.
         motor: Settings of motors, (n, 8).
         drive: Settings of explicit PD control, (n, 8); None if there is none.
@@ -77,9 +78,32 @@ class TakenStep:
         self.contacts: dict[str, np.ndarray] = {
             name: array[0] for name, array in contact_arrays.contacts.numpy.items()
         }
+        self._pair_rows = copies.engine.workspace.pair_rows.numpy
         scratch = copies.engine.workspace.scratch.numpy
         self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
         self.free_velocity: np.ndarray = self.velocity + self.time_step * scratch["dof_force"][0, space.dofs]
+        deltas = np.concatenate(
+            [
+                4 * int(self.model["tree_first_delta"][body.rows.tree]) + np.arange(size)
+                for body, (_, size) in zip(space.bodies, space.places, strict=True)
+            ]
+            or [np.zeros(0, dtype=np.int64)]
+        )
+        self.solved: np.ndarray = self.free_velocity + scratch["delta_velocity"][0].ravel()[deltas]
         self.angular: np.ndarray = scratch["dof_angular"][0, space.dofs]
         self.linear: np.ndarray = scratch["dof_linear"][0, space.dofs]
         self.link_pose: np.ndarray = self.state["link_pose"].copy()
+
+    def torsion_impulses(self, contact: int) -> list[float] | None:
+        """Impulses of rolling friction, two, and of spinning friction, in the solver's rows of a contact.
+
+        None if the rows of other bodies have taken their place: bodies that do not touch are solved one after the
+        other in the same memory.
+        """
+        impulses = self._pair_rows["row_terms_impulse"][0]
+        normal, lateral, rolling, spinning = self._pair_rows["contact_rows"][0, contact].tolist()
+        known = impulses[normal], impulses[lateral], impulses[lateral + 1]
+        if known != tuple(self.contacts["contact_impulse"][contact]):
+            return None
+        rolled = impulses[rolling : rolling + 2].tolist() if rolling >= 0 else [0.0, 0.0]
+        return [*rolled, float(impulses[spinning]) if spinning >= 0 else 0.0]
