@@ -15,7 +15,7 @@ from carom.layouts.contacts import THERE
 from carom.linearization.contact_features import touches_with_face, touching_radius
 from carom.linearization.pair_rows import Places, Point
 from carom.linearization.rows import HOLDS, LOWER, Rows, status_of
-from carom.linearization.turns import cross_matrix
+from carom.linearization.turns import cross, cross_matrix
 
 if TYPE_CHECKING:
     from carom.linearization.free_motion import FreeMotion
@@ -79,7 +79,10 @@ class ContactRows:
             across = np.eye(3) - np.outer(normal, normal)
             turned = across @ (a.moving - b.moving) / np.sqrt(apart @ apart)
             moving = a.moving - radii[0] * turned, b.moving + radii[1] * turned
-            ends = (a._replace(position=points[0], moving=moving[0]), b._replace(position=points[1], moving=moving[1]))
+            ends = (
+                a._replace(position=points[0], moving=moving[0]),
+                b._replace(position=points[1], moving=moving[1]),
+            )
             return _Contact(number, name, *ends, normal, turned)
         for side in (0, 1):
             shape, other = (shape_a, shape_b)[side], (shape_b, shape_a)[side]
@@ -89,7 +92,7 @@ class ContactRows:
                 continue
             core = self._places.point((link_a, link_b)[side], points[side] + radius * outward)
             face = self._places.point((link_b, link_a)[side], points[1 - side])
-            turned = np.cross(face.turning.T, normal).T
+            turned = cross(face.turning.T, normal).T
             sign = 1.0 if side == 0 else -1.0
             moving = core.moving - sign * radius * turned
             # The point on the face is the projection of the other one.
@@ -175,7 +178,12 @@ class ContactRows:
         return self._places.row(contact.a, contact.b, linear, about, changes)
 
     def _add_torsion(
-        self, contact: _Contact, normal: int, rolling: float, spinning: float, along: tuple[np.ndarray, np.ndarray]
+        self,
+        contact: _Contact,
+        normal: int,
+        rolling: float,
+        spinning: float,
+        along: tuple[np.ndarray, np.ndarray],
     ) -> None:
         """Add rows of rolling and of spinning friction."""
         found = self._taken.torsion_impulses(contact.number)
@@ -249,7 +257,9 @@ class ContactRows:
         masses, changes = self._masses(jacobians, [hessian for _, hessian in parts])
         rows.alpha += [(second, first, masses[0] * y), (second, second, -masses[1] * x)]
         rows.beta += [(second, second, masses[0] * rates[0]), (second, first, -masses[1] * rates[1])]
-        rows.by_position[second] = x * rates[1] * changes[1] - y * rates[0] * changes[0]
+        changed = x * rates[1] * changes[1] - y * rates[0] * changes[0]
+        rows.by_position[second] = changed[: len(self._space)]
+        rows.by_input[second] = changed[len(self._space) :]
 
     def _set_friction(self, row: int, derivative: float, contact: _Contact, what: str) -> None:
         """Set the derivatives of a row's right side by the lateral friction of both links."""
@@ -266,20 +276,23 @@ class ContactRows:
                 share = float(greater and kind == "lateral")
             self._rows.set_input(row, "link_lateral_friction", (links[k],), derivative * share)
 
-    def _masses(self, jacobians: list[np.ndarray], hessians: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Effective masses of two rows, and their derivatives by positions, (2, n).
+    def _masses(
+        self, jacobians: list[np.ndarray], hessians: list[np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Effective masses of two rows, and their derivatives by positions and inputs, (2, n + inputs).
 
         With isotropic friction both take the same steps, so only their ratio counts, which is 1.
         """
-        count = len(self._space)
+        inputs = self._rows.all_inputs
+        masses, changes = np.ones(2), np.zeros((2, len(self._space) + len(inputs)))
         if self._taken.parameters.isotropic_friction:
-            return np.ones(2), np.zeros((2, count))
-        masses, changes = np.zeros(2), np.zeros((2, count))
+            return masses, changes
         for k, (jacobian, hessian) in enumerate(zip(jacobians, hessians, strict=True)):
             response = self._motion.inverse @ jacobian
             inverse = float(jacobian @ response)
             turned = 2.0 * response @ hessian - response @ self._motion.mass_derivatives(response)
-            masses[k], changes[k] = 1.0 / inverse, -turned / inverse**2
+            driven = -response @ self._motion.mass_input_derivatives(response, inputs)
+            masses[k], changes[k] = 1.0 / inverse, -np.concatenate([turned, driven]) / inverse**2
         return masses, changes
 
     def _directions(self, contact: _Contact) -> tuple[np.ndarray, np.ndarray]:
@@ -291,15 +304,12 @@ class ContactRows:
             n = contact.normal
             # The first is perpendicular to the normal and to an axis, so it turns about that axis.
             axis = np.array([1.0, 0.0, 0.0]) if abs(n[2]) > _HALF_ROOT else np.array([0.0, 0.0, 1.0])
-            across = np.cross(axis, n)
+            across = cross(axis, n)
             length = float(np.sqrt(across @ across))
             sign = float(np.sign(directions[0] @ across))
             rate = sign * cross_matrix(axis) / length
             turns[0] = rate @ contact.turned
             turns[0] -= np.outer(directions[0], directions[0] @ turns[0])
-            second = float(np.sign(np.cross(n, directions[0]) @ directions[1]))
-            turns[1] = second * (
-                np.cross(contact.turned.T, directions[0]).T + np.cross(n, turns[0].T).T
-            )
+            second = float(np.sign(cross(n, directions[0]) @ directions[1]))
+            turns[1] = second * (cross(contact.turned.T, directions[0]).T + cross(n, turns[0].T).T)
         return directions, turns
-

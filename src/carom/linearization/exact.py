@@ -132,7 +132,9 @@ def _activations(
     for column, actuator in enumerate(space.activations.tolist()):
         dynamics, constant = model["actuator_dynamics"][actuator], model["actuator_time_constant"][actuator]
         if dynamics == MUSCLE:
-            raise NotImplementedError(f"{space.actuators[column]} is a muscle, which has no exact derivatives")
+            raise NotImplementedError(
+                f"{space.actuators[column]} is a muscle, which has no exact derivatives"
+            )
         after = taken.state["actuator_activation"][actuator]
         lower, upper = (model[f"actuator_activation_{side}"][actuator] for side in ("lower", "upper"))
         if not lower < after < upper:

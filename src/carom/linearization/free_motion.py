@@ -44,11 +44,16 @@ class FreeMotion:
             columns = taken.angular[own], taken.linear[own]
             self.spatial.append(Spatial(body, taken.link_pose[links], columns))
         dofs = space.dofs
-        self._stiffness, self._damping = taken.model["dof_stiffness"][dofs], taken.model["dof_implicit_damping"][dofs]
+        self._stiffness, self._damping = (
+            taken.model["dof_stiffness"][dofs],
+            taken.model["dof_implicit_damping"][dofs],
+        )
         self._yielding = self._damping + h * self._stiffness
         self._stretch, self._stretch_q = space.stretch(taken.position, taken.model["position_spring"])
         self.effective: np.ndarray = np.zeros((count, count))
         self.inverse: np.ndarray = np.zeros((count, count))
+        self._forces_q, self._forces_v = np.zeros((count, count)), np.zeros((count, count))
+        self._add_forces()
 
     def derivatives(self, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of velocities by positions and velocities before the step, (n, n), at constant impulses.
@@ -59,12 +64,25 @@ class FreeMotion:
             after: The velocities after the step with these impulses, (n,).
         """
         space, taken, h = self._space, self._taken, self._taken.time_step
-        count = len(space)
-        by_q, by_v = np.zeros((count, count)), np.zeros((count, count))
+        by_q, by_v = self._forces_q.copy(), self._forces_v.copy()
         accelerations = (after - taken.velocity) / h
+        known = self.effective.any()
         for body, (first, size), spatial in zip(space.bodies, space.places, self.spatial, strict=True):
             own = slice(first, first + size)
             dtau = _inverse_derivatives(body, taken, own, accelerations[own], spatial)
+            by_q[own, own] -= dtau[0]
+            by_v[own, own] -= dtau[1]
+            if not known:
+                self.effective[own, own] = dtau[2] + np.diag(h * self._yielding[own])
+                self.inverse[own, own] = _inverse(self.effective[own, own])
+        return h * self.inverse @ by_q, np.eye(len(space)) + h * self.inverse @ by_v
+
+    def _add_forces(self) -> None:
+        """Find the derivatives of forces that do not depend on accelerations."""
+        space, taken = self._space, self._taken
+        by_q, by_v = self._forces_q, self._forces_v
+        for body, (first, size), spatial in zip(space.bodies, space.places, self.spatial, strict=True):
+            own = slice(first, first + size)
             links = slice(body.first_link, body.first_link + 1 + body.joint_count)
             tree = body.rows.tree
             damping = taken.model["tree_linear_damping"][tree], taken.model["tree_angular_damping"][tree]
@@ -72,29 +90,29 @@ class FreeMotion:
             constant = taken.link_wrench[links].copy()
             carried = taken.model["link_gravity_compensation"][links] * masses
             constant[:, :3] -= carried[:, None] * taken.gravity
-            _, pushed_q, pushed_v = link_forces(
+            _, by_q[own, own], by_v[own, own] = link_forces(
                 *(spatial, taken.velocity[own], masses, taken.model["link_inertia"][links]),
                 *(damping, constant),
             )
-            by_q[own, own] = pushed_q - dtau[0]
-            by_v[own, own] = pushed_v - dtau[1]
-            self.effective[own, own] = dtau[2]
         by_q -= self._stiffness[:, None] * self._stretch_q
-        by_v -= np.diag(self._yielding)
-        self.effective += np.diag(h * self._yielding)
+        by_v -= np.diag(self._yielding + taken.model["dof_damping"][space.dofs])
         drive = taken.drive
         if drive is not None:
             pushed = _explicit_pd(taken.joint_position, taken.velocity, drive)
             by_q -= np.diag(pushed * drive[:, PD_KP])
             by_v -= np.diag(pushed * drive[:, PD_KD])
-        by_v -= np.diag(taken.model["dof_damping"][space.dofs])
-        for body, (first, size) in zip(space.bodies, space.places, strict=True):
-            own = slice(first, first + size)
-            self.inverse[own, own] = _inverse(self.effective[own, own], body)
-        return h * self.inverse @ by_q, np.eye(count) + h * self.inverse @ by_v
 
     def input_derivatives(self, after: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
         """Derivatives of velocities by inputs, (n, inputs), as `derivatives`, which comes before."""
+        return self._taken.time_step * self.inverse @ self._input_forces(after, inputs)
+
+    def mass_input_derivatives(self, response: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
+        """Derivatives of M response by inputs, (n, inputs), for a constant `response` (n,)."""
+        velocity, h = self._taken.velocity, self._taken.time_step
+        return self._input_forces(velocity, inputs) - self._input_forces(velocity + h * response, inputs)
+
+    def _input_forces(self, after: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
+        """Derivatives of the forces, less those that the motion takes, by inputs, (n, inputs)."""
         space, taken, h = self._space, self._taken, self._taken.time_step
         found = np.zeros((len(space), len(inputs)))
         accelerations = (after - taken.velocity) / h
@@ -119,8 +137,10 @@ class FreeMotion:
                 body = space.bodies[place]
                 if place not in regressors:
                     regressors[place] = _regressor(body, taken, own, accelerations[own], self.spatial[place])
-                found[own, column] = self._by_inertia(given, body, own, regressors[place], self.spatial[place])
-        return h * self.inverse @ found
+                found[own, column] = self._by_inertia(
+                    given, body, own, regressors[place], self.spatial[place]
+                )
+        return found
 
     def mass_derivatives(self, response: np.ndarray) -> np.ndarray:
         """Derivatives of M response by positions, (n, n), for a constant `response` (n,)."""
@@ -169,7 +189,7 @@ def _six(matrix: np.ndarray) -> np.ndarray:
     return matrix[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
 
 
-def _inverse(matrix: np.ndarray, body: Body) -> np.ndarray:
+def _inverse(matrix: np.ndarray) -> np.ndarray:
     """Inverse of an effective mass matrix, with zeros where nothing can move."""
     moving = np.diag(matrix) > 0.0
     if moving.all():

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.linearization.exact import step_derivatives
 from carom.linearization.inputs import CONTROLS, PARAMETERS, Input, chosen_inputs
-from carom.linearization.stepping import Copies, differences
+from carom.linearization.stepping import copy_of, differences
 from carom.linearization.tangent import TangentSpace
 from carom.record import record
 
@@ -107,8 +107,10 @@ def _exact(
 ) -> tuple[np.ndarray, np.ndarray, tuple[tuple[str, str], ...]]:
     """The derivatives of steps, one after the other."""
     if world.parameters.substep_count > 1:
-        raise NotImplementedError('steps of several substeps have no exact derivatives: use method="differences"')
-    copies = Copies(world, 1)
+        raise NotImplementedError(
+            'steps of several substeps have no exact derivatives: use method="differences"'
+        )
+    copies = copy_of(world)
     copies.keep_forces()
     width = 2 * len(space) + len(space.activations)
     by_state, by_input = np.eye(width), np.zeros((width, len(given)))

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from carom.linearization.turns import cross
+
 if TYPE_CHECKING:
     from carom.linearization.free_motion import FreeMotion
     from carom.linearization.tangent import TangentSpace
@@ -86,10 +88,10 @@ class Places:
             # What the other body moves: the point of contact, the direction.
             moves = spatial.moves[link][:, None]
             hessian[own] += sign * moves * (spatial.linear @ turned[0])
-            moment = turned[1] + np.cross(end.position, turned[0].T).T
+            moment = turned[1] + cross(end.position, turned[0].T).T
             hessian[own] += sign * moves * (spatial.angular @ moment)
             others = np.ones(count)
             others[own] = 0.0
-            moment = np.cross((end.moving * others).T, linear).T
+            moment = cross((end.moving * others).T, linear).T
             hessian[own] += sign * moves * (spatial.angular @ moment)
         return jacobian, hessian

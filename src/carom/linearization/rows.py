@@ -30,7 +30,12 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.linearization.taken_step import TakenStep
 
-HOLDS, LOWER, UPPER, SATURATED = "holds", "at its lower bound", "at its upper bound", "at its greatest velocity"
+HOLDS, LOWER, UPPER, SATURATED = (
+    "holds",
+    "at its lower bound",
+    "at its upper bound",
+    "at its greatest velocity",
+)
 # Impulses this near to a bound, relative to it, are at it: clamping rounds.
 _NEAR = 1e-9
 
@@ -45,6 +50,7 @@ class Rows:
     def __init__(self, space: TangentSpace, inputs: Sequence[Input]) -> None:
         self._space = space
         self._width = len(space), len(space.activations), len(inputs)
+        self.all_inputs: Sequence[Input] = inputs
         # Inputs by where they are stored.
         self.inputs: dict[tuple[str, tuple[int, ...]], list[int]] = {}
         for column, given in enumerate(inputs):
@@ -65,7 +71,9 @@ class Rows:
     def __len__(self) -> int:
         return len(self.names)
 
-    def add(self, name: str, status: str, jacobian: np.ndarray, impulse: float, alpha: float, beta: float) -> int:
+    def add(
+        self, name: str, status: str, jacobian: np.ndarray, impulse: float, alpha: float, beta: float
+    ) -> int:
         """Add a row without right side; returns its number."""
         dofs, active, inputs = self._width
         self.names.append((name, status))
@@ -159,7 +167,9 @@ class JointRows:
         elif kind == ConstraintKind.FRICTION:
             self._add_friction(constraint, dof)
         elif np.abs(self._left[dof : dof + 3]).max() > _NEAR * self._scale:
-            raise NotImplementedError(self._name("limit", dof) + ", a spherical joint, has no exact derivatives")
+            raise NotImplementedError(
+                self._name("limit", dof) + ", a spherical joint, has no exact derivatives"
+            )
 
     def _name(self, what: str, dof: int) -> str:
         return f"{what} of {self._space.labels[dof][0]}"
@@ -237,7 +247,9 @@ class JointRows:
                 rows.add_of_dof(name, UPPER if side > 0.0 else LOWER, dof, impulse, 0.0, 1.0)
                 continue
             parameters = taken.parameters
-            corrected = not parameters.split_impulse or -violation > parameters.split_impulse_penetration_threshold
+            corrected = (
+                not parameters.split_impulse or -violation > parameters.split_impulse_penetration_threshold
+            )
             index = rows.add_of_dof(name, HOLDS, dof, impulse, 1.0, 0.0)
             rows.by_position[index][dof] = -parameters.erp / taken.time_step if corrected else 0.0
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.layouts.codes import BASE_VELOCITIES
-from carom.linearization.turns import matrix_of
+from carom.linearization.turns import cross, matrix_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -35,22 +35,22 @@ class Spatial:
             own[:3] = about[3:] = np.eye(3)
         reference = poses[0, :3]
         self.angular: np.ndarray = own
-        self.linear: np.ndarray = about - np.cross(own, reference)
+        self.linear: np.ndarray = about - cross(own, reference)
         self.centres: np.ndarray = poses[:, :3]
         self.rotations: np.ndarray = matrix_of(poses[:, 3:])
         self.moves, follows = _tree_of(body, free)
-        turned = np.cross(own[None, :, :], own[:, None, :])
-        moved = np.cross(own[None], self.linear[:, None]) + np.cross(self.linear[None], own[:, None])
+        turned = cross(own[None, :, :], own[:, None, :])
+        moved = cross(own[None], self.linear[:, None]) + cross(self.linear[None], own[:, None])
         self.turns: np.ndarray = follows[:, :, None] * turned
         self.shifts: np.ndarray = follows[:, :, None] * moved
 
     def point_columns(self, link: int, point: np.ndarray) -> np.ndarray:
         """The Jacobian of a point of a link, (n, 3), transposed."""
-        return self.moves[link][:, None] * (self.linear + np.cross(self.angular, point))
+        return self.moves[link][:, None] * (self.linear + cross(self.angular, point))
 
     def wrench(self, link: int, point: np.ndarray, force: np.ndarray, torque: np.ndarray) -> np.ndarray:
         """Generalized forces (n,) of a force at a point of a link and a torque."""
-        own = self.angular @ (torque + np.cross(point, force)) + self.linear @ force
+        own = self.angular @ (torque + cross(point, force)) + self.linear @ force
         return self.moves[link] * own
 
     def wrench_derivatives(
@@ -61,27 +61,10 @@ class Spatial:
         Args:
             moving: Change of the point by a change of each dof, (n, 3).
         """
-        moment = torque + np.cross(point, force)
+        moment = torque + cross(point, force)
         by_position = self.turns @ moment + self.shifts @ force
-        by_position += self.angular @ np.cross(moving, force).T
+        by_position += self.angular @ cross(moving, force).T
         return self.moves[link][:, None] * by_position
-
-    def velocity_derivatives(
-        self, link: int, point: np.ndarray, moving: np.ndarray, velocity: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (3, n) of linear and angular velocity of a point of a link by positions.
-
-        Args:
-            link: Row of the link.
-            point: The point.
-            moving: Change of the point by a change of each dof, (n, 3).
-            velocity: Velocities of the dofs.
-        """
-        rates = self.moves[link] * velocity
-        turned = np.einsum("i,ijk->kj", rates, self.turns)
-        omega = rates @ self.angular
-        shifted = np.einsum("i,ijk->kj", rates, self.shifts) + np.cross(turned.T, point).T
-        return shifted + np.cross(omega, moving).T, turned
 
 
 def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
@@ -127,40 +110,54 @@ def link_forces(
         The forces (n,), and their derivatives by positions and by velocities, (n, n).
     """
     size = len(velocity)
-    forces, by_position, by_velocity = np.zeros(size), np.zeros((size, size)), np.zeros((size, size))
     linear, angular = damping
-    for link in range(len(masses)):
-        if not spatial.moves[link].any():
-            continue
-        if not (linear or angular) and not constant[link].any():
-            continue
-        centre = spatial.centres[link]
-        moving = spatial.point_columns(link, centre)
-        force, torque = constant[link, :3].copy(), constant[link, 3:].copy()
-        if linear or angular:
-            turning = spatial.moves[link][:, None] * spatial.angular
-            speed, omega = velocity @ moving, velocity @ turning
-            speed_q, omega_q = spatial.velocity_derivatives(link, centre, moving, velocity)
-            rate, rate_v = _decay(linear, speed)
-            force -= masses[link] * rate * speed
-            drag = masses[link] * (rate * np.eye(3) + np.outer(speed, rate_v))
-            inertia = (spatial.rotations[link] * inertias[link]) @ spatial.rotations[link].T
-            rate, rate_v = _decay(angular, omega)
-            spin = inertia @ omega
-            torque -= rate * spin
-            brake = rate * inertia + np.outer(spin, rate_v)
-            # The inertia turns with the link.
-            turned = np.cross(turning, spin).T - inertia @ np.cross(turning, omega).T
-            by_velocity -= moving @ drag @ moving.T + turning @ brake @ turning.T
-            by_position -= moving @ drag @ speed_q + turning @ (brake @ omega_q + rate * turned)
-        forces += spatial.wrench(link, centre, force, torque)
-        by_position += spatial.wrench_derivatives(link, centre, force, torque, moving)
+    wanted = spatial.moves.any(axis=1) & ((linear != 0.0) | (angular != 0.0) | constant.any(axis=1))
+    if not wanted.any():
+        return np.zeros(size), np.zeros((size, size)), np.zeros((size, size))
+    moves, centres = spatial.moves[wanted][:, :, None], spatial.centres[wanted][:, None]
+    turning = moves * spatial.angular
+    moving = moves * (spatial.linear + cross(spatial.angular, centres))
+    force, torque = constant[wanted, :3].copy(), constant[wanted, 3:].copy()
+    by_position, by_velocity = np.zeros((size, size)), np.zeros((size, size))
+    if linear or angular:
+        speed, omega = velocity @ moving, velocity @ turning
+        # Derivatives by positions: [link, dof, axis].
+        rates = moves[:, :, 0] * velocity
+        count = len(rates)
+        omega_q = (rates @ spatial.turns.reshape(size, -1)).reshape(count, size, 3)
+        speed_q = (rates @ spatial.shifts.reshape(size, -1)).reshape(count, size, 3)
+        speed_q += cross(omega_q, centres) + cross(omega[:, None], moving)
+        mass, turn = masses[wanted], spatial.rotations[wanted]
+        rate, rate_v = _decay(linear, speed)
+        force -= (mass * rate)[:, None] * speed
+        drag = mass[:, None, None] * (rate[:, None, None] * np.eye(3) + speed[:, :, None] * rate_v[:, None])
+        inertia = (turn * inertias[wanted][:, None]) @ turn.transpose(0, 2, 1)
+        rate, rate_v = _decay(angular, omega)
+        spin = (inertia @ omega[:, :, None])[:, :, 0]
+        torque -= rate[:, None] * spin
+        brake = rate[:, None, None] * inertia + spin[:, :, None] * rate_v[:, None]
+        # The inertia turns with the link.
+        turned = cross(turning, spin[:, None]) - cross(turning, omega[:, None]) @ inertia
+        pushed_v, braked_v = moving @ drag, turning @ brake
+        braked_q = omega_q @ brake.transpose(0, 2, 1) + rate[:, None, None] * turned
+        by_velocity = -_summed(pushed_v, moving) - _summed(braked_v, turning)
+        by_position = -_summed(pushed_v, speed_q) - _summed(turning, braked_q)
+    moment = torque + cross(centres[:, 0], force)
+    forces = (turning @ torque[:, :, None] + moving @ force[:, :, None]).sum(axis=0)[:, 0]
+    changed = (moment @ spatial.turns.reshape(-1, 3).T + force @ spatial.shifts.reshape(-1, 3).T).reshape(
+        -1, size, size
+    )
+    by_position += (moves * changed).sum(axis=0) + _summed(turning, cross(moving, force[:, None]))
     return forces, by_position, by_velocity
 
 
-def _decay(coefficient: float, velocity: np.ndarray) -> tuple[float, np.ndarray]:
-    """Decay rate of a damped velocity, and its derivatives by the velocity."""
-    speed = float(np.sqrt(velocity @ velocity))
-    return coefficient * (1.0 + speed), coefficient * velocity / speed if speed else np.zeros(3)
+def _summed(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Sum over links of a bᵀ, (n, n), of arrays (links, n, 3)."""
+    size = a.shape[1]
+    return a.transpose(1, 0, 2).reshape(size, -1) @ b.transpose(1, 0, 2).reshape(size, -1).T
 
 
+def _decay(coefficient: float, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Decay rates (links,) of damped velocities (links, 3), and their derivatives by the velocities."""
+    speed = np.sqrt((velocity * velocity).sum(axis=1))
+    return coefficient * (1.0 + speed), coefficient * velocity / np.where(speed > 0.0, speed, 1.0)[:, None]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -41,6 +42,33 @@ class Copies:
         self.count = count
         self._forces: list[tuple[str, np.ndarray]] = []
 
+    def follow(self, world: World) -> bool:
+        """Give one copy the present state and parameters of its world; False if it no longer fits."""
+        mine, its = self.engine.contact_arrays, world.contact_arrays
+        room = mine.contacts.numpy
+        if (
+            len(room["contact_distance"][0]) < its.contact_count
+            or len(room["overlap_place"][0]) < its.overlap_count
+        ):
+            return False
+        self._unspent = world.unspent_time
+        self._forces = []
+        for table, other, names in (
+            (self.engine.arrays.state, world.arrays.state, ""),
+            (self.engine.arrays.model, world.arrays.model, ""),
+            (mine.contacts, its.contacts, ""),
+            (mine.users, its.users, ""),
+            (mine.shapes.table, its.shapes.table, "link_"),
+        ):
+            for name, array in table.numpy.items():
+                if name.startswith(names):
+                    _copy(other.numpy[name], array)
+        self.engine.status[:] = 0
+        mine.forget_order()
+        self.engine.activity_changed()
+        self.engine.update_settings(world.parameters)
+        return True
+
     def change(self, given: Input, worlds: np.ndarray, changes: np.ndarray) -> None:
         """Add changes (m,) to an input in m of the worlds."""
         if given.table == "state":
@@ -77,6 +105,36 @@ class Copies:
         self.engine.step([due])
         if (self.engine.status[:, STATUS] > WELL).any():
             raise SimulationError("a step cannot be linearised: a velocity is not finite")
+
+
+def _copy(source: np.ndarray, target: np.ndarray) -> None:
+    """Copy as much as there is room for: the rest of the rows is not in use."""
+    if source.shape == target.shape:
+        target[:] = source
+    else:
+        own = tuple(slice(min(pair)) for pair in zip(source.shape, target.shape, strict=True))
+        target[own] = source[own]
+
+
+_kept: WeakKeyDictionary[World, tuple[tuple[object, ...], Copies]] = WeakKeyDictionary()
+
+
+def _made_for(world: World) -> tuple[object, ...]:
+    """What is the same as long as a copy can follow its world."""
+    counts = world.contact_arrays.user_count, *world.arrays.used.values()
+    return world.engine, world.engine.changes, counts
+
+
+def copy_of(world: World) -> Copies:
+    """One copy of a world, in its present state; it is kept for the next call."""
+    world.prepare()
+    made_for = _made_for(world)
+    kept = _kept.get(world)
+    if kept is not None and kept[0] == made_for and kept[1].follow(world):
+        return kept[1]
+    copies = Copies(world, 1)
+    _kept[world] = _made_for(world), copies
+    return copies
 
 
 def differences(

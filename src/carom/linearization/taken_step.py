@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
+
 def _of_first_world(struct: Any, arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Fields of a table with parameters, without the axis of worlds that some have."""
     return {

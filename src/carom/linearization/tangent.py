@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, UNFILTERED, JointCode
 from carom.linearization.turns import (
+    cross,
     inverse,
     left_derivative,
     matrix_of,
@@ -57,7 +58,9 @@ class TangentSpace:
             if not body.fixed_base:
                 self._bases.append((body.first_position, len(rows)))
                 rows += range(body.first_velocity, body.first_velocity + BASE_VELOCITIES)
-                labels += [(f"{label}.base", f"{kind}.{axis}") for kind in ("turn", "shift") for axis in _AXES]
+                labels += [
+                    (f"{label}.base", f"{kind}.{axis}") for kind in ("turn", "shift") for axis in _AXES
+                ]
             for joint, kind in enumerate(body.joint_types):
                 count, position = body.velocity_count[joint], body.position_index[joint]
                 if not count:
@@ -68,9 +71,10 @@ class TangentSpace:
                     link = body.first_link + 1 + joint
                     model = world.arrays.model.numpy
                     axis, first_axis, second_axis = (
-                        model[name][link] for name in ("link_unit_axis", "link_planar_axis1", "link_planar_axis2")
+                        model[name][link]
+                        for name in ("link_unit_axis", "link_planar_axis1", "link_planar_axis2")
                     )
-                    hand = float(np.sign(np.cross(axis, first_axis) @ second_axis))
+                    hand = float(np.sign(cross(axis, first_axis) @ second_axis))
                     self._planes.append((position, len(rows), hand))
                 else:
                     self._scalars.append((position, len(rows)))

@@ -16,6 +16,15 @@ def cross_matrix(vectors: np.ndarray) -> np.ndarray:
     return matrices
 
 
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross products of vectors (..., 3), as `numpy.cross`, in less time."""
+    found = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    found[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    found[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    found[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return found
+
+
 def quaternion_of(vectors: np.ndarray) -> np.ndarray:
     """Quaternions (x, y, z, w), (..., 4), of rotation vectors (..., 3) [rad]."""
     angles = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
@@ -33,7 +42,7 @@ def vector_of(quaternions: np.ndarray) -> np.ndarray:
 
 def multiplied(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Products of quaternions (..., 4): first b, then a."""
-    vector = a[..., 3:] * b[..., :3] + b[..., 3:] * a[..., :3] + np.cross(a[..., :3], b[..., :3])
+    vector = a[..., 3:] * b[..., :3] + b[..., 3:] * a[..., :3] + cross(a[..., :3], b[..., :3])
     scalar = a[..., 3:] * b[..., 3:] - (a[..., :3] * b[..., :3]).sum(axis=-1, keepdims=True)
     return np.concatenate([vector, scalar], axis=-1)
 

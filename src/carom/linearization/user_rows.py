@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.layouts.codes import Activity, UserConstraintKind
 from carom.linearization.rows import HOLDS, Rows, status_of
-from carom.linearization.turns import euler_rates, inverse, matrix_of, multiplied
+from carom.linearization.turns import cross, euler_rates, inverse, matrix_of, multiplied
 
 if TYPE_CHECKING:
     from carom.linearization.pair_rows import Places
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from carom.linearization.taken_step import TakenStep
 
 _PARALLEL = 1e-6
+# Lengths below this count as 0.
+_LEAST = 1e-300
 _NONE = np.zeros(3)
 
 
@@ -120,12 +122,12 @@ class UserRows:
         if kind == UserConstraintKind.PRISMATIC:
             link = int(users["user_link_a"][user])
             along = matrix_of(taken.link_pose[link, 3:]) @ users["user_axis"][user]
-            first = np.cross(turn[:, 0], along)
+            first = cross(turn[:, 0], along)
             if np.sqrt(first @ first) <= _PARALLEL:
-                first = np.cross(turn[:, 1], along)
-            first /= np.sqrt(first @ first)
-            second = np.cross(along, first)
-            directions = np.stack([first, second / np.sqrt(second @ second)])
+                first = cross(turn[:, 1], along)
+            first /= max(np.sqrt(first @ first), _LEAST)
+            second = cross(along, first)
+            directions = np.stack([first, second / max(np.sqrt(second @ second), _LEAST)])
             linear_count, first_angle = 2, 2
         elif kind == UserConstraintKind.POINT_TO_POINT:
             angles = 0
@@ -135,12 +137,12 @@ class UserRows:
             if number < linear_count:
                 linear, angular = directions[number], _NONE
                 if kind == UserConstraintKind.PRISMATIC:
-                    turned[0] = np.cross(a.turning.T, linear).T
+                    turned[0] = cross(a.turning.T, linear).T
                 error = linear @ (a.moving - b.moving) + apart @ turned[0]
             else:
                 axis = (number - linear_count + first_angle) % 3
                 linear, angular = _NONE, turn[:, axis]
-                turned[1] = np.cross(a.turning.T, angular).T
+                turned[1] = cross(a.turning.T, angular).T
                 error = euler_rates(relative)[axis] @ turn.T @ (a.turning - b.turning)
             jacobian, hessian = places.row(a, b, linear, angular, turned)
             row = self._add(user, number, kind, jacobian)

@@ -49,7 +49,15 @@ if TYPE_CHECKING:
 
 
 class World(
-    DescriptionLoading, ShapeAdding, SoftLoading, PoseUpdates, Linearizing, Recordable, Picklable, StateViews, Closed
+    DescriptionLoading,
+    ShapeAdding,
+    SoftLoading,
+    PoseUpdates,
+    Linearizing,
+    Recordable,
+    Picklable,
+    StateViews,
+    Closed,
 ):
     """Bodies that move under gravity, motors and limits.
 
