@@ -103,11 +103,13 @@ def test_a_quadruped_stands_on_its_feet_and_flies(tmp_path: Path):
     file = tmp_path / "quadruped.urdf"
     file.write_text(quadruped())
     world = new_world(plane=True)
-    body = world.load_urdf(file, (0.0, 0.0, 0.428), as_pybullet=False)
+    body = world.load_urdf(file, (0.0, 0.0, 0.38), as_pybullet=False)
     for link in range(-1, body.joint_count):
         body.change_dynamics(link, **SURFACE)
         if link >= 0:
-            body.change_dynamics(link, joint_stiffness=100.0, joint_damping=2.0, joint_armature=0.01)
+            rest = (0.1, 0.5, -1.0)[link % 3]
+            body.change_dynamics(link, joint_stiffness=100.0, joint_damping=2.0, joint_spring_reference=rest)
+            body.joints[link].reset(rest)
     world.step(20)
     step = assert_exact(world, parameters=["masses", "stiffness"])
     assert sum(name.startswith("contact") for name, _ in step.rows) == 4

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
-# Singular values of the rows' equations below this share of the greatest one are those of redundant rows.
-_REDUNDANT = 1e-10
+# Singular values of the rows' equations below this share of the greatest one are those of redundant rows: no number of
+# sweeps resolves them.
+_REDUNDANT = 1e-7
 
 
 def step_derivatives(

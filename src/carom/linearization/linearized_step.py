@@ -73,6 +73,7 @@ def linearize(
         raise ValueError(f"method must be 'exact' or 'differences', not {method!r}")
     if not smoothing >= 0.0 or (smoothing and method != "exact"):
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
+    world.prepare()
     space = TangentSpace(world)
     given = chosen_inputs(world, space, CONTROLS, controls, "control")
     control_count = len(given)
