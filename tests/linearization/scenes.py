@@ -68,7 +68,7 @@ def motors_off(body: Body) -> None:
 
 
 def assert_exact(world: World, atol: float = 1e-6, **arguments: Any) -> Any:
-    """Compare with central differences of the step, relative to the greatest entry; returns the exact result."""
+    """Compare with central differences, relative to the greatest entry; returns the exact result."""
     before = world.position.copy(), world.velocity.copy(), world.time
     exact = world.linearize(**arguments)
     near = world.linearize(method="differences", **arguments)

@@ -93,7 +93,8 @@ def quadruped() -> str:
             own = inertial.format(z=-0.1, m=0.3, inertia=part)
             parts.append(f'<link name="{name}">{own}{shape}</link>')
             parts.append(
-                f'<joint name="{name}_joint" type="continuous"><parent link="{parent}"/><child link="{name}"/>'
+                f'<joint name="{name}_joint" type="continuous"><parent link="{parent}"/>'
+                f'<child link="{name}"/>'
                 f'<origin xyz="{origin}"/><axis xyz="{axis}"/></joint>'
             )
     return f'<robot name="quadruped">{"".join(parts)}</robot>'

@@ -46,10 +46,11 @@ def test_a_pendulum_with_torque_has_the_textbook_derivatives():
     h = world.parameters.time_step
     stiffness, inverse = -step.A[1, 0] / h, step.B[1, 0] / h
     assert stiffness * inverse != 0.0
-    assert step.A == pytest.approx(
-        np.array([[1.0 - h * h * stiffness, h * step.A[1, 1]], [-h * stiffness, step.A[1, 1]]])
+    assert (
+        pytest.approx(np.array([[1.0 - h * h * stiffness, h * step.A[1, 1]], [-h * stiffness, step.A[1, 1]]]))
+        == step.A
     )
-    assert step.B == pytest.approx(np.array([[h * h * inverse], [h * inverse]]))
+    assert pytest.approx(np.array([[h * h * inverse], [h * inverse]])) == step.B
     assert step.states == (
         f"{body.name}.{body.joints[0].name}.position",
         f"{body.name}.{body.joints[0].name}.velocity",

@@ -1,7 +1,7 @@
 """Rows of contacts, linearised: normals and lateral friction.
 
-How a contact moves is known exactly where a ball, the end of a capsule, or a corner touches a plane or a face, and
-where two balls touch.
+How a contact moves is known exactly where a ball, the end of a capsule, or a corner touches a plane or a
+face, and where two balls touch.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from carom.linearization.turns import cross, cross_matrix
 
 if TYPE_CHECKING:
     from carom.linearization.free_motion import FreeMotion
-    from carom.linearization.tangent import TangentSpace
     from carom.linearization.taken_step import TakenStep
+    from carom.linearization.tangent import TangentSpace
 
 SLIDES = "slides"
 _NONE = np.zeros(3)
@@ -189,8 +189,8 @@ class ContactRows:
         found = self._taken.torsion_impulses(contact.number)
         if found is None:
             raise NotImplementedError(
-                f"{contact.name}: rolling and spinning friction have no exact derivatives where bodies are solved in "
-                'several groups: use method="differences"'
+                f"{contact.name}: rolling and spinning friction have no exact derivatives where bodies "
+                'are solved in several groups: use method="differences"'
             )
         if rolling > 0.0:
             jacobians = [self._row_of(contact, *it, angular=True) for it in zip(*along, strict=True)]

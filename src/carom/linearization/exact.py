@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
-from carom.linearization.free_motion import FreeMotion
 from carom.linearization.contact_rows import ContactRows
+from carom.linearization.free_motion import FreeMotion
 from carom.linearization.pair_rows import Places
 from carom.linearization.rows import JointRows, Rows, bounded_control
 from carom.linearization.stepping import Copies
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
-# Singular values of the rows' equations below this share of the greatest one are those of redundant rows: no number of
-# sweeps resolves them.
+# Singular values of the rows' equations below this share of the greatest one are those of redundant rows: no
+# number of sweeps resolves them.
 _REDUNDANT = 1e-7
 
 
@@ -111,7 +111,7 @@ def _changes_of_rows(
     Args:
         rows: The rows.
         response: M⁻¹ Jᵀ, (n, rows).
-        sides: Right sides of the rows, and changes of their rates at constant impulses, for some columns each.
+        sides: Right sides of the rows, and changes of their rates at constant impulses, for some columns.
         smoothing: As in `step_derivatives`.
     """
     alpha, beta = rows.matrix(rows.alpha), rows.matrix(rows.beta)

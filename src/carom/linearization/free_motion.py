@@ -16,8 +16,8 @@ from carom.linearization.turns import cross_matrix, matrix_of
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
-    from carom.linearization.tangent import TangentSpace
     from carom.linearization.taken_step import TakenStep
+    from carom.linearization.tangent import TangentSpace
     from carom.scene.body import Body
 
 _PARTS = 10
@@ -56,7 +56,7 @@ class FreeMotion:
         self._add_forces()
 
     def derivatives(self, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of velocities by positions and velocities before the step, (n, n), at constant impulses.
+        """Derivatives of velocities by positions and velocities before, (n, n), at constant impulses.
 
         Also finds `effective` and `inverse`.
 
@@ -208,7 +208,9 @@ def _explicit_pd(positions: np.ndarray, velocities: np.ndarray, drive: np.ndarra
     return np.where((bound > 0.0) & (np.abs(force) < bound), 1.0, 0.0)
 
 
-def _in_own_axes(body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial):
+def _in_own_axes(
+    body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
     """Positions, velocities, accelerations and the base's rotation, as the algorithms take them."""
     first = body.first_position
     count = BASE_POSITIONS + sum(body.position_count)

@@ -1,7 +1,7 @@
 """Rows of the solver, linearised; here those of joints: motors, limits, friction, actuators.
 
-Together they are α d(J v⁺) + β dλ = the right side, with matrices α and β over the rows. A row that holds within
-its bounds has an entry of α on the diagonal, one at a bound of its impulse only entries of β.
+Together they are α d(J v⁺) + β dλ = the right side, with matrices α and β over the rows. A row that holds
+within its bounds has an entry of α on the diagonal, one at a bound of its impulse only entries of β.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from carom.linearization.turns import euler_rates, inverse, matrix_of, multiplie
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
-    from carom.linearization.tangent import TangentSpace
     from carom.linearization.taken_step import TakenStep
+    from carom.linearization.tangent import TangentSpace
 
 HOLDS, LOWER, UPPER, SATURATED = (
     "holds",

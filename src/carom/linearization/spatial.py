@@ -59,6 +59,10 @@ class Spatial:
         """Derivatives of `wrench` by positions, (n, n), for a constant force and torque.
 
         Args:
+            link: Row of the link.
+            point: The point.
+            force: The force.
+            torque: The torque.
             moving: Change of the point by a change of each dof, (n, 3).
         """
         moment = torque + cross(point, force)

@@ -98,8 +98,8 @@ class TakenStep:
     def torsion_impulses(self, contact: int) -> list[float] | None:
         """Impulses of rolling friction, two, and of spinning friction, in the solver's rows of a contact.
 
-        None if the rows of other bodies have taken their place: bodies that do not touch are solved one after the
-        other in the same memory.
+        None if the rows of other bodies have taken their place: bodies that do not touch are solved one after
+        the other in the same memory.
         """
         impulses = self._pair_rows["row_terms_impulse"][0]
         normal, lateral, rolling, spinning = self._pair_rows["contact_rows"][0, contact].tolist()

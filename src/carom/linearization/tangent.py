@@ -28,8 +28,8 @@ class TangentSpace:
     """Small changes of positions: one number for each velocity, the motion in a unit of time with it.
 
     For a free base they are a rotation vector [rad] and a displacement [m] of its inertial frame, in world
-    axes, in the order of `World.velocity`; for a spherical joint a rotation vector along the axes of its link;
-    for a planar joint the angle, and displacements along the axes of its link; for others the change of the
+    axes, in the order of `World.velocity`; for a spherical joint a rotation vector along the axes of its
+    link; for a planar joint the angle, and displacements along the axes of its link; for others the change of the
     position. Bases that are fixed have none.
 
     Attributes:

@@ -12,8 +12,8 @@ from carom.linearization.turns import cross, euler_rates, inverse, matrix_of, mu
 
 if TYPE_CHECKING:
     from carom.linearization.pair_rows import Places
-    from carom.linearization.tangent import TangentSpace
     from carom.linearization.taken_step import TakenStep
+    from carom.linearization.tangent import TangentSpace
 
 _PARALLEL = 1e-6
 # Lengths below this count as 0.

@@ -36,14 +36,14 @@ class Linearizing:
             controls: Kinds of controls, or full names of some: "torques" (of all dofs of joints),
                 "target_positions" and "target_velocities" (of motors), "actuators".
             parameters: Likewise: "masses" (centres and moments of inertia stay), "inertias" (principal
-                moments), "friction" (lateral, of links), "joint_friction", "stiffness", "damping", "armature",
-                "motor_position_gains", "motor_velocity_gains", "motor_forces", "actuator_gains",
+                moments), "friction" (lateral, of links), "joint_friction", "stiffness", "damping",
+                "armature", "motor_position_gains", "motor_velocity_gains", "motor_forces", "actuator_gains",
                 "actuator_biases".
             steps: Number of steps.
             method: "exact", or "differences" for central differences of the steps themselves, of all that can
                 be in a world.
-            smoothing: Softness of rows that hold, relative to their own inverse mass: 0.1 lets them yield by a
-                tenth. Only with "exact".
+            smoothing: Softness of rows that hold, relative to their own inverse mass: 0.1 lets them yield by
+                a tenth. Only with "exact".
             outputs: A function that returns numbers, such as readings of sensors, of a world after the steps;
                 for `C` and `D`, which are found by central differences.
 
