@@ -23,7 +23,7 @@ def on_plane(file: str, height: float, *, steps: int = 5, **surface: float) -> t
     return world, body
 
 
-PARAMETERS = {"parameters": ["masses", "friction"]}
+PARAMETERS = ["masses", "friction"]
 
 
 @pytest.mark.parametrize("torsion", [{}, {"rolling_friction": 0.01, "spinning_friction": 0.02}])
@@ -34,11 +34,11 @@ def test_a_ball_rolls_and_slides(torsion, friction):
     world.parameters.isotropic_friction = friction == "isotropic"
     world.apply_parameters()
     set_velocity(ball, 0.0, 2.0, 0.1, 1.0, 0.0, 0.0)
-    found = statuses(assert_exact(world, **PARAMETERS))
+    found = statuses(assert_exact(world, parameters=PARAMETERS))
     assert found["friction of contact 0 of box and sphere"] == ["holds", "holds"]
     assert ("spinning friction of contact 0 of box and sphere" in found) == bool(torsion)
     set_velocity(ball, 0.0, 0.0, 0.3, 3.0, 1.0, 0.0)
-    found = statuses(assert_exact(world, **PARAMETERS))
+    found = statuses(assert_exact(world, parameters=PARAMETERS))
     assert "holds" not in found["friction of contact 0 of box and sphere"]
 
 
@@ -52,7 +52,8 @@ def test_a_box_rests_slides_and_stands_on_a_corner(isotropic):
     set_velocity(box, 0.0, 0.0, 0.0, 1.0, 0.4, 0.0)
     # The sum of the impulses of four corners is known, not how they share it: no torque depends on that here.
     assert (
-        statuses(assert_exact(world, **PARAMETERS))["friction of contact 0 of box and box"] == ["slides"] * 2
+        statuses(assert_exact(world, parameters=PARAMETERS))["friction of contact 0 of box and box"]
+        == ["slides"] * 2
     )
     tilted = new_world(plane=True)
     tilted.parameters.isotropic_friction = isotropic
@@ -61,7 +62,7 @@ def test_a_box_rests_slides_and_stands_on_a_corner(isotropic):
     set_velocity(box, 0.5, 0.4, 0.1, 2.6, 0.2, -0.6)
     while not tilted.linearize().rows:
         tilted.step()
-    assert_exact(tilted, **PARAMETERS)
+    assert_exact(tilted, parameters=PARAMETERS)
 
 
 def test_two_balls_meet():
@@ -74,7 +75,7 @@ def test_two_balls_meet():
     set_velocity(balls[1], 0.1, 0.2, 0.3, 0.1, -0.2, -2.0)
     while not world.linearize().rows:
         world.step()
-    assert_exact(world, **PARAMETERS)
+    assert_exact(world, parameters=PARAMETERS)
 
 
 def quadruped() -> str:
@@ -122,7 +123,7 @@ def test_a_quadruped_stands_on_its_feet_and_flies(tmp_path: Path):
 def test_stiff_contacts_are_springs():
     world, ball = on_plane("sphere2.urdf", 0.5, contact_stiffness=1e4, contact_damping=100.0)
     set_velocity(ball, 0.0, 2.0, 0.1, 1.0, 0.0, -0.1)
-    assert_exact(world, **PARAMETERS)
+    assert_exact(world, parameters=PARAMETERS)
 
 
 @pytest.mark.parametrize(

@@ -166,8 +166,8 @@ def test_bodies_tied_together_are_exact(kind):
     arm = world.load_urdf(f"{ASSETS}/kuka_iiwa/model.urdf", fixed_base=True)
     excite(cube)
     excite(arm, share=0.3)
-    frames = {"parent_frame": Pose((0.0, 0.0, 0.05)), "child_frame": Pose((-2.5, 0.2, 0.2))}
-    world.tie(kind, arm, 6, cube, -1, axis=(0.0, 0.6, 0.8), **frames)
+    frames = Pose((0.0, 0.0, 0.05)), Pose((-2.5, 0.2, 0.2))
+    world.tie(kind, arm, 6, cube, -1, axis=(0.0, 0.6, 0.8), parent_frame=frames[0], child_frame=frames[1])
     step = assert_exact(world, parameters=["masses"])
     assert {status for name, status in step.rows if "constraint" in name} == {"holds"}
     # A copy that is kept for the next call has all constraints.

@@ -6,6 +6,7 @@ face, and where two balls touch.
 
 from __future__ import annotations
 
+from math import hypot
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -238,7 +239,7 @@ class ContactRows:
                 self._set_friction(row, sign * push, contact, what)
             return
         second = first + 1
-        size = float(np.hypot(*along))
+        size = hypot(*along)
         if size < bound * _STICKS:
             rows.alpha += [(first, first, 1.0), (second, second, 1.0)]
             return

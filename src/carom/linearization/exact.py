@@ -121,7 +121,19 @@ def _changes_of_rows(
     system = alpha @ delassus + beta
     wanted = np.concatenate([side - alpha @ rate for side, rate in sides], axis=1)
     scale = np.maximum(np.abs(system).max(axis=1, keepdims=True), 1e-300)
-    return response @ np.linalg.lstsq(system / scale, wanted / scale, rcond=_REDUNDANT)[0]
+    return response @ _solution(system / scale, wanted / scale)
+
+
+def _solution(system: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """The solution of equations; the least one where some are redundant."""
+    try:
+        inverse = np.linalg.inv(system)
+    except np.linalg.LinAlgError:
+        inverse = None
+    # Of equations far from that the singular values need not be known.
+    if inverse is not None and np.abs(system).sum() * np.abs(inverse).sum() < 1.0 / _REDUNDANT:
+        return inverse @ wanted
+    return np.linalg.lstsq(system, wanted, rcond=_REDUNDANT)[0]
 
 
 def _activations(

@@ -28,7 +28,7 @@ class LinearizedStep:
     The state x has the changes of positions, then those of velocities, then those of activations of
     actuators. A change of positions has one number for each velocity: it is the motion in a unit of time with
     this number as velocity. For a free base these are a rotation vector [rad] and a displacement [m], in
-    world axes and about the centre of mass of the base, as the angular and the linear velocity in `World.velocity`;
+    world axes and about the centre of mass of the base, as angular and linear velocity in `World.velocity`;
     for a spherical joint a rotation vector along the axes of its link; for a planar joint the angle, and
     displacements along the axes of its link. `World.velocity` has the velocities. Bodies without anything
     that moves have no part in the state.

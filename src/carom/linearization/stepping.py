@@ -72,13 +72,11 @@ class Copies:
     def change(self, given: Input, worlds: np.ndarray, changes: np.ndarray) -> None:
         """Add changes (m,) to an input in m of the worlds."""
         if given.table == "state":
-            field = self.state[given.field]
+            self.state[given.field][(worlds, *given.place)] += given.scale * changes
         else:
             self.engine.spread(given.table, given.field)
             table = self.engine.table_of(given.table)
-            field = table.numpy[given.field]
-        field[(worlds, *given.place)] += given.scale * changes
-        if given.table != "state":
+            table.numpy[given.field][(worlds, *given.place)] += given.scale * changes
             table.written(given.field)
         if given.field in _JOINT_TERMS:
             self.engine.spread("model", "tree_joint_terms")

@@ -29,8 +29,8 @@ class TangentSpace:
 
     For a free base they are a rotation vector [rad] and a displacement [m] of its inertial frame, in world
     axes, in the order of `World.velocity`; for a spherical joint a rotation vector along the axes of its
-    link; for a planar joint the angle, and displacements along the axes of its link; for others the change of the
-    position. Bases that are fixed have none.
+    link; for a planar joint the angle, and displacements along the axes of its link; for others the change of
+    the position. Bases that are fixed have none.
 
     Attributes:
         bodies: The bodies that can move.
