@@ -82,10 +82,11 @@ class Rows:
         row = len(self.names) - 1
         self.alpha.append((row, row, alpha))
         self.beta.append((row, row, beta))
-        self.by_position.append(np.zeros(dofs))
-        self.by_free_velocity.append(np.zeros(dofs))
-        self.by_activation.append(np.zeros(active))
-        self.by_input.append(np.zeros(inputs))
+        side = np.zeros(2 * dofs + active + inputs)
+        self.by_position.append(side[:dofs])
+        self.by_free_velocity.append(side[dofs : 2 * dofs])
+        self.by_activation.append(side[2 * dofs : 2 * dofs + active])
+        self.by_input.append(side[2 * dofs + active :])
         return row
 
     def set_hessian(self, row: int, hessian: np.ndarray) -> None:
@@ -133,6 +134,8 @@ class JointRows:
         self._taken = taken
         self._rows = rows
         self._left = total.copy()
+        self._motors: list[list[float]] = taken.motor.tolist()
+        self._positions: list[float] = taken.joint_position.tolist()
         self._scale = max(float(np.abs(total).max(initial=0.0)), 1e-300)
         self._of_row = {int(row): dof for dof, row in enumerate(space.dofs)}
         self._space = space
@@ -141,7 +144,8 @@ class JointRows:
     def add_all(self, constraints: int) -> None:
         """Add those of the first `constraints` joint constraints of the model."""
         model = self._taken.model
-        kinds, links = model["constraint_kind"][:constraints], model["constraint_link"][:constraints]
+        kinds = model["constraint_kind"][:constraints].tolist()
+        links = model["constraint_link"][:constraints].tolist()
         # Impulses of motors and actuators are known; those of limits and friction are what is left.
         for order in (
             (ConstraintKind.MOTOR, ConstraintKind.SPHERICAL_MOTOR, ConstraintKind.ACTUATOR),
@@ -176,7 +180,7 @@ class JointRows:
 
     def _motor_bound(self, row: int, dof: int) -> tuple[int | None, float, str]:
         """The row of a motor at a bound of its impulse; else None. Also its impulse and its name."""
-        bound = float(self._taken.motor[dof, MOTOR_MAX_IMPULSE])
+        bound = self._motors[dof][MOTOR_MAX_IMPULSE]
         impulse = float(self._taken.state["dof_motor_impulse"][row])
         self._left[dof] -= impulse
         status, name = status_of(impulse, -bound, bound), self._name("motor", dof)
@@ -189,14 +193,14 @@ class JointRows:
 
     def _add_motor(self, row: int, dof: int) -> None:
         taken, rows = self._taken, self._rows
-        motor = taken.motor[dof]
+        motor = self._motors[dof]
         if motor[MOTOR_MAX_IMPULSE] == 0.0:
             return
         index, impulse, name = self._motor_bound(row, dof)
         if index is not None:
             return
         h = taken.time_step
-        error, rate = motor[MOTOR_POSITION] - taken.joint_position[dof], taken.free_velocity[dof]
+        error, rate = motor[MOTOR_POSITION] - self._positions[dof], float(taken.free_velocity[dof])
         wanted = motor[MOTOR_KP] * error / h + rate + motor[MOTOR_KD] * (motor[MOTOR_VELOCITY] - rate)
         if abs(wanted) > motor[MOTOR_VELOCITY_CLAMP]:
             rows.add_of_dof(name, SATURATED, dof, impulse, 1.0, 0.0)
@@ -231,11 +235,10 @@ class JointRows:
 
     def _add_limit(self, constraint: int, dof: int) -> None:
         taken, rows = self._taken, self._rows
-        position = taken.joint_position[dof]
-        bound = float(taken.model["constraint_max_impulse"][constraint])
+        position = self._positions[dof]
         sides = (
-            (1.0, taken.model["constraint_lower"][constraint] - position),
-            (-1.0, position - taken.model["constraint_upper"][constraint]),
+            (1.0, float(taken.model["constraint_lower"][constraint]) - position),
+            (-1.0, position - float(taken.model["constraint_upper"][constraint])),
         )
         for side, violation in sides:
             impulse = float(self._left[dof])
@@ -243,6 +246,7 @@ class JointRows:
                 continue
             self._left[dof] = 0.0
             name = self._name("limit", dof)
+            bound = float(taken.model["constraint_max_impulse"][constraint])
             if side * impulse >= bound * (1.0 - _NEAR):
                 rows.add_of_dof(name, UPPER if side > 0.0 else LOWER, dof, impulse, 0.0, 1.0)
                 continue
