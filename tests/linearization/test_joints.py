@@ -9,7 +9,7 @@ from tests.algorithms.moving_robots import ROBOTS, load
 from tests.joints.test_actuators import all_kinds
 from tests.linearization.scenes import ASSETS, assert_exact, excite, motors_off, new_world, statuses, tighten
 
-from carom import PositionActuator
+from carom import Motor, PositionActuator
 from carom.description.pose import Pose
 from carom.layouts.codes import UserConstraintKind as Kind
 
@@ -146,6 +146,18 @@ def test_a_saturated_actuator_does_not_depend_on_its_control():
     step = assert_exact(world, controls=["actuators"])
     assert ("actuator of arm.lower", "at its upper bound") in step.rows
     assert not step.B.any()
+
+
+@pytest.mark.parametrize("control", [0.5, 3.0])
+def test_a_control_out_of_its_range_has_no_effect(control):
+    world = new_world()
+    body = world.load_urdf(ARM, fixed_base=True, as_pybullet=False)
+    body.add_actuator("direct", Motor("lower", control_range=(-1.0, 1.0)))
+    body.add_actuator("slow", PositionActuator("lower", kp=5.0, time_constant=0.1, control_range=(-1.0, 1.0)))
+    body.actuators.controls = [control, control]
+    step = assert_exact(world, controls=["actuators"])
+    # The slow one acts on its activation only.
+    assert step.B[:-1].any() == step.B[-1].any() == (control < 1.0)
 
 
 def test_several_steps_hold_controls_and_torques():
