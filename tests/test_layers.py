@@ -38,7 +38,7 @@ FLOORS = (
     {"carom.model"},
     {"carom.algorithms", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries", "carom.scene"},
-    {"carom.world_files"},
+    {"carom.linearization", "carom.world_files"},
     {"carom.render"},
     {"carom.camera_image", "carom.viewer"},
     {"carom.camera"},

@@ -74,6 +74,25 @@ def test_robot_info_lists_r2d2_and_lets_it_fall(example, capsys):
     assert len(record["height"]) == 15
 
 
+def test_the_cart_balances_the_pole(example):
+    balance = example("balance_cartpole")
+    record = balance.main()
+    assert max(map(abs, record["pole"])) < 0.2
+    assert abs(record["pole"][-1]) < 0.01
+    assert abs(record["cart"][-1]) < 0.1
+    # The gains are those of the infinite horizon: a step of them costs what the state is worth.
+    world, robot = balance.upright()
+    step = world.linearize([f"{robot.name}.{balance.FORCE}"])
+    cost, control_cost = np.eye(4), np.eye(1)
+    closed = step.A - step.B @ (gains := balance.lqr(step.A, step.B, cost, control_cost))
+    value, power = np.zeros((4, 4)), np.eye(4)
+    for _ in range(20000):
+        value += power.T @ (cost + gains.T @ control_cost @ gains) @ power
+        power = closed @ power
+    pushed = step.B.T @ value
+    assert gains == pytest.approx(np.linalg.solve(control_cost + pushed @ step.B, pushed @ step.A), rel=1e-6)
+
+
 def test_the_modern_api_example_reaches_its_goal(example):
     record = example("modern_api").main(duration=2.0)
     assert record["shoulder"][-1] == pytest.approx(record["path"][-1], abs=0.01)

@@ -35,6 +35,7 @@ from carom.scene.snapshot import Layout, Snapshot, layout, return_to, take
 from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
+from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
 from carom.world.pickling import Picklable
 from carom.world.poses import Derived, PoseUpdates
@@ -48,7 +49,15 @@ if TYPE_CHECKING:
 
 
 class World(
-    DescriptionLoading, ShapeAdding, SoftLoading, PoseUpdates, Recordable, Picklable, StateViews, Closed
+    DescriptionLoading,
+    ShapeAdding,
+    SoftLoading,
+    PoseUpdates,
+    Linearizing,
+    Recordable,
+    Picklable,
+    StateViews,
+    Closed,
 ):
     """Bodies that move under gravity, motors and limits.
 

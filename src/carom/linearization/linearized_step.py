@@ -1,0 +1,170 @@
+"""The linearisation of steps of a world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array
+from carom.linearization.exact import step_derivatives
+from carom.linearization.inputs import CONTROLS, PARAMETERS, Input, chosen_inputs
+from carom.linearization.stepping import copy_of, differences
+from carom.linearization.tangent import TangentSpace
+from carom.record import record
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+
+_SIZE = 1e-6
+
+
+@record(eq=False)
+class LinearizedStep:
+    """What steps of a world do to small changes: x⁺ = A x + B u + E p, y = C x + D u.
+
+    The state x has the changes of positions, then those of velocities, then those of activations of
+    actuators. A change of positions has one number for each velocity: it is the motion in a unit of time with
+    this number as velocity. For a free base these are a rotation vector [rad] and a displacement [m], in
+    world axes and about the centre of mass of the base, as angular and linear velocity in `World.velocity`;
+    for a spherical joint a rotation vector along the axes of its link; for a planar joint the angle, and
+    displacements along the axes of its link. `World.velocity` has the velocities. Bodies without anything
+    that moves have no part in the state.
+
+    Attributes:
+        A: By the state, (nx, nx).
+        B: By the controls, (nx, nu).
+        C: Outputs by the state, (ny, nx).
+        D: Outputs by the controls, (ny, nu).
+        E: By the parameters, (nx, np).
+        states: Names of the entries of x: "robot.elbow.position", "robot.base.turn.x.position"...
+        controls: Names of the entries of u: "robot.elbow.torque"...
+        parameters: Names of the entries of p: "robot.forearm.mass"...
+        rows: Names of the solver's rows in the last step and whether they hold or are at a bound; empty with
+            `method="differences"`.
+    """
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    E: Array
+    states: tuple[str, ...]
+    controls: tuple[str, ...]
+    parameters: tuple[str, ...]
+    rows: tuple[tuple[str, str], ...]
+
+
+def linearize(
+    world: World,
+    controls: Sequence[str],
+    parameters: Sequence[str],
+    steps: int,
+    method: str,
+    smoothing: float,
+    outputs: Callable[[World], ArrayLike] | None,
+) -> LinearizedStep:
+    """As `World.linearize`."""
+    if steps < 1:
+        raise ValueError(f"steps must be at least 1, not {steps}")
+    if method not in ("exact", "differences"):
+        raise ValueError(f"method must be 'exact' or 'differences', not {method!r}")
+    if not smoothing >= 0.0 or (smoothing and method != "exact"):
+        raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
+    world.prepare()
+    space = TangentSpace(world)
+    given = chosen_inputs(world, space, CONTROLS, controls, "control")
+    control_count = len(given)
+    given += chosen_inputs(world, space, PARAMETERS, parameters, "parameter")
+    rows: tuple[tuple[str, str], ...] = ()
+    if method == "differences":
+        by_state, by_input = differences(world, space, given, steps, _SIZE)
+    else:
+        by_state, by_input, rows = _exact(world, space, given, steps, smoothing)
+    seen, fed = _outputs(world, space, given[:control_count], steps, outputs)
+    return LinearizedStep(
+        A=by_state,
+        B=by_input[:, :control_count],
+        C=seen,
+        D=fed,
+        E=by_input[:, control_count:],
+        states=_state_names(space),
+        controls=tuple(it.name for it in given[:control_count]),
+        parameters=tuple(it.name for it in given[control_count:]),
+        rows=rows,
+    )
+
+
+def _state_names(space: TangentSpace) -> tuple[str, ...]:
+    dofs = [f"{label}.{end}" if end else label for label, end in space.labels]
+    of_positions, of_velocities = ([f"{dof}.{what}" for dof in dofs] for what in ("position", "velocity"))
+    return (*of_positions, *of_velocities, *(f"{name}.activation" for name in space.actuators))
+
+
+def _exact(
+    world: World, space: TangentSpace, given: list[Input], steps: int, smoothing: float
+) -> tuple[np.ndarray, np.ndarray, tuple[tuple[str, str], ...]]:
+    """The derivatives of steps, one after the other."""
+    if world.parameters.substep_count > 1:
+        raise NotImplementedError(
+            'steps of several substeps have no exact derivatives: use method="differences"'
+        )
+    copies = copy_of(world)
+    copies.keep_forces()
+    width = 2 * len(space) + len(space.activations)
+    by_state, by_input = np.eye(width), np.zeros((width, len(given)))
+    rows: tuple[tuple[str, str], ...] = ()
+    for _ in range(steps):
+        stepped, driven, rows = step_derivatives(world, space, given, copies, smoothing)
+        by_state, by_input = stepped @ by_state, stepped @ by_input + driven
+    return by_state, by_input, rows
+
+
+def _outputs(
+    world: World,
+    space: TangentSpace,
+    controls: list[Input],
+    steps: int,
+    outputs: Callable[[World], ArrayLike] | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Central differences of outputs after the steps, by states and by controls."""
+    width = 2 * len(space) + len(space.activations)
+    if outputs is None:
+        return np.zeros((0, width)), np.zeros((0, len(controls)))
+    scene = world.copy()
+    start = scene.snapshot()
+    columns: list[np.ndarray] = []
+    for number in range(width + len(controls)):
+        pair: list[np.ndarray] = []
+        for change in (_SIZE, -_SIZE):
+            scene.restore(start)
+            state = scene.arrays.state.numpy
+            if number < width:
+                _change_state(space, state, number, change)
+            else:
+                given = controls[number - width]
+                state[given.field][(0, *given.place)] += given.scale * change
+            forces = [(name, state[name].copy()) for name in ("dof_torque", "link_wrench")]
+            for _ in range(steps):
+                for name, kept in forces:
+                    scene.arrays.state.numpy[name][:] = kept
+                scene.step()
+            pair.append(np.array(outputs(scene), dtype=float).ravel())
+        columns.append((pair[0] - pair[1]) / (2.0 * _SIZE))
+    found = np.stack(columns, axis=1)
+    return found[:, :width], found[:, width:]
+
+
+def _change_state(space: TangentSpace, state: dict[str, np.ndarray], number: int, change: float) -> None:
+    """Add a change to an entry of the state of a world."""
+    dofs = len(space)
+    if number < dofs:
+        changes = np.zeros((1, dofs))
+        changes[0, number] = change
+        state["position"][:] = space.moved(state["position"], changes)
+    elif number < 2 * dofs:
+        state["dof_velocity"][0, space.dofs[number - dofs]] += change
+    else:
+        state["actuator_activation"][0, space.activations[number - 2 * dofs]] += change

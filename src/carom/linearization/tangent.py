@@ -1,0 +1,211 @@
+"""The tangent space of the states of a world: names, moving along it, differences, and integration."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, UNFILTERED, JointCode
+from carom.linearization.turns import (
+    cross,
+    inverse,
+    left_derivative,
+    matrix_of,
+    multiplied,
+    quaternion_of,
+    vector_of,
+)
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+_AXES = "xyz"
+
+
+class TangentSpace:
+    """Small changes of positions: one number for each velocity, the motion in a unit of time with it.
+
+    For a free base they are a rotation vector [rad] and a displacement [m] of its inertial frame, in world
+    axes, in the order of `World.velocity`; for a spherical joint a rotation vector along the axes of its
+    link; for a planar joint the angle, and displacements along the axes of its link; for others the change of
+    the position. Bases that are fixed have none.
+
+    Attributes:
+        bodies: The bodies that can move.
+        places: First dof and number of dofs of each of these.
+        dofs: Rows of `World.velocity` of all dofs, (n,).
+        labels: Names of the dofs in two parts: that of the joint or base, and which one of it, such as "x".
+        actuators: Names of the actuators with activations.
+        activations: Their rows in the arrays of actuators, (a,).
+    """
+
+    def __init__(self, world: World) -> None:
+        self.bodies: list[Body] = []
+        self.places: list[tuple[int, int]] = []
+        rows: list[int] = []
+        labels: list[tuple[str, str]] = []
+        # Pairs of a row of positions and a dof, for each kind of coordinates.
+        self._bases: list[tuple[int, int]] = []
+        self._scalars: list[tuple[int, int]] = []
+        self._balls: list[tuple[int, int]] = []
+        self._planes: list[tuple[int, int, float]] = []
+        self.actuators: list[str] = []
+        active: list[int] = []
+        for body in world.bodies.values():
+            label, first = body_label(world, body), len(rows)
+            if not body.fixed_base:
+                self._bases.append((body.first_position, len(rows)))
+                rows += range(body.first_velocity, body.first_velocity + BASE_VELOCITIES)
+                labels += [
+                    (f"{label}.base", f"{kind}.{axis}") for kind in ("turn", "shift") for axis in _AXES
+                ]
+            for joint, kind in enumerate(body.joint_types):
+                count, position = body.velocity_count[joint], body.position_index[joint]
+                if not count:
+                    continue
+                if kind == JointCode.SPHERICAL:
+                    self._balls.append((position, len(rows)))
+                elif kind == JointCode.PLANAR:
+                    link = body.first_link + 1 + joint
+                    model = world.arrays.model.numpy
+                    axis, first_axis, second_axis = (
+                        model[name][link]
+                        for name in ("link_unit_axis", "link_planar_axis1", "link_planar_axis2")
+                    )
+                    hand = float(np.sign(cross(axis, first_axis) @ second_axis))
+                    self._planes.append((position, len(rows), hand))
+                else:
+                    self._scalars.append((position, len(rows)))
+                rows += range(body.velocity_index[joint], body.velocity_index[joint] + count)
+                ends = _AXES[:count] if count > 1 else ("",)
+                labels += [(f"{label}.{body.spec.links[joint].joint_name}", end) for end in ends]
+            row = body.rows.first.get("actuator", 0)
+            for index, actuator in enumerate(body.spec.actuators):
+                if world.arrays.model.numpy["actuator_dynamics"][row + index] != UNFILTERED:
+                    active.append(row + index)
+                    self.actuators.append(f"{label}.{actuator.name}")
+            if len(rows) > first:
+                self.bodies.append(body)
+                self.places.append((first, len(rows) - first))
+        self.dofs: np.ndarray = np.array(rows, dtype=np.int64)
+        self.labels: list[tuple[str, str]] = labels
+        self.activations: np.ndarray = np.array(active, dtype=np.int64)
+        self._positions = np.array([row for row, _ in self._scalars], dtype=np.int64)
+        self._columns = np.array([dof for _, dof in self._scalars], dtype=np.int64)
+
+    def __len__(self) -> int:
+        return len(self.dofs)
+
+    def scalars(self, positions: np.ndarray) -> np.ndarray:
+        """Positions (n,) of the dofs of joints that have one, and 0 for others."""
+        found = np.zeros(len(self))
+        found[self._columns] = positions[self._positions]
+        return found
+
+    def ball_position(self, dof: int, positions: np.ndarray) -> np.ndarray:
+        """The quaternion (x, y, z, w) of the spherical joint whose first dof it is."""
+        q = next(row for row, first in self._balls if first == dof)
+        return positions[q : q + 4]
+
+    def moved(self, positions: np.ndarray, changes: np.ndarray) -> np.ndarray:
+        """Positions (m, coordinates) moved by changes (m, n): a new array."""
+        after = positions.copy()
+        after[:, self._positions] += changes[:, self._columns]
+        for q, dof in self._bases:
+            turn = quaternion_of(changes[:, dof : dof + 3])
+            after[:, q : q + 3] += changes[:, dof + 3 : dof + 6]
+            after[:, q + 3 : q + BASE_POSITIONS] = multiplied(turn, positions[:, q + 3 : q + BASE_POSITIONS])
+        for q, dof in self._balls:
+            turn = quaternion_of(changes[:, dof : dof + 3])
+            after[:, q : q + 4] = multiplied(positions[:, q : q + 4], turn)
+        for q, dof, hand in self._planes:
+            for world in range(len(after)):
+                turn = _plane_turn(hand * positions[world, q])
+                after[world, q] += changes[world, dof]
+                after[world, q + 1 : q + 3] += turn @ changes[world, dof + 1 : dof + 3]
+        return after
+
+    def difference(self, positions: np.ndarray, others: np.ndarray) -> np.ndarray:
+        """The changes (m, n) that lead from `others` (m, coordinates) to `positions`."""
+        changes = np.zeros((len(positions), len(self)))
+        changes[:, self._columns] = positions[:, self._positions] - others[:, self._positions]
+        for q, dof in self._bases:
+            turn = multiplied(positions[:, q + 3 : q + 7], inverse(others[:, q + 3 : q + 7]))
+            changes[:, dof : dof + 3] = vector_of(turn)
+            changes[:, dof + 3 : dof + 6] = positions[:, q : q + 3] - others[:, q : q + 3]
+        for q, dof in self._balls:
+            turn = multiplied(inverse(others[:, q : q + 4]), positions[:, q : q + 4])
+            changes[:, dof : dof + 3] = vector_of(turn)
+        for q, dof, hand in self._planes:
+            change = positions[:, q : q + 3] - others[:, q : q + 3]
+            changes[:, dof] = change[:, 0]
+            for world in range(len(changes)):
+                angle = 0.5 * hand * (positions[world, q] + others[world, q])
+                changes[world, dof + 1 : dof + 3] = _plane_turn(angle).T @ change[world, 1:]
+        return changes
+
+    def integration(self, velocity: np.ndarray, time_step: float) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the positions after a step by those before it and by the velocities after it.
+
+        Args:
+            velocity: The velocities after the step, (n,).
+            time_step: Its duration [s].
+
+        Returns:
+            Two matrices (n, n).
+        """
+        by_position, by_velocity = np.eye(len(self)), time_step * np.eye(len(self))
+        for _, dof in self._bases:
+            own = slice(dof, dof + 3)
+            turn = time_step * velocity[own]
+            by_position[own, own] = matrix_of(quaternion_of(turn))
+            by_velocity[own, own] = time_step * left_derivative(turn)
+        for _, dof in self._balls:
+            own = slice(dof, dof + 3)
+            turn = -time_step * velocity[own]
+            by_position[own, own] = matrix_of(quaternion_of(turn))
+            by_velocity[own, own] = time_step * left_derivative(turn)
+        for _, dof, hand in self._planes:
+            own = slice(dof + 1, dof + 3)
+            by_position[own, own] = _plane_turn(-hand * time_step * velocity[dof])
+            slid = hand * time_step * np.array([-velocity[dof + 2], velocity[dof + 1]])
+            by_position[own, dof], by_velocity[own, dof] = slid, time_step * slid
+        return by_position, by_velocity
+
+    def stretch(self, positions: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """By how much springs of joints are stretched (n,), and the derivatives by changes, (n, n).
+
+        Args:
+            positions: Positions of all coordinates.
+            rest: Positions of the springs, likewise.
+        """
+        found, by_position = np.zeros(len(self)), np.zeros((len(self), len(self)))
+        found[self._columns] = positions[self._positions] - rest[self._positions]
+        by_position[self._columns, self._columns] = 1.0
+        for q, dof in self._balls:
+            own = slice(dof, dof + 3)
+            turned = multiplied(inverse(rest[q : q + 4]), positions[q : q + 4])
+            found[own] = vector_of(turned)
+            by_position[own, own] = np.linalg.inv(left_derivative(-found[own]))
+        for q, dof, hand in self._planes:
+            own = slice(dof + 1, dof + 3)
+            change = positions[q : q + 3] - rest[q : q + 3]
+            found[dof] = change[0]
+            by_position[dof, dof] = 1.0
+            found[own] = _plane_turn(hand * positions[q]).T @ change[1:]
+            by_position[own, own] = np.eye(2)
+            by_position[own, dof] = -hand * np.array([-found[dof + 2], found[dof + 1]])
+        return found, by_position
+
+
+def _plane_turn(angle: float) -> np.ndarray:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])
+
+
+def body_label(world: World, body: Body) -> str:
+    """Name of a body, with its number if another has the same name."""
+    same = [other for other in world.bodies.values() if other.name == body.name]
+    return body.name if len(same) == 1 else f"{body.name}[{body.id}]"

@@ -1,0 +1,85 @@
+"""Rotations by rotation vectors: exponential map, logarithm, and their derivatives, for arrays of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_SMALL = 1e-6
+
+
+def cross_matrix(vectors: np.ndarray) -> np.ndarray:
+    """Matrices [v]x with [v]x w = v x w, (..., 3, 3), of vectors (..., 3)."""
+    matrices = np.zeros((*vectors.shape[:-1], 3, 3))
+    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    matrices[..., 0, 1], matrices[..., 0, 2], matrices[..., 1, 2] = -z, y, -x
+    matrices[..., 1, 0], matrices[..., 2, 0], matrices[..., 2, 1] = z, -y, x
+    return matrices
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross products of vectors (..., 3), as `numpy.cross`, in less time."""
+    found = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    found[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    found[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    found[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return found
+
+
+def quaternion_of(vectors: np.ndarray) -> np.ndarray:
+    """Quaternions (x, y, z, w), (..., 4), of rotation vectors (..., 3) [rad]."""
+    angles = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
+    return np.concatenate([0.5 * np.sinc(0.5 * angles / np.pi) * vectors, np.cos(0.5 * angles)], axis=-1)
+
+
+def vector_of(quaternions: np.ndarray) -> np.ndarray:
+    """Rotation vectors (..., 3) [rad] of unit quaternions (..., 4); their angles are at most π."""
+    sign = np.where(quaternions[..., 3:] < 0.0, -1.0, 1.0)
+    axes, cosines = sign * quaternions[..., :3], sign * quaternions[..., 3:]
+    sines = np.sqrt((axes * axes).sum(axis=-1, keepdims=True))
+    small = sines < _SMALL
+    return axes * np.where(small, 2.0, 2.0 * np.arctan2(sines, cosines) / np.where(small, 1.0, sines))
+
+
+def multiplied(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Products of quaternions (..., 4): first b, then a."""
+    vector = a[..., 3:] * b[..., :3] + b[..., 3:] * a[..., :3] + cross(a[..., :3], b[..., :3])
+    scalar = a[..., 3:] * b[..., 3:] - (a[..., :3] * b[..., :3]).sum(axis=-1, keepdims=True)
+    return np.concatenate([vector, scalar], axis=-1)
+
+
+def inverse(quaternions: np.ndarray) -> np.ndarray:
+    """Inverses of unit quaternions (..., 4)."""
+    return quaternions * np.array([-1.0, -1.0, -1.0, 1.0])
+
+
+def matrix_of(quaternions: np.ndarray) -> np.ndarray:
+    """Rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
+    skew = cross_matrix(quaternions[..., :3])
+    return np.eye(3) + 2.0 * quaternions[..., 3, None, None] * skew + 2.0 * skew @ skew
+
+
+def left_derivative(vector: np.ndarray) -> np.ndarray:
+    """The matrix L with exp(v + d) = exp(L d) exp(v) to first order, (3, 3), of a rotation vector (3,)."""
+    skew = cross_matrix(vector)
+    angle = float(np.sqrt(vector @ vector))
+    if angle < 1e-4:
+        return np.eye(3) + 0.5 * skew + skew @ skew / 6.0
+    first = (1.0 - np.cos(angle)) / angle**2
+    return np.eye(3) + first * skew + (angle - np.sin(angle)) / angle**3 * (skew @ skew)
+
+
+def euler_rates(rotation: np.ndarray) -> np.ndarray:
+    """Derivatives of the angles x, y, z of Rx Ry Rz by a rotation vector along the axes after it, (3, 3).
+
+    Args:
+        rotation: The rotation matrix, (3, 3); y is not a quarter turn.
+    """
+    sine = rotation[0, 2]
+    cosine = np.sqrt(1.0 - sine * sine)
+    z = np.arctan2(-rotation[0, 1], rotation[0, 0])
+    # The axes about which x, y and z turn, along the axes after the rotation.
+    about_x = rotation[0]
+    about_y = np.array([np.sin(z), np.cos(z), 0.0])
+    if cosine < _SMALL:
+        raise ValueError("a spherical motor is at a quarter turn, where its angles have no derivatives")
+    return np.linalg.inv(np.stack([about_x, about_y, [0.0, 0.0, 1.0]], axis=1))
