@@ -35,7 +35,7 @@ class _State:
         handlers: The same while the main thread is in a section.
         arrived: The signals that have come since, with the frames in which they did.
         note: Notes a signal; as a function in C it runs no line of Python.
-        tracers: The trace function and the profile function by thread, of those that have any.
+        tracers: The trace function and the profile function by thread, of those that have any; None for none.
         quiet: The threads in whose sections no garbage is collected.
         collects: Whether it was collected before the first of these began.
         changing: Held while these two change.
@@ -145,8 +145,10 @@ def _finish(thread: int) -> None:
             gc.enable()
     if thread in _State.tracers:
         trace, profile = _State.tracers[thread]
-        sys.setprofile(profile)
-        sys.settrace(trace)
+        if profile:
+            sys.setprofile(profile)
+        if trace:
+            sys.settrace(trace)
         _State.tracers.pop(thread, None)
     if _State.handlers and thread == threading.main_thread().ident:
         _bring_handlers_back()
@@ -198,6 +200,10 @@ def _deliver() -> None:
 
 
 def _put_tracers_aside(thread: int) -> None:
-    _State.tracers[thread] = sys.gettrace(), sys.getprofile()
-    sys.settrace(None)
-    sys.setprofile(None)
+    """Put functions of the user aside; `cProfile`, which runs no code of the user, could not be put back."""
+    trace, profile = sys.gettrace(), sys.getprofile()
+    _State.tracers[thread] = trace if callable(trace) else None, profile if callable(profile) else None
+    if callable(trace):
+        sys.settrace(None)
+    if callable(profile):
+        sys.setprofile(None)
