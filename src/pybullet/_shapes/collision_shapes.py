@@ -225,7 +225,9 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
     elif shape.used:
         logger.warning("removeCollisionShape: shape %d stays, because a body has been made of it.", number)
     elif shape.lasts:
-        logger.warning("removeCollisionShape: shape %d stays, as height fields and meshes of files do.", number)
+        logger.warning(
+            "removeCollisionShape: shape %d stays, as height fields and meshes of files do.", number
+        )
     else:
         client.shapes.collisions.remove(number)
 
