@@ -63,8 +63,8 @@ def page(record: dict[str, dict[str, Outcome]]) -> str:
         same = sum(outcome["same"] for outcome in runs.values())
         counted = f"{same} of {len(runs)} recorded scripts come to the same." if runs else "Not recorded."
         lines.append(
-            f"{counted} {len(scripts.left_out)} others are left out: they need a headset, a second process or "
-            "a person.\n"
+            f"{counted} {len(scripts.left_out)} others are left out: they need a headset, a second process "
+            "or a person.\n"
         )
         if runs:
             lines += [*_head("script"), *(_row(f"`{name}`", runs[name]) for name in sorted(runs))]
