@@ -19,8 +19,8 @@ Shape = TypeVar("Shape")
 class CollisionShape:
     """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 
-    `used`: whether a body was made of it. `lasts`: whether it cannot be removed: in PyBullet height fields and
-    triangle meshes of files keep their ids.
+    `used`: whether a body was made of it. `lasts`: whether it cannot be removed: in PyBullet height fields
+    and triangle meshes of files keep their ids.
     """
 
     collisions: tuple[Collision, ...]

@@ -40,7 +40,10 @@ def keep_flags_of_colours(client: Client, flags: int) -> None:
 
 
 def with_flags_of_colours(client: Client, flags: int) -> int:
-    """Flags whose bits about colours are those of the last `loadURDF`, as in PyBullet; `loadSDF` clears them."""
+    """Flags whose bits about colours are those of the last `loadURDF`, as in PyBullet.
+
+    `loadSDF` clears them.
+    """
     from carom.layouts.flags import LoadFlags
 
     return (flags & ~int(LoadFlags.COLOURS)) | client.flags_of_colours
