@@ -17,6 +17,7 @@ from pathlib import Path
 
 from tests.clients.catalogue import KNOWN, SCRIPTS, SUITES, Scripts, Suite
 from tests.clients.outcome import Run, Verdict, compare_runs, compare_tests, read_tests
+from tests.clients.page import PAGE, note, page, read
 
 WATCH = Path(__file__).with_name("watch.py")
 STEPS = 240
@@ -154,6 +155,7 @@ def main() -> int:
     parser.add_argument("--work", type=Path, required=True, help="folder for what the runs write")
     parser.add_argument("--sources", type=Path, help="folder of the repositories")
     parser.add_argument("names", nargs="*", help="of suites and scripts; all where none are given")
+    parser.add_argument("--record", action="store_true", help="note the outcomes, and make their page anew")
     options = parser.parse_args()
     work = options.work.absolute()
     interpreters = {"oracle": options.oracle.absolute(), "carom": options.carom.absolute()}
@@ -165,11 +167,18 @@ def main() -> int:
             verdict = run_suite(bench, name, suite)
             _say(name, verdict)
             good &= verdict.good
+            if options.record:
+                note(name, name, same=verdict.good, text=verdict.text)
     wanted = [name for name in options.names if name not in SUITES]
     if wanted or not options.names:
         for name, scripts in SCRIPTS.items():
             print(f"\n{name}:")
-            good &= all(verdict.good for _, verdict in run_scripts(bench, name, scripts, wanted))
+            verdicts = run_scripts(bench, name, scripts, wanted)
+            good &= all(verdict.good for _, verdict in verdicts)
+            for script, verdict in verdicts if options.record else ():
+                note(name, script, same=verdict.good, text=verdict.text)
+    if options.record:
+        PAGE.write_text(page(read()), encoding="utf-8")
     return 0 if good else 1
 
 

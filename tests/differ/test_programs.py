@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from tools.differ.compare import compare, difference
 from tools.differ.each_call import CALLS, programs_of_getters
-from tools.differ.known import KNOWN, statement
+from tools.differ.known import KNOWN
 from tools.differ.minimise import Minimiser
 from tools.differ.pair import ROOT, Outcome
 from tools.differ.perform import perform
@@ -150,52 +150,6 @@ def test_programs_are_made_short():
     short, found = Minimiser(Fake(), "b", budget=200).minimise(calls)  # pyright: ignore[reportArgumentType]
     assert found and found.call == 1
     assert short == [call(4, "a", 0.1), call(15, "b", size=0.8)]
-
-
-def test_a_difference_is_known_only_where_the_program_has_its_cause():
-    calls = [call(0, "changeDynamics", {"$": 0}, -1, mass=2), call(1, "calculateMassMatrix", {"$": 0}, [0.0])]
-    found = compare(calls, outcome(["ok", None], ["ok", [1.0]]), outcome(["ok", None], ["ok", [2.0]]))
-    says = statement(calls, found[0])
-    assert says and "remembers masses" in says
-    calls[0] = call(0, "resetJointState", {"$": 0}, 0, 0.5)
-    assert statement(calls, found[0]) is None
-
-
-def limited(joint: int, **limits: float) -> list[Call]:
-    """A program that gives limits to a joint, spherical if it is the first, else revolute, and steps."""
-    body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0])
-    return [body, call(1, "changeDynamics", {"$": 0}, joint, **limits), call(2, "@probe")]
-
-
-@pytest.mark.parametrize(
-    ("calls", "is_known"),
-    [
-        (limited(0, jointLowerLimit=-1.0, jointUpperLimit=1.0), True),
-        (limited(1, jointLowerLimit=-1.0, jointUpperLimit=1.0), False),
-        (limited(0, jointLowerLimit=1.0, jointUpperLimit=-1.0), False),
-        (limited(0, jointLowerLimit=-1.0), False),
-    ],
-)
-def test_only_limits_of_joints_that_have_none_are_known_to_stop_the_solver(calls: list[Call], is_known: bool):
-    results = [["ok", 0], ["ok", None]]
-    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
-    assert bool(statement(calls, found[0])) == is_known
-
-
-def tied(mass: float, parent_link: int) -> list[Call]:
-    """A program that ties a body of a mass to the world."""
-    tie = call(1, "createConstraint", {"$": 0}, parent_link, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
-    return [call(0, "createMultiBody", mass), tie, call(2, "@probe")]
-
-
-@pytest.mark.parametrize(("mass", "link", "is_known"), [(0, -1, True), (1, -1, False), (0, 0, False)])
-def test_only_constraints_of_what_cannot_move_are_known_to_stop_the_solver(
-    mass: float, link: int, is_known: bool
-):
-    calls = tied(mass, link)
-    results = [["ok", 0], ["ok", 1]]
-    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
-    assert bool(statement(calls, found[0])) == is_known
 
 
 def test_of_deep_contacts_only_the_links_are_compared():

@@ -32,7 +32,13 @@ URDFS = [name for name in FILES if name.endswith(".urdf")]
 ROBOTS = [name for name in URDFS if FILES[name][0]]
 SMALL = [name for name in URDFS if len(FILES[name][0]) < 2 and "plane" not in name]
 SCENES = [name for name in FILES if not name.endswith(".urdf")]
-AT_LIMITS: frozenset[str] = frozenset(
-    json.loads(Path(__file__).with_name("at_limits.json").read_text(encoding="utf-8"))
-)
+
+
+def _names(table: str) -> frozenset[str]:
+    return frozenset(json.loads(Path(__file__).with_name(table).read_text(encoding="utf-8")))
+
+
+AT_LIMITS = _names("at_limits.json")
 """Files with a joint that stands exactly at one of its limits when it is loaded."""
+IMMOVABLE = _names("immovable.json")
+"""Files with a body whose base cannot move."""

@@ -1,6 +1,7 @@
 """Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
 
-`at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded.
+`at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
+`immovable.json` those with a body whose base cannot move.
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -58,7 +59,7 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, limits = [], []
+    lines, limits, immovable = [], [], []
     for name in names:
         if any(word in name for word in LEFT_OUT) or not loads(name):
             continue
@@ -69,9 +70,12 @@ def main():
         types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
         if any(map(at_limit, bodies)):
             limits.append(name)
+        if any(p.getDynamicsInfo(body, -1)[0] == 0 for body in bodies):
+            immovable.append(name)
         lines.append(f"{json.dumps(name)}: {json.dumps(types, separators=(',', ':'))}")
-    with open(os.path.join(folder, "at_limits.json"), "w") as file:
-        file.write(json.dumps(limits, indent=1) + "\n")
+    for table, rows in (("at_limits", limits), ("immovable", immovable)):
+        with open(os.path.join(folder, f"{table}.json"), "w") as file:
+            file.write(json.dumps(rows, indent=1) + "\n")
     with open(os.path.join(folder, "assets.json"), "w") as file:
         file.write("{\n" + ",\n".join(lines) + "\n}\n")
 

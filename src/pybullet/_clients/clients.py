@@ -44,6 +44,7 @@ class Client:
         origins: The calls that loaded bodies from files, by body id.
         maximal: Ids of the bodies for which the script asked for maximal coordinates; external forces act
             twice on them in a deformable world.
+        flags_of_colours: Flags of the last `loadURDF` that say which colours meshes have; 0 after `loadSDF`.
         real_time: `useRealTimeSimulation` as the script set it.
         server: The server for other processes, if there is one.
         latest_search_path: The last search directory set in this process: PyBullet has only one for all
@@ -68,6 +69,7 @@ class Client:
         self.plugins = Plugins()
         self.origins: dict[int, Origin] = {}
         self.maximal: set[int] = set()
+        self.flags_of_colours = 0
         self.states: dict[int, Snapshot] = {}
         self.clock: RealTimeClock | None = None
         self.server: Served | None = None

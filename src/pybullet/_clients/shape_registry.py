@@ -19,12 +19,14 @@ Shape = TypeVar("Shape")
 class CollisionShape:
     """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 
-    `used`: whether a body was made of it.
+    `used`: whether a body was made of it. `lasts`: whether it cannot be removed: in PyBullet height fields
+    and triangle meshes of files keep their ids.
     """
 
     collisions: tuple[Collision, ...]
     visuals: tuple[Visual, ...]
     used: bool = False
+    lasts: bool = False
 
 
 class ShapeTable(Generic[Shape]):

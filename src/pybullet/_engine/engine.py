@@ -427,6 +427,16 @@ def _change(client: Client, **changes: Any) -> None:
     with client.lock:
         if all(getattr(parameters, field) == value for field, value in changes.items()):
             return
+        before = parameters.substep_time
         for field, value in changes.items():
             setattr(parameters, field, value)
         client.world.apply_parameters()
+        if parameters.substep_time != before:
+            _keep_forces_of_constraints(client, parameters.substep_time / before)
+
+
+def _keep_forces_of_constraints(client: Client, ratio: float) -> None:
+    """Let `getConstraintState` go on reporting the forces of the last step: impulses follow the time step."""
+    constraints, state = client.world.user_constraints, client.world.arrays.state
+    if len(constraints):
+        constraints.set_impulses(state, constraints.all_impulses(state) * ratio)

@@ -12,7 +12,7 @@ from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
 from pybullet._clients.origins import FileLoad
-from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
+from pybullet._loading.new_bodies import add_bodies, keep_flags_of_colours, warn_of_coordinates
 
 __all__ = ["loadURDF", "setAdditionalSearchPath"]
 
@@ -143,7 +143,9 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         takes_pose=True,
     )
     poses = [(spec, Pose(position, orientation))]
-    return add_bodies(client, poses, _CANNOT_LOAD, load, maximal=maximal > 0)[0]
+    body = add_bodies(client, poses, _CANNOT_LOAD, load, maximal=maximal > 0)[0]
+    keep_flags_of_colours(client, flags)
+    return body
 
 
 _DEFAULTS = {

@@ -13,7 +13,12 @@ from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.origins import FileLoad
-from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
+from pybullet._loading.new_bodies import (
+    add_bodies,
+    keep_flags_of_colours,
+    warn_of_coordinates,
+    with_flags_of_colours,
+)
 
 if TYPE_CHECKING:
     from carom.formats.search import AssetSearch
@@ -72,7 +77,9 @@ def loadSDF(
         return sdf_bodies(Path(name), search, scale=scale, words_are_true=False)
 
     load = FileLoad("loadSDF", {"globalScaling": scaling})
-    return _load(client, read, _CANNOT_LOAD_SDF, load, maximal=maximal > 0)
+    bodies = _load(client, read, _CANNOT_LOAD_SDF, load, maximal=maximal > 0)
+    keep_flags_of_colours(client, 0)
+    return bodies
 
 
 @exported
@@ -116,7 +123,7 @@ def loadMJCF(
     def read(search: AssetSearch) -> list[PlacedBody]:
         from carom.model.from_files import mjcf_bodies
 
-        return mjcf_bodies(Path(name), search, flags=bits, as_mujoco=False)
+        return mjcf_bodies(Path(name), search, flags=with_flags_of_colours(client, bits), as_mujoco=False)
 
     load = FileLoad("loadMJCF", {"flags": bits})
     return _load(client, read, _CANNOT_LOAD_MJCF, load, maximal=maximal)

@@ -27,7 +27,7 @@ from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.shape_registry import ShapeTable
-from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates
+from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates, with_flags_of_colours
 
 if TYPE_CHECKING:
     from carom.model.body_spec import BodySpec
@@ -194,7 +194,7 @@ def createMultiBody(
     else:
         robot = _alone(client, *base)
     warn_of_coordinates("createMultiBody", maximal, client)
-    spec = _assembled(robot, max(bits, 0))
+    spec = _assembled(robot, with_flags_of_colours(client, max(bits, 0)))
     poses = [Pose(place, pose.orientation) for place in batch or [pose.position]]
     ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED, maximal=maximal > 0)
     for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):

@@ -32,6 +32,23 @@ def warn_of_coordinates(
         logger.warning("%s: %s has no effect; bodies have reduced coordinates.", function, argument)
 
 
+def keep_flags_of_colours(client: Client, flags: int) -> None:
+    """Note which colours a file was loaded with: what comes without flags of its own gets them, too."""
+    from carom.layouts.flags import LoadFlags
+
+    client.flags_of_colours = flags & int(LoadFlags.COLOURS)
+
+
+def with_flags_of_colours(client: Client, flags: int) -> int:
+    """Flags whose bits about colours are those of the last `loadURDF`, as in PyBullet.
+
+    `loadSDF` clears them.
+    """
+    from carom.layouts.flags import LoadFlags
+
+    return (flags & ~int(LoadFlags.COLOURS)) | client.flags_of_colours
+
+
 def add_bodies(
     client: Client,
     bodies: Sequence[tuple[BodySpec, Pose]],

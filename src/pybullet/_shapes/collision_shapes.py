@@ -118,6 +118,7 @@ def createCollisionShape(
             replace_heights(client, replaced, heights, _FAILED)
             return replaced
         shape = _placed(heightfield(heights, scale_of(meshScale, _FAILED), _FAILED), IDENTITY)
+        shape.lasts = True
     else:
         fail(_FAILED, f"There is no type of shape {kind}.")
     _check_pieces(shape, _FAILED)
@@ -193,6 +194,7 @@ def createCollisionShapeArray(
         CollisionShape(
             tuple(collision for shape in parts for collision in shape.collisions),
             tuple(visual for shape in parts for visual in shape.visuals),
+            lasts=any(shape.lasts for shape in parts),
         )
     )
 
@@ -201,7 +203,8 @@ def createCollisionShapeArray(
 def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> None:
     """Removes a collision shape. Nothing happens if it does not exist, or if a body was made of it.
 
-    The next shape gets its id.
+    The next shape gets its id. As in PyBullet height fields, and triangle meshes of files
+    (`GEOM_FORCE_CONCAVE_TRIMESH`) that are a shape by themselves, stay.
 
     Args:
         collisionShapeId: The shape.
@@ -221,6 +224,10 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
         logger.warning("removeCollisionShape: there is no shape %d.", number)
     elif shape.used:
         logger.warning("removeCollisionShape: shape %d stays, because a body has been made of it.", number)
+    elif shape.lasts:
+        logger.warning(
+            "removeCollisionShape: shape %d stays, as height fields and meshes of files do.", number
+        )
     else:
         client.shapes.collisions.remove(number)
 
@@ -263,7 +270,8 @@ def _mesh_from_file(
         if is_part and isinstance(geometry, TriangleMesh):
             geometry = replace(geometry, margin=_MARGIN)
         collisions.append(Collision(geometry, pose))
-    return CollisionShape(tuple(collisions), (Visual(replace(mesh, concave=False), pose, stands_in=True),))
+    visual = Visual(replace(mesh, concave=False), pose, stands_in=True)
+    return CollisionShape(tuple(collisions), (visual,), lasts=mesh.concave and not is_part)
 
 
 def _heights(client: Client, name: str | None, data: Any, rows: Any, columns: Any) -> NDArray[np.float64]:

@@ -185,3 +185,19 @@ def test_a_turntable_turns_things_and_a_lift_lifts_them(client: int) -> None:
     velocity, spin = p.getBaseVelocity(box)
     assert velocity == pytest.approx((0, 0, 0.3), abs=1e-2)
     assert spin == pytest.approx((0, 0, 1), abs=1e-3)
+
+
+def test_soft_contacts_that_are_not_solved_do_not_push(client: int) -> None:
+    """A gap beyond `contactProcessingThreshold` has no row; softness does not make one of it."""
+    p.setGravity(0, 0, -10)
+    p.setPhysicsEngineParameter(fixedTimeStep=0.01, numSolverIterations=1, globalCFM=1e-6)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    ball = p.createMultiBody(2.0, p.createCollisionShape(p.GEOM_SPHERE, radius=0.2), -1, [0, 0, 0.201])
+    p.changeDynamics(ball, -1, contactProcessingThreshold=0)
+    p.resetBaseVelocity(ball, [0, 0, -0.6])
+    heights = []
+    for _ in range(3):
+        p.stepSimulation()
+        heights.append(p.getBasePositionAndOrientation(ball)[0][2])
+    expected = (0.1940038399999142, 0.19448103907936798, 0.19492156324800303)
+    assert heights == pytest.approx(expected, abs=1e-12)

@@ -91,6 +91,18 @@ def test_forces_stay_with_their_constraint_when_others_come_and_go() -> None:
 
 
 @pytest.mark.usefixtures("balls")
+def test_forces_are_those_of_the_last_step_when_the_time_step_changes() -> None:
+    constraint = weld()
+    p.stepSimulation()
+    forces = p.getConstraintState(constraint)
+    assert any(forces)
+    p.setPhysicsEngineParameter(numSubSteps=4)
+    assert p.getConstraintState(constraint) == pytest.approx(forces, rel=1e-12)
+    p.setTimeStep(0.01)
+    assert p.getConstraintState(constraint) == pytest.approx(forces, rel=1e-12)
+
+
+@pytest.mark.usefixtures("balls")
 def test_a_restored_state_has_the_forces_of_its_constraints() -> None:
     first, second = make(), weld()
     p.stepSimulation()

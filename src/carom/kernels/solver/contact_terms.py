@@ -193,6 +193,9 @@ def contact_terms(
         shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
     )
     terms.ignored = Int32(terms.distance > solved_up_to)
+    if terms.ignored != 0:
+        # Rows without inverse mass are off; softness alone would make them push without bound.
+        terms.softness = real(0.0)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b
     )

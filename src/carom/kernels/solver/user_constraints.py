@@ -202,6 +202,24 @@ def joint_position(model: Model, state: State, world: Int32, link: Int32) -> rea
 
 
 @func
+def geared_position(model: Model, state: State, users: UserConstraints, world: Int32, user: Int32) -> real:
+    """Position of a gear's joint b, of which an error is taken.
+
+    As in PyBullet it is that of the link of a's body with the number that b has in its own; b's own where
+    there is no such link. The two only differ for gears between two bodies.
+    """
+    link_b = users.user_link_b[user]
+    tree_a, tree_b = users.user_tree_a[user], users.user_tree_b[user]
+    number = link_b - model.tree[tree_b].first_link
+    if number < model.tree[tree_a].link_count:
+        link_b = model.tree[tree_a].first_link + number
+    position = real(0.0)
+    if model.link[link_b].dof_count > 0:
+        position = joint_position(model, state, world, link_b)
+    return position
+
+
+@func
 def add_gear_row(
     settings: Settings,
     model: Model,
@@ -222,8 +240,8 @@ def add_gear_row(
     error = real(0.0)
     auxiliary_rate = state.dof_velocity[world, model.link[auxiliary].first_dof] if auxiliary >= 0 else 0.0
     if users.user_erp[user] != 0.0:
-        angle = joint_position(model, state, world, link_a) + ratio * joint_position(
-            model, state, world, link_b
+        angle = joint_position(model, state, world, link_a) + ratio * geared_position(
+            model, state, users, world, user
         )
         if auxiliary >= 0:
             angle -= joint_position(model, state, world, auxiliary)

@@ -1,0 +1,174 @@
+"""Which differences the fuzzer takes for known: only those whose cause is in the program."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from tests.differ.test_programs import call, outcome, state
+from tools.differ.compare import Difference, compare
+from tools.differ.known import statement
+from tools.differ.programs import Call
+from tools.differ.values import Place
+
+BODY = {"$": 0}
+BOX, CUBE = call(0, "createMultiBody", 1), "cube_small.urdf"
+STEP, PROBE = call(50, "stepSimulation"), call(60, "@probe")
+CHANGE, ASK = call(1, "changeDynamics", BODY, -1, mass=2), call(2, "calculateMassMatrix", BODY, [0.0])
+BOUNCE = call(1, "changeDynamics", BODY, -1, restitution=0.5)
+
+
+def is_known(calls: list[Call], field: str, theirs: Any, ours: Any) -> bool:
+    """Whether a difference in what the last call returns is one that docs/differences states."""
+    place = Place(field, theirs, ours)
+    return statement(calls, Difference(len(calls) - 1, calls[-1]["f"], place, "free")) is not None
+
+
+@pytest.mark.parametrize(
+    ("calls", "expected"),
+    [
+        ([BOX, ASK, CHANGE, ASK], True),
+        ([BOX, CHANGE, ASK], False),
+        ([BOX, ASK, BOUNCE, ASK], False),
+        ([BOX, call(2, "calculateMassMatrix", {"$": 7}, [0.0]), CHANGE, ASK], False),
+    ],
+)
+def test_masses_are_remembered_from_the_first_question(calls: list[Call], expected: bool):
+    assert is_known(calls, "", 1.0, 2.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("body", "changes", "expected"),
+    [
+        (call(0, "loadURDF", CUBE), [], False),
+        (call(0, "loadURDF", CUBE, useFixedBase=1), [], True),
+        (call(0, "loadURDF", CUBE), [call(1, "changeDynamics", BODY, -1, mass=0.0)], True),
+        (call(0, "loadURDF", "cartpole.urdf"), [], True),
+    ],
+)
+def test_a_body_is_fixed_by_its_call_or_file(body: Call, changes: list[Call], expected: bool):
+    tie = call(2, "createConstraint", BODY, -1, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
+    assert is_known([body, *changes, tie, PROBE], "base.0.0", 0.0, 1e-6) == expected
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ours", "near", "expected"),
+    [
+        (100, 200, 0.1, True),
+        (100, 200, 0.0, True),
+        (100, 200, 0.01, False),
+        (200, 100, 0.1, False),
+    ],
+)
+def test_shadows_darken_pybullets_pixels(theirs: int, ours: int, near: float, expected: bool):
+    lens = call(1, "computeProjectionMatrixFOV", 60, 1, near, 10)
+    calls = [call(0, "computeViewMatrix"), lens, call(2, "getCameraImage", 4, 4, {"whole": 0}, {"whole": 1})]
+    said = f"9 of 16 differ: {[theirs, theirs, theirs, 255]} of -1"
+    assert is_known(calls, "colour", said, [ours, ours, ours, 255]) == expected
+
+
+@pytest.mark.parametrize(("kind", "expected"), [(2, True), (7, True), (3, False)])
+def test_only_round_shapes_are_round(kind: int, expected: bool):
+    calls = [call(0, "createVisualShape", kind), call(1, "getCameraImage")]
+    assert is_known(calls, "depth", "9 of 16 differ: 0.9 of 0", 0.8) == expected
+    assert not is_known(calls, "depth", "9 of 16 differ: 0.8 of 0", 0.9)
+
+
+RIGHT = call(10, "resetBasePositionAndOrientation", BODY, [0, 0, 0], [0, 0, 0, 1])
+TILTED = call(10, "resetBasePositionAndOrientation", BODY, [0, 0, 0], [0.4, -0.6, 0.6, 0.3])
+
+
+@pytest.mark.parametrize(
+    ("field", "before", "expected"),
+    [("missing", [STEP], True), ("new", [STEP], False), ("new", [STEP, RIGHT], True)],
+)
+def test_bounds_are_those_of_the_last_step(field: str, before: list[Call], expected: bool):
+    calls = [BOX, *before, call(52, "getOverlappingObjects")]
+    assert is_known(calls, field, [], [[0, -1]]) == expected
+
+
+@pytest.mark.parametrize(("types", "expected"), [([0], True), ([4], False), ([], False)])
+def test_velocities_of_links_need_joints(types: list[int], expected: bool):
+    made = call(0, "createMultiBody", 1, flags=256, linkJointTypes=types)
+    assert is_known([made, PROBE], "base.0.0", 0.0, 1e-6) == expected
+
+
+@pytest.mark.parametrize(
+    ("distance", "apart", "expected"),
+    [(0.0999, 0.0999, True), (0.1001, 0.1001, False), (0.0995, 0.0995, False), (0.0999, 0.1, False)],
+)
+def test_nearest_points_may_be_a_little_nearer(distance: float, apart: float, expected: bool):
+    theirs = [0, 0, 1, -1, -1, [0.0] * 3, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 0.1]
+    ours = [*theirs[:6], [apart, 0.0, 0.0], theirs[7], distance]
+    calls = [call(0, "getClosestPoints", BODY, {"$": 1}, 1.0)]
+    assert is_known(calls, "distance", theirs, ours) == expected
+
+
+@pytest.mark.parametrize(("bound", "expected"), [(0, True), (1.0, False)])
+def test_contacts_are_asked_for_at_a_distance_of_0_only(bound: float, expected: bool):
+    assert is_known([call(0, "getClosestPoints", BODY, {"$": 1}, bound)], "pairs", [], [[0]]) == expected
+
+
+TIE = call(5, "createConstraint", BODY, 0, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
+BOUNDS = call(11, "getAABB", BODY)
+
+
+@pytest.mark.parametrize(
+    ("calls", "expected"),
+    [
+        ([BOX, TILTED, STEP, BOUNDS], True),
+        ([BOX, TILTED, STEP, STEP, BOUNDS], False),
+        ([BOX, RIGHT, STEP, BOUNDS], False),
+        ([BOX, TIE, TILTED, STEP, PROBE], True),
+        ([BOX, TILTED, STEP, PROBE], False),
+    ],
+)
+def test_what_is_no_rotation_is_felt_for_one_step(calls: list[Call], expected: bool):
+    assert is_known(calls, ".0", 0.0, 0.1) == expected
+
+
+@pytest.mark.parametrize(
+    ("turn", "expected"), [([1, 0, 0, 0], True), ([0, 0, math.sqrt(0.5), math.sqrt(0.5)], False)]
+)
+def test_half_a_turn_of_a_spherical_joint(turn: list[float], expected: bool):
+    body = call(0, "createMultiBody", 1, linkJointTypes=[2])
+    calls = [body, call(1, "resetJointStateMultiDof", BODY, 0, turn), STEP, PROBE]
+    assert is_known(calls, "base.0.0", 0.0, 0.1) == expected
+
+
+def limited(joint: int, **limits: float) -> list[Call]:
+    """A program that gives limits to a joint, spherical if it is the first, else revolute, and steps."""
+    body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0])
+    return [body, call(1, "changeDynamics", {"$": 0}, joint, **limits), call(2, "@probe")]
+
+
+@pytest.mark.parametrize(
+    ("calls", "expected"),
+    [
+        (limited(0, jointLowerLimit=-1.0, jointUpperLimit=1.0), True),
+        (limited(1, jointLowerLimit=-1.0, jointUpperLimit=1.0), False),
+        (limited(0, jointLowerLimit=1.0, jointUpperLimit=-1.0), False),
+        (limited(0, jointLowerLimit=-1.0), False),
+    ],
+)
+def test_only_limits_of_joints_that_have_none_are_known_to_stop_the_solver(calls: list[Call], expected: bool):
+    results = [["ok", 0], ["ok", None]]
+    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
+    assert bool(statement(calls, found[0])) == expected
+
+
+def tied(mass: float, parent_link: int) -> list[Call]:
+    """A program that ties a body of a mass to the world."""
+    tie = call(1, "createConstraint", {"$": 0}, parent_link, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
+    return [call(0, "createMultiBody", mass), tie, call(2, "@probe")]
+
+
+@pytest.mark.parametrize(("mass", "link", "expected"), [(0, -1, True), (1, -1, False), (0, 0, False)])
+def test_only_constraints_of_what_cannot_move_are_known_to_stop_the_solver(
+    mass: float, link: int, expected: bool
+):
+    calls = tied(mass, link)
+    results = [["ok", 0], ["ok", 1]]
+    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
+    assert bool(statement(calls, found[0])) == expected

@@ -1,0 +1,304 @@
+"""What may cause a difference: what differs, and what the program has done before."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from tools.differ.assets import AT_LIMITS, FILES, FIXED, GEAR, IMMOVABLE, PRISMATIC, SPHERICAL
+from tools.differ.compare import Difference
+from tools.differ.programs import Call
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A difference, and the calls before it."""
+
+    difference: Difference
+    before: Sequence[Call]
+
+    @property
+    def call(self) -> Call:
+        """The call whose result differs."""
+        return self.before[-1]
+
+    def differs(self, *beginnings: str) -> bool:
+        """Whether the signature begins with one of some texts."""
+        return self.difference.signature.startswith(beginnings)
+
+    def has(self, function: str, keyword: str = "") -> bool:
+        """Whether a function was called before, with a keyword."""
+        return any(call["f"] == function and (not keyword or keyword in call["k"]) for call in self.before)
+
+    def loads(self, ending: str) -> bool:
+        """Whether a file of some kind was loaded."""
+        return any(
+            call["f"].startswith("load") and str(call["a"][:1]).endswith(f"{ending}']")
+            for call in self.before
+        )
+
+
+MASSES = (
+    "calculateMassMatrix",
+    "calculateInverseDynamics",
+    "calculateJacobian",
+    "calculateInverseKinematics",
+)
+SHAPE_OF_HEIGHTS = 9
+_INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
+# Balls, cylinders and capsules.
+_ROUND = frozenset({2, 4, 7})
+_NEAR_PLANE_OF_SHADOWS = 0.05
+_HALF_A_TURN = 1e-6
+_NO_ROTATION = 1e-6
+_LEFT_OVER = 1e-4
+_EXCHANGED, _AS_NEAR = 1e-3, 1e-4
+_TOO_FAR, _ROUNDED = 2e-4, 1e-9
+OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
+NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
+GLOBAL_VELOCITIES = 256
+_POSITION_CONTROL = 2
+
+
+def error(seen: Seen) -> str:
+    """The text of Carom's error, where only Carom raises one."""
+    ours = seen.difference.place.ours
+    return str(ours[1]) if seen.difference.place.field == "ok/error" else ""
+
+
+def pybullet_raises(seen: Seen) -> bool:
+    return seen.difference.place.field == "error/ok"
+
+
+def _joint_types(seen: Seen) -> dict[int, list[int]]:
+    """The types of the joints of bodies, by the call that made the body."""
+    types = {call["id"]: list(call["k"].get("linkJointTypes", ())) for call in seen.before}
+    for call in seen.before:
+        if call["f"] == "loadURDF":
+            types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
+    return types
+
+
+def has_joints(seen: Seen, call: Call) -> bool:
+    """Whether the body that a call makes has joints that move."""
+    return any(kind != FIXED for kind in _joint_types(seen).get(call["id"], ()))
+
+
+def _balls(seen: Seen) -> set[tuple[int, int]]:
+    """The spherical joints of bodies: the call that made the body, and the joint."""
+    return {
+        (body, joint)
+        for body, joints in _joint_types(seen).items()
+        for joint, kind in enumerate(joints)
+        if kind == SPHERICAL
+    }
+
+
+def aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
+    """Whether position control of one number drives a spherical joint."""
+    balls = _balls(seen)
+    return any(
+        call["f"] == "setJointMotorControl2"
+        and call["a"][2] == _POSITION_CONTROL
+        and (call["a"][0]["$"], call["a"][1]) in balls
+        for call in seen.before
+    )
+
+
+def starts_with_a_ball_joint(seen: Seen) -> bool:
+    """Whether inverse kinematics of a body with a spherical joint is given `currentPositions`."""
+    asks = seen.call["f"].startswith("calculateInverseKinematics") and "currentPositions" in seen.call["k"]
+    return asks and any(body == seen.call["a"][0].get("$") for body, _ in _balls(seen))
+
+
+def _poses(seen: Seen) -> Iterator[Call]:
+    """The constraints made before that hold poses: not gears, nor points alone."""
+    for call in seen.before:
+        if call["f"] == "createConstraint" and call["a"][4] in (PRISMATIC, FIXED):
+            yield call
+
+
+def holds_what_cannot_move(seen: Seen) -> bool:
+    """Whether both ends of a constraint are bases that may be fixed, or the world."""
+    made = {call["id"]: call for call in seen.before}
+    return any(
+        call["f"] == "createConstraint"
+        and call["a"][4] != GEAR
+        and call["a"][1] == -1
+        and _may_be_fixed(made, call["a"][0])
+        and (call["a"][2] == -1 or (call["a"][3] == -1 and _may_be_fixed(made, call["a"][2])))
+        for call in seen.before
+    )
+
+
+def _may_be_fixed(made: dict[int, Call], body: Any) -> bool:
+    """Whether a body was made without mass, with a fixed base, from a file that says so, or fixed later."""
+    call = made[body["$"]] if isinstance(body, dict) and body["$"] in made else None
+    if call is None:
+        return False
+    if any(_sets_mass_of_base(later, body, 0.0) for later in made.values()):
+        return True
+    if call["f"] == "createMultiBody":
+        return not (call["a"][:1] or [call["k"].get("baseMass", 0)])[0]
+    return bool(call["k"].get("useFixedBase")) or call["a"][0] in IMMOVABLE
+
+
+def _sets_mass_of_base(call: Call, body: dict[str, Any], mass: float) -> bool:
+    """Whether a call gives the base of a body a mass."""
+    return call["f"] == "changeDynamics" and call["a"][:2] == [body, -1] and call["k"].get("mass") == mass
+
+
+def limits_what_has_none(seen: Seen) -> bool:
+    """Whether `changeDynamics` gave limits to a fixed or spherical joint."""
+    types = _joint_types(seen)
+    return any(
+        call["f"] == "changeDynamics"
+        and {"jointLowerLimit", "jointUpperLimit"} <= call["k"].keys()
+        and call["k"]["jointLowerLimit"] <= call["k"]["jointUpperLimit"]
+        and _type_of(types, call["a"]) in (FIXED, SPHERICAL)
+        for call in seen.before
+    )
+
+
+def _type_of(types: dict[int, list[int]], arguments: list[Any]) -> int | None:
+    """The type of the joint that the first two arguments name."""
+    joints = types.get(arguments[0]["$"], []) if isinstance(arguments[0], dict) else []
+    return joints[arguments[1]] if 0 <= arguments[1] < len(joints) else None
+
+
+def starts_at_a_limit(seen: Seen) -> bool:
+    """Whether a body has a joint that was loaded exactly at its limit, and states hardly differ."""
+    return seen.difference.place.error < _LEFT_OVER and any(
+        call["f"].startswith("load") and str(call["a"][0]) in AT_LIMITS for call in seen.before if call["a"]
+    )
+
+
+def turns_by_no_rotation(seen: Seen, steps: int) -> bool:
+    """Whether a base was reset to a quaternion whose length is not 1, at most so many steps ago."""
+    for call in reversed(seen.before):
+        if call["f"] == "stepSimulation":
+            steps -= 1
+            if steps < 0:
+                return False
+        if call["f"] == "resetBasePositionAndOrientation":
+            turn = call["a"][2]
+            if isinstance(turn, list) and abs(sum(part * part for part in turn) - 1.0) > _NO_ROTATION:
+                return True
+    return False
+
+
+def _half_turned(value: Any) -> bool:
+    """Whether there is half a turn among quaternions."""
+    if not isinstance(value, list):
+        return False
+    if len(value) == 4 and all(isinstance(part, (int, float)) for part in value):
+        return abs(value[3]) < _HALF_A_TURN and any(value[:3])
+    return any(map(_half_turned, value))
+
+
+def holds_half_a_turn(seen: Seen) -> bool:
+    """Whether a constraint of poses, or the motor of a spherical joint, turns back exactly 180 degrees."""
+    if any(
+        call["f"] == "resetJointStateMultiDof"
+        and (call["a"][0].get("$"), call["a"][1]) in _balls(seen)
+        and _half_turned(call["a"][2])
+        for call in seen.before
+    ):
+        return True
+    return any(_poses(seen)) and any(
+        _half_turned([*call["a"], *call["k"].values()])
+        for call in seen.before
+        if call["f"].startswith(("create", "load", "resetBase"))
+    )
+
+
+def exchanges_points(seen: Seen) -> bool:
+    """Whether the points of two links of one body are exchanged."""
+    theirs, ours = seen.difference.place[1:3]
+    return theirs[1] == theirs[2] and all(
+        abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
+    )
+
+
+def names_another_face(seen: Seen) -> bool:
+    """Whether shapes are in each other, equally deep in both."""
+    theirs, ours = seen.difference.place[1:3]
+    return theirs[8] < 0 and abs(theirs[8] - ours[8]) < _AS_NEAR
+
+
+def is_a_little_nearer(seen: Seen) -> bool:
+    """Whether the points are nearer than PyBullet's, by little, and as far from each other as they say."""
+    theirs, ours = seen.difference.place[1:3]
+    return 0.0 < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
+
+
+def nothing_hit_before_the_first_step(seen: Seen) -> bool:
+    theirs = seen.difference.place.theirs
+    return seen.difference.phase == "start" and seen.differs("rayTest") and theirs[0] == -1
+
+
+def rounder(seen: Seen) -> bool:
+    """Whether depths of an image are less than PyBullet's, whose balls are polyhedra inside of ours."""
+    said, ours = seen.difference.place[1:3]
+    if not any(_is_round(call) for call in seen.before):
+        return False
+    return float(str(said).split("differ: ")[1].split(" of ")[0]) > ours
+
+
+def _is_round(call: Call) -> bool:
+    """Whether a call makes a round shape, or loads a file that may have some."""
+    if call["f"] in ("createCollisionShape", "createVisualShape"):
+        return call["a"][0] in _ROUND
+    if call["f"] in ("createCollisionShapeArray", "createVisualShapeArray"):
+        return not _ROUND.isdisjoint(call["k"]["shapeTypes"])
+    return call["f"].startswith("load")
+
+
+def reaches_from_positions(seen: Seen) -> bool:
+    """Whether an answer of inverse kinematics, for a target in the base's inertial frame, is further off."""
+    made = seen.call["a"][2]["whole"]
+    return any(call["id"] == made and "currentPositions" in call["k"] for call in seen.before)
+
+
+def moved_since_the_last_step(seen: Seen) -> bool:
+    """Whether bodies were made, set or loaded since the last step: PyBullet's bounds are those of before."""
+    for call in reversed(seen.before):
+        if call["f"] == "stepSimulation":
+            return False
+        if call["f"].startswith(("reset", "restore", "load", "createMultiBody")):
+            return True
+    return False
+
+
+def casts_shadows(seen: Seen) -> bool:
+    """Whether an image has shadows that in PyBullet may be everywhere, and PyBullet's pixel is darker."""
+    if seen.call["k"].get("shadow") == 0:
+        return False
+    said, ours = seen.difference.place[1:3]
+    theirs = [float(part) for part in str(said).split("differ: [")[1].split("]")[0].split(",")]
+    if any(a > b for a, b in zip(theirs, ours, strict=True)):
+        return False
+    projection = seen.call["a"][3]["whole"]
+    made = next(call for call in seen.before if call["id"] == projection)
+    near = made["a"][4 if made["f"] == "computeProjectionMatrix" else 2]
+    return near == 0.0 or near >= _NEAR_PLANE_OF_SHADOWS
+
+
+def goes_on_with_masses(seen: Seen) -> bool:
+    """Whether masses of a body were changed after an algorithm had asked for them the first time."""
+    if seen.call["f"] not in MASSES or error(seen):
+        return False
+    asked = False
+    for call in seen.before[:-1]:
+        if call["a"][:1] == seen.call["a"][:1]:
+            asked |= call["f"] in MASSES
+            if asked and call["f"] == "changeDynamics" and not _INERTIAL.isdisjoint(call["k"]):
+                return True
+    return False
+
+
+def makes(seen: Seen, *kinds: int) -> bool:
+    return any(call["f"] == "createCollisionShape" and call["a"][0] in kinds for call in seen.before)
