@@ -58,7 +58,7 @@ _SENSORS = {
 }
 
 _TENDON = (
-    "class damping frictionloss limited margin name range solimplimit solreflimit springlength stiffness"
+    "armature class damping frictionloss limited margin name range solimplimit solreflimit springlength stiffness"
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
@@ -121,7 +121,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
         (tag, "actuatorfrclimited actuatorfrcrange", "its actuators have no such bound", _YET)
         for tag in _TENDONS
     ],
-    *[(tag, "armature", "it has no inertia", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion condim friction gap margin solimp solref solreffriction", _SOFT, _YET),
     ("weld", "torquescale", _RIGID, _YET),

@@ -2,12 +2,13 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.structs import Model, PairRows, Scratch, State, UserConstraints
 from carom.kernels.tendons.wrapping import wrapped
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
-from carom.layouts.codes import PATH_JOINT, PATH_PULLEY, PATH_SITE
+from carom.layouts.codes import PATH_BALL, PATH_JOINT, PATH_PULLEY, PATH_SITE
 
 _TINY = real(1e-15)
 
@@ -22,6 +23,18 @@ def path_position(state: State, world: Int32, link: Int32, local: Vector3) -> Ve
 def path_orientation(state: State, world: Int32, link: Int32, local: Quaternion) -> Quaternion:
     """World orientation of a frame of a link, or of the world (-1)."""
     return local if link < 0 else wp.transform_get_rotation(state.link_pose[world, link]) * local
+
+
+@func
+def turn_of(q: Quaternion):
+    """Axis and angle, from 0 to pi, of the rotation of a unit quaternion; no axis if it turns nothing."""
+    axis = Vector3(q[0], q[1], q[2])
+    sine = wp.length(axis)
+    if sine == 0.0:
+        return Vector3(0.0, 0.0, 0.0), real(0.0)
+    if q[3] < 0.0:
+        axis = -axis
+    return axis / sine, 2.0 * wp.atan2(sine, wp.abs(q[3]))
 
 
 @func
@@ -106,6 +119,14 @@ def add_path(
             total += coefficient * state.position[world, model.link[joint].first_position]
             place = model.link[joint].first_dof - model.tree[tree].first_dof
             pair_rows.entry_row[world, 4 * start + place] += factor * coefficient
+        elif kind == PATH_BALL:
+            joint = users.path_link[part]
+            coefficient = users.path_size[part]
+            axis, angle = turn_of(load_quaternion(state, world, model.link[joint].first_position))
+            total += coefficient * angle
+            place = model.link[joint].first_dof - model.tree[tree].first_dof
+            for i in range(3):
+                pair_rows.entry_row[world, 4 * start + place + i] += factor * coefficient * axis[i]
         elif kind == PATH_PULLEY:
             divisor = users.path_size[part]
             share = factor / divisor

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from math import atan2, hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,6 +77,8 @@ class _Walk:
         for part in path:
             if part.kind is PathKind.JOINT:
                 self._add_joint(part)
+            elif part.kind is PathKind.BALL:
+                self._add_ball(part)
             elif part.kind is PathKind.PULLEY:
                 divisor, at = part.size, None
             elif part.kind is PathKind.SITE:
@@ -94,6 +96,18 @@ class _Walk:
         self.length += part.size * float(state("position")[self._world, body.position_index[part.link]])
         rate = state("dof_velocity")[self._world, body.velocity_index[part.link]]
         self.velocity += part.size * float(rate)
+
+    def _add_ball(self, part: PathPart) -> None:
+        """Add the angle by which a spherical joint is turned, and its rate."""
+        body, state = self._body, self._source.state
+        first, rate = body.position_index[part.link], body.velocity_index[part.link]
+        x, y, z, w = state("position")[self._world, first : first + 4].tolist()
+        sine = hypot(x, y, z)
+        if sine > 0.0:
+            self.length += part.size * 2.0 * atan2(sine, abs(w))
+            rates = state("dof_velocity")[self._world, rate : rate + 3].tolist()
+            along = sum(p * q for p, q in zip((x, y, z), rates, strict=True)) / sine
+            self.velocity += part.size * (along if w >= 0.0 else -along)
 
     def _around(
         self, part: PathPart, at: tuple[int, Vector3], there: tuple[int, Vector3], divisor: float

@@ -98,6 +98,7 @@ def compile_mjcf(
                 element.note()
     tendons = TendonReader(model, names, reader, whole)
     tendons.read(scope)
+    tendons.add_ball_limits()
     model.still = tendons.still
     ActuatorReader(model, names, tendons.moving).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
