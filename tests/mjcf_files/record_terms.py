@@ -11,7 +11,8 @@ def moved(text: str) -> list:
     m = mujoco.MjModel.from_xml_string(text)
     d = mujoco.MjData(m)
     mujoco.mj_resetDataKeyframe(m, d, 0)
-    answers = []
+    mujoco.mj_forward(m, d)
+    answers = [{"sensors": d.sensordata.tolist()}] if m.nsensor else []
     for step in range(1, STEPS[-1] + 1):
         mujoco.mj_step(m, d)
         if step in STEPS:

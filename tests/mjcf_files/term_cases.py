@@ -1,4 +1,4 @@
-"""MJCF files of the tests of terms of free and ball joints and tendons; see `record_terms.py`."""
+"""MJCF files of the tests of terms of free and ball joints and tendons, and of sliders; see `record_terms.py`."""
 
 _HEAD = '<mujoco><option timestep=".001" gravity="{}">{}</option><default>{}</default><worldbody>'
 
@@ -25,6 +25,16 @@ def _tendon(tendon: str) -> str:
 <keyframe><key qpos=".3 -.4" qvel="1 -2"/></keyframe></mujoco>"""
 
 
+def _crank(actuator: str, rod: str = ".5") -> str:
+    return f"""{_HEAD.format("0 0 -9.81", "", "")}<site name="rail" pos=".6 0 .1" zaxis="1 0 .2"/>
+<body name="a"><joint name="j" axis="0 1 0" damping=".1"/><geom size=".1" pos="0 0 .2"/>
+<site name="pin" pos=".02 0 .2"/><body name="b" pos="0 0 .3"><joint name="k" axis="0 1 .2"/><geom size=".08"
+ pos=".2 0 .1"/><site name="guide" pos=".1 .02 0" euler="10 20 0"/></body></body></worldbody><actuator>
+<motor name="p" {actuator} cranklength="{rod}" gear="15"/></actuator><sensor>
+<actuatorpos name="l" actuator="p"/><actuatorvel name="r" actuator="p"/></sensor>
+<keyframe><key qpos=".3 -.4" qvel="1 -2" ctrl=".4"/></keyframe></mujoco>"""
+
+
 MOVED: dict[str, str] = {
     "free without terms": _free(""),
     "free with damping": _free('damping="3"'),
@@ -37,5 +47,9 @@ MOVED: dict[str, str] = {
     "ball with limits off": _ball('range="0 45"').replace("</option>", '<flag limit="disable"/></option>'),
     "tendon with armature": _tendon('armature=".4"'),
     "tendon with armature, spring and damper": _tendon('armature=".4" stiffness="20" damping=".3"'),
+    "crank on a slider of the world": _crank('cranksite="pin" slidersite="rail"'),
+    "crank on a slider that moves": _crank('cranksite="pin" slidersite="guide"'),
+    "crank in the world": _crank('cranksite="rail" slidersite="guide"', "1.1"),
+    "rod that is too short": _crank('cranksite="pin" slidersite="rail"', ".05"),
 }
 STEPS = (1, 100, 400)

@@ -20,7 +20,9 @@ _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
 _BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
-_ACTUATOR = f"{_BOUNDS} class gear group joint jointinparent name refsite site tendon"
+_ACTUATOR = (
+    f"{_BOUNDS} class cranklength cranksite gear group joint jointinparent name refsite site slidersite tendon"
+)
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype",
     "motor": "",
@@ -33,7 +35,7 @@ _ACTUATORS = {
 }
 
 _EQUALITY = "active body1 body2 class name site1 site2 solimp solref"
-_NOT_OF_JOINTS = "cranklength cranksite slidersite body"
+_NOT_OF_JOINTS = "body"
 
 _SENSOR = "cutoff delay interp interval name nsample"
 _FRAME = f"{_SENSOR} objname objtype"

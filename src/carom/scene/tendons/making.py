@@ -119,6 +119,10 @@ def new_transmission(
     if spec.tendon:
         made.path = tendon_of(body, spec.tendon).path
         return made
+    if spec.slider_site:
+        slider = replace(_site_part(body, spec.slider_site, frame), kind=PathKind.CRANK, size=spec.rod)
+        made.path = (slider, _site_part(body, spec.site, frame))
+        return made
     made.is_wrench = True
     made.path = (_site_part(body, spec.site, frame),)
     if spec.reference_site:

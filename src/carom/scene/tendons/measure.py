@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, hypot
+from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,6 +74,9 @@ class _Walk:
         """Add up the length of a path and its velocity."""
         divisor, at = 1.0, None
         over: PathPart | None = None
+        if path[0].kind is PathKind.CRANK:
+            self._add_crank(path[0], path[1])
+            return
         for part in path:
             if part.kind is PathKind.JOINT:
                 self._add_joint(part)
@@ -108,6 +111,30 @@ class _Walk:
             rates = state("dof_velocity")[self._world, rate : rate + 3].tolist()
             along = sum(p * q for p, q in zip((x, y, z), rates, strict=True)) / sine
             self.velocity += part.size * (along if w >= 0.0 else -along)
+
+    def _add_crank(self, slider: PathPart, crank: PathPart) -> None:
+        """Add the position of a slider that a rod connects to a site; see `kernels.tendons.paths`."""
+        frame = compose(self.pose(slider.link), slider.pose)
+        point = compose(self.pose(crank.link), crank.pose).position
+        axis = rotate(frame.orientation, (0.0, 0.0, 1.0))
+        x, y, z = (q - p for p, q in zip(frame.position, point, strict=True))
+        along = x * axis[0] + y * axis[1] + z * axis[2]
+        reach = along * along + slider.size * slider.size - (x * x + y * y + z * z)
+        root = sqrt(reach) if reach > 0.0 else 0.0
+        by_axis, by_point = (x, y, z), axis
+        if reach > 0.0:
+            share = 1.0 - along / root
+            by_axis = (share * x, share * y, share * z)
+            by_point = (axis[0] * share + x / root, axis[1] * share + y / root, axis[2] * share + z / root)
+        self.length += along - root
+        force = (-by_point[0], -by_point[1], -by_point[2])
+        self.velocity += self._speed(crank.link, point, by_point)
+        torque = (
+            axis[1] * by_axis[2] - axis[2] * by_axis[1],
+            axis[2] * by_axis[0] - axis[0] * by_axis[2],
+            axis[0] * by_axis[1] - axis[1] * by_axis[0],
+        )
+        self.velocity += self.power(slider.link, frame.position, force, torque)
 
     def _around(
         self, part: PathPart, at: tuple[int, Vector3], there: tuple[int, Vector3], divisor: float
