@@ -21,6 +21,9 @@ from carom.scene.tendons.wrapping import wrapped
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
+# Straight pieces that stand for an arc where a path is drawn.
+_ARC_PIECES = 8
+
 
 class _Walk:
     """One way along a path in one world; parts are in inertial frames, see `inertial_path`."""
@@ -147,6 +150,52 @@ class _Walk:
         self._add(at, (part.link, found.begin), divisor)
         self.length += found.length / divisor
         return part.link, found.end
+
+
+class _Trace(_Walk):
+    """A way along a path that remembers where it went: straight pieces, and those of arcs."""
+
+    def __init__(self, source: Source, body: Body, world: int) -> None:
+        super().__init__(source, body, world)
+        self.pieces: list[tuple[Vector3, Vector3]] = []
+
+    def _add(self, a: tuple[int, Vector3], b: tuple[int, Vector3], divisor: float) -> None:
+        super()._add(a, b, divisor)
+        self.pieces.append((a[1], b[1]))
+
+    def _around(
+        self, part: PathPart, at: tuple[int, Vector3], there: tuple[int, Vector3], divisor: float
+    ) -> tuple[int, Vector3]:
+        count = len(self.pieces)
+        after = super()._around(part, at, there, divisor)
+        if len(self.pieces) > count:
+            self._add_arc(part, self.pieces[-1][1], after[1])
+        return after
+
+    def _add_arc(self, part: PathPart, begin: Vector3, end: Vector3) -> None:
+        """Add the pieces of an arc of less than half a turn on a sphere or cylinder."""
+        frame = compose(self.pose(part.link), part.pose)
+        into = inverse(frame)
+        a, b = compose(into, Pose(begin)).position, compose(into, Pose(end)).position
+        last = begin
+        for number in range(1, _ARC_PIECES + 1):
+            share = number / _ARC_PIECES
+            x, y, z = (p + share * (q - p) for p, q in zip(a, b, strict=True))
+            out = part.size / (hypot(x, y, z if part.kind is PathKind.SPHERE else 0.0) or part.size)
+            point = (out * x, out * y, out * z if part.kind is PathKind.SPHERE else z)
+            there = compose(frame, Pose(point)).position
+            self.pieces.append((last, there))
+            last = there
+
+
+def pieces(source: Source, body: Body, path: Sequence[PathPart]) -> list[tuple[Vector3, Vector3]]:
+    """Start and end of each straight piece of a path in the first world [m]; none of one over joints.
+
+    An arc has several.
+    """
+    trace = _Trace(source, body, 0)
+    trace.follow(path)
+    return trace.pieces
 
 
 def measured(source: Source, body: Body, path: Sequence[PathPart]) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""Driving joints from a page, without code."""
+"""Driving joints and actuators from a page, without code."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.layouts.codes import ActivationDynamics
 from carom.scene.joint_motor import Drives
 
 if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
     from carom.scene.body import Body
     from carom.world.world import World
 
@@ -34,6 +36,23 @@ class _Taken:
     body: Body
     scripts: NDArray[np.float64]
     users: NDArray[np.float64]
+
+
+def control_range(body: Body, actuator: ActuatorSpec) -> tuple[float, float]:
+    """The range of the slider of an actuator.
+
+    It is that of its controls if they have bounds, of the lengths that the limits of its joint allow if it is
+    a position servo, and from -1 to 1 otherwise.
+    """
+    lower, upper = actuator.control_range
+    if isfinite(lower) and isfinite(upper):
+        return lower, upper
+    is_servo = actuator.gain[0] != 0.0 and actuator.gain[0] == -actuator.bias[1]
+    if is_servo and actuator.joint and actuator.dynamics is not ActivationDynamics.INTEGRATOR:
+        ends = [actuator.gear * limit for limit in body.joints[actuator.joint].limits]
+        if all(map(isfinite, ends)) and ends[0] != ends[1]:
+            return min(ends), max(ends)
+    return -1.0, 1.0
 
 
 class JointHands:
@@ -76,6 +95,12 @@ class JointHands:
         else:
             drives.aim_at_velocity(copysign(_OUT_OF_REACH, target), _VELOCITY_GAIN, abs(target))
         taken.users = self._rows(row)
+
+    def control(self, body_id: int, actuator: int, control: float) -> None:
+        """Sets the control of an actuator, until it is set again; unknown ones are ignored."""
+        body = self._world.bodies.get(body_id)
+        if body is not None and 0 <= actuator < len(body.spec.actuators) and isfinite(control):
+            body.actuators[actuator].control = control
 
     def give_back(self, body_id: int, joint: int) -> None:
         """Sets the motor of a joint as it was before users took it, unless the script has set it since."""
