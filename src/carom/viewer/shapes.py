@@ -23,10 +23,10 @@ from carom.render.primitives import primitive_mesh
 from carom.render.soft_surfaces import surface_mesh
 from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
+from carom.scene.actuators.actuated_joint import control_range
 from carom.scene.joint_constraints import moving_links
 from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
-from carom.viewer.input.drives import control_range
 from carom.viewer.input.picking import follows_hand
 from carom.viewer.protocol import to_page
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from tests.patience import until
+from tests.viewer.browser import Page, wait_for
 from tests.viewer.watcher import Watcher
 
 from carom import World
@@ -116,3 +117,28 @@ def test_tendons_are_drawn_along_their_paths(scene: Scene, page: Watcher):
     assert_allclose(length, scene.tendons["cord"].length, rtol=2e-3)
     assert (rows[:, 8] == 1.0).all()
     assert_allclose(rows[:, 7], scene.tendons["cord"].force, rtol=1e-5)
+
+
+def test_a_page_has_sliders_plots_and_lines(scene: Scene, browser):
+    viewer, body = Viewer(scene.world, port=0), scene["arm"]
+    page = Page(browser, viewer.address)
+    page.until("app.bodies && app.scene.bodies.size > 0")
+    page.page.evaluate(f"app.bodies.select({body.id})")
+    typed = page.page.get_by_title("Value of torque")
+    typed.fill("2.5")
+    typed.press("Enter")
+    wait_for(lambda: scene.actuators["torque"].control == 2.5, page)
+    scene.world.step()
+    page.until(f"app.readings.actuators.get('{body.id},0')?.force > 2")
+    slider = page.page.locator(".slider", has=page.page.locator(f"#actuator-{body.id}-0"))
+    wait_for(lambda: "force 2.50" in (slider.locator(".now").text_content() or ""), page)
+    page.page.locator("#joint").select_option(f"reading {body.id},0")
+    page.page.locator("#joint").select_option(f"actuator {body.id},0")
+    page.page.evaluate("document.querySelector('input[name=tendons]').click()")
+    scene.world.step(20)
+    page.until("app.readings.tendons.length > 2")
+    page.until(f"app.readings.sensors.get('{body.id},0')?.length === 3")
+    page.until(f"app.plots.plotted.get('reading {body.id},0').samples.at(-1)?.values[0].length === 3")
+    page.until(f"app.plots.plotted.get('actuator {body.id},0').samples.at(-1)?.values[0][0] === 2.5")
+    assert page.complaints == []
+    viewer.close()

@@ -9,11 +9,9 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.layouts.codes import ActivationDynamics
 from carom.scene.joint_motor import Drives
 
 if TYPE_CHECKING:
-    from carom.description.actuator import ActuatorSpec
     from carom.scene.body import Body
     from carom.world.world import World
 
@@ -36,23 +34,6 @@ class _Taken:
     body: Body
     scripts: NDArray[np.float64]
     users: NDArray[np.float64]
-
-
-def control_range(body: Body, actuator: ActuatorSpec) -> tuple[float, float]:
-    """The range of the slider of an actuator.
-
-    It is that of its controls if they have bounds, of the lengths that the limits of its joint allow if it is
-    a position servo, and from -1 to 1 otherwise.
-    """
-    lower, upper = actuator.control_range
-    if isfinite(lower) and isfinite(upper):
-        return lower, upper
-    is_servo = actuator.gain[0] != 0.0 and actuator.gain[0] == -actuator.bias[1]
-    if is_servo and actuator.joint and actuator.dynamics is not ActivationDynamics.INTEGRATOR:
-        ends = [actuator.gear * limit for limit in body.joints[actuator.joint].limits]
-        if all(map(isfinite, ends)) and ends[0] != ends[1]:
-            return min(ends), max(ends)
-    return -1.0, 1.0
 
 
 class JointHands:
