@@ -1,4 +1,4 @@
-"""MJCF files of the tests of terms of free and ball joints and tendons, and of sliders; see `record_terms.py`."""
+"""MJCF files of the tests of terms of joints and tendons, and of sliders; see `record_terms.py`."""
 
 _HEAD = '<mujoco><option timestep=".001" gravity="{}">{}</option><default>{}</default><worldbody>'
 

@@ -3,6 +3,7 @@
 from functools import partial
 from pathlib import Path
 
+import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -47,6 +48,7 @@ def scene(tmp_path: Path) -> Scene:
 def test_spaces_are_those_of_the_actuators_and_sensors_of_the_file(scene: Scene):
     env = Reach(scene, 3)
     third = np.pi / 3.0
+    assert isinstance(env.single_action_space, gymnasium.spaces.Box)
     assert_allclose(env.single_action_space.low, [-2.0, -2.0 * third], rtol=1e-6)
     assert_allclose(env.single_action_space.high, [3.0, 3.0 * third], rtol=1e-6)
     assert list(env.observed) == [
@@ -66,9 +68,15 @@ def test_an_episode_begins_in_the_keyframe_and_controls_act_in_the_order_of_the_
     scene.reset("up")
     scene.actuators["second"].control, scene.actuators["first"].control = 3.0, -0.3
     scene.world.step(2)
-    assert_allclose(observations[1, env.observed["arm/position"]], scene["arm"].joints.positions, rtol=1e-6, atol=1e-6)
-    assert_allclose(observations[1, env.observed["place"]], scene.sensors["place"].read(), rtol=1e-6, atol=1e-6)
-    assert_allclose(observations[1, env.observed["angle"]], scene["arm"].joints["wrist"].position, rtol=1e-6, atol=1e-6)
+    assert_allclose(
+        observations[1, env.observed["arm/position"]], scene["arm"].joints.positions, rtol=1e-6, atol=1e-6
+    )
+    assert_allclose(
+        observations[1, env.observed["place"]], scene.sensors["place"].read(), rtol=1e-6, atol=1e-6
+    )
+    assert_allclose(
+        observations[1, env.observed["angle"]], scene["arm"].joints["wrist"].position, rtol=1e-6, atol=1e-6
+    )
     box = [*scene["box"].links[-1].velocity.linear, *scene["box"].links[-1].velocity.angular]
     assert_allclose(observations[1, env.observed["box/velocity"]], box, rtol=1e-6, atol=1e-6)
     assert_allclose(rewards, observations[:, env.observed["place"]][:, 2])
@@ -90,7 +98,9 @@ def test_what_is_observed_can_be_chosen(scene: Scene):
 
 
 def test_a_file_without_actuators_is_refused(tmp_path: Path):
-    (tmp_path / "file.xml").write_text('<mujoco><worldbody><body><geom size=".1"/></body></worldbody></mujoco>')
+    (tmp_path / "file.xml").write_text(
+        '<mujoco><worldbody><body><geom size=".1"/></body></worldbody></mujoco>'
+    )
     with pytest.raises(ValueError, match="no actuators to act on"):
         Reach(World().load(tmp_path / "file.xml"))
 

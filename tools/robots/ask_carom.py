@@ -21,7 +21,7 @@ import numpy as np
 from carom import World, algorithms
 from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose
-from carom.description.transform import compose, rotation_matrix
+from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled import option
 from carom.scene.body import Body
 from carom.scene.joint import Joint
@@ -59,7 +59,9 @@ def main() -> None:
         try:
             found = compared(answer, whole=arguments.whole)
         except Exception as error:
-            found = {"crash": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:300]}
+            found = {
+                "crash": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:300]
+            }
         found |= {"file": answer["file"], "seconds": time.process_time() - begin}
         with arguments.errors.open("r+") as out:
             out.truncate(place)
@@ -73,7 +75,9 @@ def compared(answer: dict[str, Any], *, whole: bool) -> dict[str, Any]:
         begin = time.process_time()
         scene = world.load(answer["file"])
         found: dict[str, Any] = {"load_seconds": time.process_time() - begin}
-        found["ignored"] = sorted({f"{it.element}: {it.consequence}: {it.reason}" for it in scene.ignored.that_matter})
+        found["ignored"] = sorted(
+            {f"{it.element}: {it.consequence}: {it.reason}" for it in scene.ignored.that_matter}
+        )
         scene.apply_options()
         model = Model(scene, answer)
         if whole:
@@ -110,8 +114,14 @@ class Model:
         self.is_equal = (
             len(stated) == len(self.joints)
             and all(name in self.links for name in named)
-            and all((kind == FREE) == (joint is None) for (_, kind), (_, joint) in zip(stated, self.joints, strict=True))
-            and all(joint is None or not name or joint.name == name for (name, _), (_, joint) in zip(stated, self.joints, strict=True))
+            and all(
+                (kind == FREE) == (joint is None)
+                for (_, kind), (_, joint) in zip(stated, self.joints, strict=True)
+            )
+            and all(
+                joint is None or not name or joint.name == name
+                for (name, _), (_, joint) in zip(stated, self.joints, strict=True)
+            )
             and len(kinds) == len(scene.bodies)
         )
         self.answer = answer
@@ -122,7 +132,9 @@ class Model:
 
     def set(self, name: str, qpos: list[float], qvel: list[float], ctrl: list[float]) -> None:
         """Put the scene into a state as MuJoCo states it."""
-        parts: dict[str, dict[str, Any]] = {body.name: {"positions": [], "velocities": []} for body in self.scene.bodies}
+        parts: dict[str, dict[str, Any]] = {
+            body.name: {"positions": [], "velocities": []} for body in self.scene.bodies
+        }
         q = v = 0
         for (_, kind), (body, _) in zip(self.answer["joints"], self.joints, strict=True):
             positions, velocities = COUNTS.get(kind, (1, 1))
@@ -204,7 +216,6 @@ def in_state(model: Model, state: dict[str, Any], number: int) -> dict[str, floa
     found["bias"] = relative(bias - state["bias"], state["bias"], LEAST["bias"])
     before = velocities(model)
     found_rates = []
-    sensors: np.ndarray | None = None
     for step in (STEP, 0.5 * STEP):
         scene.reset(f"asked {number}")
         world.parameters.time_step = step
@@ -217,8 +228,11 @@ def in_state(model: Model, state: dict[str, Any], number: int) -> dict[str, floa
     told = zip(model.actuators, state["forces"], strict=True)
     forces = [(scene.actuators[name].force, value) for name, value in told if name in scene.actuators]
     if forces:
-        found["forces of actuators"] = relative([a - b for a, b in forces], [b for _, b in forces], LEAST["forces"])
-    errors, sensors = [], scene.sensors
+        found["forces of actuators"] = relative(
+            [a - b for a, b in forces], [b for _, b in forces], LEAST["forces"]
+        )
+    errors: list[float] = []
+    sensors = scene.sensors
     for name, at, size, _ in model.answer["sensors"]:
         if name in sensors and sensors[name].spec.kind.name.lower() not in NOT_COMPARED:
             values = np.array(state["sensors"][at : at + size])
@@ -280,7 +294,7 @@ def dynamics_of(model: Model, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def rolled_out(model: Model, answer: dict[str, Any], name: str) -> float | None:
-    """Greatest error of a position after a second, over the greatest position; None if MuJoCo has no answer."""
+    """Greatest error of a position after a second, over the greatest one; None if MuJoCo has no answer."""
     if answer[name] is None:
         return None
     scene = model.scene

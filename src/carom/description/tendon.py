@@ -24,8 +24,8 @@ class PathPart:
         link: Index of the link that has it, -1 for the base, -2 for the world; of a joint that of its child.
         pose: Where it is in the frame of the link, or in the world; a cylinder is along its z axis.
         size: Of a joint: length per position; of a spherical one per angle by which it is turned, which is
-            from 0 to pi, whatever the axis. Of a slider: length of its rod [m]. Of a sphere or cylinder: radius [m]. Of a pulley: by how much
-            the length of the branch after it is divided.
+            from 0 to pi, whatever the axis. Of a slider: length of its rod [m]. Of a sphere or cylinder:
+            radius [m]. Of a pulley: by how much the length of the branch after it is divided.
         side_link: The link of a point that a path around a sphere or cylinder has on its side.
         side: This point; None for the shorter way. If it is inside, the path is held inside.
     """
@@ -78,7 +78,9 @@ class TendonSpec:
         if has_joints and not all(part.kind in _OF_JOINTS for part in self.path):
             raise self._error("its path is over joints, or through sites, not both")
         if self.path[0].kind is PathKind.CRANK:
-            if [part.kind for part in self.path] != [PathKind.CRANK, PathKind.SITE] or self.path[0].size <= 0.0:
+            if [part.kind for part in self.path] != [PathKind.CRANK, PathKind.SITE] or self.path[
+                0
+            ].size <= 0.0:
                 raise self._error("a slider needs a rod and one site after it")
         elif not has_joints:
             self._check_branches()

@@ -63,10 +63,14 @@ class SceneEnv(WorldsEnv):
         chosen = list(known) if sensors is None else list(sensors)
         for name in chosen:
             if name not in known:
-                raise KeyError(f"{scene.source.name} has no sensor {name!r}; it has {', '.join(known) or 'none'}")
+                raise KeyError(
+                    f"{scene.source.name} has no sensor {name!r}; it has {', '.join(known) or 'none'}"
+                )
         if keyframe is not None and keyframe not in scene.keyframes:
             raise KeyError(f"{scene.source.name} has no keyframe {keyframe!r}")
-        moving = [body for body in scene.bodies if body.joints.movable or not body.fixed_base] if state else []
+        moving = (
+            [body for body in scene.bodies if body.joints.movable or not body.fixed_base] if state else []
+        )
         self.observed: dict[str, slice] = {}
         size = 0
         for body in moving:

@@ -178,7 +178,9 @@ def _driven(body: Body) -> dict[str, Any]:
     """Actuators and sensors of a body, if it has any."""
     facts: dict[str, Any] = {}
     if body.spec.actuators:
-        facts["actuators"] = [{"name": it.name, "range": control_range(body, it)} for it in body.spec.actuators]
+        facts["actuators"] = [
+            {"name": it.name, "range": control_range(body, it)} for it in body.spec.actuators
+        ]
     if body.spec.sensors:
         facts["sensors"] = [
             {"name": it.name, "kind": it.kind.value, "size": it.dim} for it in body.spec.sensors

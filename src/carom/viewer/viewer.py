@@ -528,9 +528,7 @@ class Viewer:
 
     def _take_control(self, page: int, told: dict[str, Any]) -> None:
         control = self._joint_hands.control
-        self._chores.add(
-            partial(control, int(told["body"]), int(told["actuator"]), float(told["control"]))
-        )
+        self._chores.add(partial(control, int(told["body"]), int(told["actuator"]), float(told["control"])))
 
     def _give_back(self, page: int, told: dict[str, Any]) -> None:
         self._chores.add(partial(self._joint_hands.give_back, int(told["body"]), int(told["joint"])))

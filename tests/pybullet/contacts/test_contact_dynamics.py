@@ -124,9 +124,7 @@ def test_soft_contacts_beyond_the_processing_threshold_do_not_push(client: int, 
         }
     body = p.createMultiBody(1, shape, basePosition=[0, 0, 0.11], **link)
     for index in range(-1, p.getNumJoints(body)):
-        p.changeDynamics(
-            body, index, contactStiffness=2e4, contactDamping=20, contactProcessingThreshold=0
-        )
+        p.changeDynamics(body, index, contactStiffness=2e4, contactDamping=20, contactProcessingThreshold=0)
     heights = []
     for _ in range(8):
         step(3)

@@ -119,21 +119,29 @@ def test_tendons_are_drawn_along_their_paths(scene: Scene, page: Watcher):
     assert_allclose(rows[:, 7], scene.tendons["cord"].force, rtol=1e-5)
 
 
+def set_value(page: Page, selector: str, value: str) -> None:
+    """Change an element of a folded part of the panel."""
+    page.page.evaluate(
+        "([selector, value]) => { const element = document.querySelector(selector); element.value = value;"
+        " element.dispatchEvent(new Event('change')); }",
+        [selector, value],
+    )
+
+
 def test_a_page_has_sliders_plots_and_lines(scene: Scene, browser):
     viewer, body = Viewer(scene.world, port=0), scene["arm"]
     page = Page(browser, viewer.address)
-    page.until("app.bodies && app.scene.bodies.size > 0")
+    page.until("window.app?.scene.layout.layout > 0")
     page.page.evaluate(f"app.bodies.select({body.id})")
-    typed = page.page.get_by_title("Value of torque")
-    typed.fill("2.5")
-    typed.press("Enter")
+    set_value(page, "[title='Value of torque']", "2.5")
     wait_for(lambda: scene.actuators["torque"].control == 2.5, page)
     scene.world.step()
     page.until(f"app.readings.actuators.get('{body.id},0')?.force > 2")
     slider = page.page.locator(".slider", has=page.page.locator(f"#actuator-{body.id}-0"))
-    wait_for(lambda: "force 2.50" in (slider.locator(".now").text_content() or ""), page)
-    page.page.locator("#joint").select_option(f"reading {body.id},0")
-    page.page.locator("#joint").select_option(f"actuator {body.id},0")
+    page.page.evaluate("app.bodies.show()")
+    assert slider.locator(".now").text_content() == "force 2.50"
+    set_value(page, "#joint", f"reading {body.id},0")
+    set_value(page, "#joint", f"actuator {body.id},0")
     page.page.evaluate("document.querySelector('input[name=tendons]').click()")
     scene.world.step(20)
     page.until("app.readings.tendons.length > 2")

@@ -21,7 +21,8 @@ _TURN = "axisangle euler quat xyaxes zaxis"
 
 _BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
 _ACTUATOR = (
-    f"{_BOUNDS} class cranklength cranksite gear group joint jointinparent name refsite site slidersite tendon"
+    f"{_BOUNDS} class cranklength cranksite gear group joint jointinparent name refsite site slidersite "
+    "tendon"
 )
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype",
@@ -60,7 +61,8 @@ _SENSORS = {
 }
 
 _TENDON = (
-    "armature class damping frictionloss limited margin name range solimplimit solreflimit springlength stiffness"
+    "armature class damping frictionloss limited margin name range solimplimit solreflimit springlength "
+    "stiffness"
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 

@@ -170,9 +170,7 @@ def add_path(
             for i in range(3):
                 pair_rows.entry_row[world, 4 * start + place + i] += factor * coefficient * axis[i]
         elif kind == PATH_CRANK:
-            total += add_crank(
-                model, state, scratch, users, pair_rows, world, tree, part, factor, start
-            )
+            total += add_crank(model, state, scratch, users, pair_rows, world, tree, part, factor, start)
             part += 1
         elif kind == PATH_PULLEY:
             divisor = users.path_size[part]

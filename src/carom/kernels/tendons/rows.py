@@ -59,7 +59,10 @@ def add_tendon_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add the rows of a tendon: spring, damper and armature; friction; limit. Returns the next row and block."""
+    """Add the rows of a tendon; returns the next free row and block.
+
+    They are those of spring, damper and armature, of friction, and of the limit.
+    """
     h = settings.time_step
     tree = users.user_tree_a[user]
     source = block + 0
@@ -83,9 +86,7 @@ def add_tendon_rows(
     if yielding > 0.0:
         softness = 1.0 / yielding
         bound = _UNBOUNDED
-    write_row(
-        pair_rows, world, row, inverse_mass, impulse * softness - rate, softness, -bound, bound, 0.0
-    )
+    write_row(pair_rows, world, row, inverse_mass, impulse * softness - rate, softness, -bound, bound, 0.0)
     row += 1
 
     block = repeat_row(model, pair_rows, world, row, tree, source, block)

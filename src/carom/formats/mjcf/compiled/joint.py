@@ -38,7 +38,9 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     turn_limit: BallLimit | None = None
     if kind == "ball" and limited:
         margin = context.number(element, attributes, "margin", 0.0)
-        turn_limit = BallLimit(max(lower, upper), read_compliance(scope, element, attributes, "limit"), margin)
+        turn_limit = BallLimit(
+            max(lower, upper), read_compliance(scope, element, attributes, "limit"), margin
+        )
         lower, upper = _UNLIMITED
         limited = False
     described = _TYPES[kind]
@@ -70,7 +72,9 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     time_constant, ratio = context.numbers(
         element, "springdamper", attributes.get("springdamper", "0 0"), 2, 2
     )
-    return CompiledJoint(joint, anchor, reference, element, context, bounds, (time_constant, ratio), turn_limit)
+    return CompiledJoint(
+        joint, anchor, reference, element, context, bounds, (time_constant, ratio), turn_limit
+    )
 
 
 def _triple(scope: Scope, element: Element, attributes: Attributes, name: str, default: Vector3) -> Vector3:
@@ -99,7 +103,7 @@ def _range(scope: Scope, element: Element, attributes: Attributes, kind: str) ->
     """Lower and upper limit [rad or m]; lower > upper if there are none."""
     if not is_limited(scope, element, attributes, "limited", "range"):
         return _UNLIMITED
-    text = attributes.get("range")
+    text = attributes.get("range", "0 0" if kind == "ball" else None)
     if text is None:
         raise scope.context.error(element, "a limited joint needs a range")
     lower, upper = scope.context.numbers(element, "range", text, 2, 2)

@@ -82,7 +82,6 @@ class TendonReader:
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
 
-
     def add_ball_limits(self) -> None:
         """Add the limits of spherical joints: tendons along the angles of their rotations."""
         for name, (_, joint) in self._names.joints.items():
