@@ -94,3 +94,22 @@ def test_contacts_that_yield_otherwise_than_the_first_geom_are_reported(tmp_path
     with World() as world:
         (found,) = world.load(tmp_path / "file.xml").ignored.that_matter
     assert (found.consequence, found.count) == ("its contacts yield as those of the first geom", 1)
+
+
+@pytest.mark.parametrize("name", ["tendon limit", "soft tendon limit", "box", "arm on a smooth floor"])
+def test_options_of_a_file_let_the_solver_go_further(tmp_path, name):
+    (tmp_path / "file.xml").write_text(MOVED[name])
+    with World() as world:
+        scene = world.load(tmp_path / "file.xml")
+        assert world.parameters.solver_residual_threshold == 1e-7
+        scene.apply_options()
+        body = next(body for body in scene.bodies if body.name in "af")
+        done, errors = 0, []
+        for steps, answer in zip(STEPS, ANSWERS[name], strict=True):
+            world.step(steps - done)
+            done = steps
+            found = body.links[-1].pose.position
+            if body.name == "a":
+                found = np.concatenate([body.joints[joint].coordinates for joint in ("j", "k")])
+            errors.append(np.abs(np.array(found) - answer).max())
+        assert max(errors) < 5e-5

@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 
 from carom.viewer.messages import decoded
 from carom.viewer.protocol import to_page
-from carom.viewer.readings import CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS
+from carom.viewer.readings import COLUMNS
 
 
 def socket_address(address: str) -> str:
@@ -88,7 +88,7 @@ class Watcher:
             self.poses = numbers[:at].reshape(-1, 7)
             self.blocks = {}
             for name, count in header.get("blocks", []):
-                end = at + count * _COLUMNS[name]
+                end = at + count * COLUMNS[name]
                 self.blocks[name] = numbers[at:end].reshape(count, -1)
                 at = end
         elif kind.startswith("no "):
@@ -102,7 +102,6 @@ class Watcher:
             self.payloads[name, number] = payload
 
 
-_COLUMNS = {"contacts": CONTACT_COLUMNS, "joints": JOINT_COLUMNS, "links": LINK_COLUMNS}
 _NUMBERS: dict[str, Callable[[str], bool]] = {
     "item": lambda kind: kind in ("line", "text", "points"),
     "slider": lambda kind: kind == "slider",

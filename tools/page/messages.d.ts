@@ -72,6 +72,10 @@ interface BodyToPage {
   links: { name: string, position: [number, number, number], orientation: [number, number, number, number], moves: boolean, joint?: string, kind?: string, axis?: [number, number, number], parent?: number, limits?: [number, number], effort?: number, speed?: number }[];
   /** Its shapes, each in the inertial frame of a link, 0 for the base. */
   shapes: { link: number, meshes: [number, number | null][], texture: number, rgba: [number, number, number, number], specular: [number, number, number], twoSided: boolean, position: [number, number, number], orientation: [number, number, number, number], scale: [number, number, number], collision?: boolean }[];
+  /** Its actuators, and the ranges of their sliders. */
+  actuators?: { name: string, range: [number, number] }[];
+  /** Its sensors, and how many numbers each gives. */
+  sensors?: { name: string, kind: string, size: number }[];
 }
 
 /** A body is gone. */
@@ -535,6 +539,10 @@ interface WantFromPage {
   constraints?: boolean;
   /** Rays that scripts cast. */
   rays?: boolean;
+  /** Bodies whose sensors are read. */
+  sensors?: number[];
+  /** Paths of tendons. */
+  tendons?: boolean;
 }
 
 /** The user drives a joint. */
@@ -548,6 +556,17 @@ interface DriveFromPage {
   mode?: "position" | "velocity" | "torque";
   /** Target in units of the mode [m or rad, m/s or rad/s, N or N m]. */
   target: number;
+}
+
+/** The user sets the control of an actuator. */
+interface ControlFromPage {
+  type: "control";
+  /** Number of the body. */
+  body: number;
+  /** Number of the actuator among those of the body. */
+  actuator: number;
+  /** Its control. */
+  control: number;
 }
 
 /** The user gives a joint back to the script. */
@@ -680,6 +699,7 @@ type MessageFromPage =
   | PreviewWidthFromPage
   | WantFromPage
   | DriveFromPage
+  | ControlFromPage
   | GiveBackFromPage
   | HandleFromPage
   | SleepFromPage

@@ -71,6 +71,9 @@ class ActuatorSpec:
         reference_site: Name of a site in whose axes the wrench is given; its length is then the pose of the
             other relative to this one. Empty for the axes of the site; then its length is 0.
         wrench: Force along the axes, then torque about them, per force of the actuator.
+        slider_site: Name of a site along whose z axis a slider moves, which a rod connects to `site`: the
+            actuator then pushes the slider, and its length is `gear` times the position of the slider.
+        rod: Length of that rod [m].
         muscle: How its force depends on length and velocity if it is a muscle; then gain and bias have no
             meaning.
     """
@@ -90,6 +93,8 @@ class ActuatorSpec:
     reference_site: str = ""
     wrench: Wrench = NO_WRENCH
     muscle: MuscleSpec | None = None
+    slider_site: str = ""
+    rod: float = 0.0
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the numbers have a meaning."""
@@ -102,6 +107,8 @@ class ActuatorSpec:
             raise DescriptionError(f"actuator {self.name!r}: gear, gain, bias and time must be finite")
         if self.gear == 0.0:
             raise DescriptionError(f"actuator {self.name!r}: its gear is 0, so it moves nothing")
+        if self.slider_site and not 0.0 < self.rod < inf:
+            raise DescriptionError(f"actuator {self.name!r}: its rod must be longer than 0")
         if not self.time_constant > 0.0:
             raise DescriptionError(f"actuator {self.name!r}: its time constant must be greater than 0")
 
@@ -124,6 +131,8 @@ class GeneralActuator:
     reference_site: str = ""
     wrench: Wrench = NO_WRENCH
     muscle: MuscleSpec | None = None
+    slider_site: str = ""
+    rod: float = 0.0
 
     def spec(self, name: str) -> ActuatorSpec:
         """The same with a name."""
@@ -143,6 +152,8 @@ class GeneralActuator:
             self.reference_site,
             self.wrench,
             self.muscle,
+            self.slider_site,
+            self.rod,
         )
 
 

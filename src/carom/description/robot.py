@@ -28,6 +28,9 @@ class Robot:
         deformable: Its description if it is a soft body; it then has a single link with the name of the
             `<deformable>` or `<reduced_deformable>` element, and no joints.
         actuators: What drives its joints; PyBullet's API has none.
+        base_damping: Viscous damping of the root if it is free, the same along and about all axes; of the
+            motion of its inertial frame [N s/m, N m s/rad].
+        base_armature: Inertia that is added there, likewise [kg, kg m²].
         is_mocap: Its root is moved by users only, as a `mocap` body of MJCF.
     """
 
@@ -41,3 +44,5 @@ class Robot:
     deformable: Deformable | None = None
     actuators: tuple[ActuatorSpec, ...] = ()
     is_mocap: bool = False
+    base_damping: float = 0.0
+    base_armature: float = 0.0

@@ -12,6 +12,7 @@ from carom.record import record
 
 WORLD = -2
 """The link of a part of a path that is in the world."""
+_OF_JOINTS = (PathKind.JOINT, PathKind.BALL)
 
 
 @record
@@ -22,8 +23,9 @@ class PathPart:
         kind: What it is.
         link: Index of the link that has it, -1 for the base, -2 for the world; of a joint that of its child.
         pose: Where it is in the frame of the link, or in the world; a cylinder is along its z axis.
-        size: Of a joint: length per position. Of a sphere or cylinder: radius [m]. Of a pulley: by how much
-            the length of the branch after it is divided.
+        size: Of a joint: length per position; of a spherical one per angle by which it is turned, which is
+            from 0 to pi, whatever the axis. Of a slider: length of its rod [m]. Of a sphere or cylinder:
+            radius [m]. Of a pulley: by how much the length of the branch after it is divided.
         side_link: The link of a point that a path around a sphere or cylinder has on its side.
         side: This point; None for the shorter way. If it is inside, the path is held inside.
     """
@@ -52,6 +54,7 @@ class TendonSpec:
         spring_range: Lengths between which the spring is slack; None for the length where it is added.
         range: Least and greatest length [m].
         friction: Greatest force of dry friction [N].
+        armature: Inertia along it [kg]; that its moment arms change with time does not count.
         limit_compliance: How its limit yields; None for a rigid one.
         limit_margin: Distance from its limit at which it begins to act [m].
     """
@@ -65,17 +68,23 @@ class TendonSpec:
     friction: float = 0.0
     limit_compliance: Compliance | None = None
     limit_margin: float = 0.0
+    armature: float = 0.0
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the path and the numbers have a meaning."""
         if not self.path:
             raise self._error("its path is empty")
-        has_joints = any(part.kind is PathKind.JOINT for part in self.path)
-        if has_joints and not all(part.kind is PathKind.JOINT for part in self.path):
+        has_joints = any(part.kind in _OF_JOINTS for part in self.path)
+        if has_joints and not all(part.kind in _OF_JOINTS for part in self.path):
             raise self._error("its path is over joints, or through sites, not both")
-        if not has_joints:
+        if self.path[0].kind is PathKind.CRANK:
+            if [part.kind for part in self.path] != [PathKind.CRANK, PathKind.SITE] or self.path[
+                0
+            ].size <= 0.0:
+                raise self._error("a slider needs a rod and one site after it")
+        elif not has_joints:
             self._check_branches()
-        for name in ("stiffness", "damping", "friction"):
+        for name in ("stiffness", "damping", "friction", "armature"):
             if not 0.0 <= getattr(self, name) < inf:
                 raise self._error(f"its {name} must be 0 or more")
         for name in ("range", "spring_range"):

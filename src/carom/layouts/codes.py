@@ -45,6 +45,8 @@ class PathKind(IntEnum):
     SPHERE = 2  # the path goes around it if it is in the way
     CYLINDER = 3  # likewise
     PULLEY = 4  # a new branch of the path begins
+    BALL = 5  # adds a share of the angle by which a spherical joint is turned
+    CRANK = 6  # a slider along z that a rod connects to the site that follows
 
 
 class UserConstraintKind(IntEnum):
@@ -154,7 +156,7 @@ USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(
     int, tuple(UserConstraintKind)[:5]
 )
 USER_TENDON, USER_TENDON_COUPLING, USER_TRANSMISSION = map(int, tuple(UserConstraintKind)[5:])
-PATH_JOINT, PATH_SITE, PATH_SPHERE, PATH_CYLINDER, PATH_PULLEY = map(int, PathKind)
+PATH_JOINT, PATH_SITE, PATH_SPHERE, PATH_CYLINDER, PATH_PULLEY, PATH_BALL, PATH_CRANK = map(int, PathKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN, ABSENT = map(int, Activity)
 ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)

@@ -313,6 +313,7 @@ class UserConstraints:
     user_actuator: Ints  # row of the actuator of a transmission
     user_is_wrench: Ints  # 1: a transmission to a site, a wrench along its axes
     user_spring: Vectors4  # of a tendon: stiffness, damping, lengths between which it is slack; see `tendons`
+    user_armature: Reals  # of a tendon: inertia along it
     user_range: Vectors4  # of a tendon: least and greatest length, friction, margin; see `tendons`
     user_enabled: IntRows  # 0: no effect
 

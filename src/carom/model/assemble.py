@@ -37,7 +37,8 @@ def assemble(
 
     With `as_written` the body is as the author of the file meant it: inertia from the file, no damping by
     air, no motors that hold joints, links merged with their frames. A base is then also fixed if it has no
-    mass and no link that is fixed to it has any.
+    mass and no link that is fixed to it has any. Links of a robot with terms of its free base are not merged,
+    as these are of the motion of the base's own frame.
 
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.
@@ -46,11 +47,14 @@ def assemble(
     if as_written:
         flags |= LoadFlags.USE_INERTIA_FROM_FILE
         fixed_base = fixed_base or has_massless_base(root)
-    if flags & LoadFlags.MERGE_FIXED_LINKS:
+    has_terms = robot.base_damping != 0.0 or robot.base_armature != 0.0
+    if flags & LoadFlags.MERGE_FIXED_LINKS and not has_terms:
         (merge_rigidly if as_written else merge_fixed_links)(root, fixed_base=fixed_base)
     order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
     read_inertia = written_inertia if as_written else inertia_from_file
     base = _link_spec(root.link, flags, compound_margin, read_inertia, is_massless=fixed_base)
+    if as_written:
+        base.damping, base.armature = robot.base_damping, robot.base_armature
     index_of = {id(node): index for index, node in enumerate(order, start=BASE)}
     links = [_link_spec(node.link, flags, compound_margin, read_inertia) for node in order[1:]]
     for node in order:

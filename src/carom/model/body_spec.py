@@ -136,7 +136,7 @@ class BodySpec(Reusable):
 
     Attributes:
         name: Name of the robot.
-        base: The root link; its joint fields are unused.
+        base: The root link; of its joint fields damping and armature count, if it is free and not `is_held`.
         links: Every other link, parents before children, in the order users index joints.
         fixed_base: The base does not move (mass 0).
         flags: The loading flags it was made with.

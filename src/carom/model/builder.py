@@ -64,8 +64,15 @@ _INDEX_FIELDS = {
 _TERMS = ("dof_implicit_damping", "dof_armature", "dof_stiffness")
 
 
+def has_base_terms(spec: BodySpec) -> bool:
+    """Whether the base of a body has armature or implicit damping."""
+    return not spec.is_held and (spec.base.armature != 0.0 or spec.base.damping != 0.0)
+
+
 def has_joint_terms(spec: BodySpec) -> bool:
     """Whether joints of a body have armature, implicit damping or a spring when it is loaded."""
+    if has_base_terms(spec):
+        return True
     return any(
         link.armature != 0.0 or link.stiffness != 0.0 or (link.damping != 0.0 and not spec.is_held)
         for link in spec.links
@@ -224,6 +231,10 @@ class WorldArrays:
         model["link_first_dof"][first_link] = first_dof
         for name in ("dof_damping", *_TERMS):
             model[name][:, first_dof : first_dof + BASE_VELOCITIES] = 0.0
+        if not spec.is_held:
+            of_base = slice(first_dof, first_dof + BASE_VELOCITIES)
+            model["dof_implicit_damping"][:, of_base] = spec.base.damping
+            model["dof_armature"][:, of_base] = spec.base.armature
         model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
         model["link_gravity_compensation"][:, first_link] = spec.base.gravity_compensation

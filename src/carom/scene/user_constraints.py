@@ -58,6 +58,7 @@ _FIELDS = (
     "user_actuator",
     "user_is_wrench",
     "user_spring",
+    "user_armature",
     "user_range",
 )
 # Those of parts of paths.
@@ -107,6 +108,7 @@ class UserConstraint:
         is_wrench: Whether a transmission is to a site.
         spring: Of a tendon: stiffness, damping, and the lengths between which it is slack. Of a transmission
             to a site: force along its axes, per force of the actuator.
+        armature: Of a tendon: inertia along it.
         range: Of a tendon: least and greatest length, friction, margin. Of coupled ones: the lengths from
             which both are counted. Of a transmission to a site: torque about its axes.
         reference: Of a compliant constraint: time constant and damping ratio, or minus stiffness and damping;
@@ -143,6 +145,7 @@ class UserConstraint:
     reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     inverse_inertia: float = 0.0
+    armature: float = 0.0
 
     @property
     def both_paths(self) -> Path:
@@ -198,6 +201,7 @@ class UserConstraint:
             parent.rows.first["actuator"] + self.actuator if self.actuator >= 0 else -1,
             self.is_wrench,
             self.spring,
+            self.armature,
             self.range,
             self.enabled,
         )

@@ -12,10 +12,11 @@ except ImportError as missing:
         "carom.vector needs Gymnasium; install it with: pip install 'carom[envs]'", name="gymnasium"
     ) from missing
 
+from carom.vector.scene_env import SceneEnv
 from carom.vector.single import SingleEnv
 from carom.vector.worlds_env import WorldsEnv
 
-__all__ = ["SingleEnv", "WorldsEnv"]
+__all__ = ["SceneEnv", "SingleEnv", "WorldsEnv"]
 
 # Name, module in carom.vector, class in it, steps of an episode.
 _TASKS = (

@@ -31,7 +31,8 @@ class DetailRequest:
     """The data that one page, or all pages together, need.
 
     `joints` are the ids of the bodies whose joints are read, or all; `links` are bodies and links whose
-    velocities are read; `dynamics` are masses and inertias.
+    velocities are read; `dynamics` are masses and inertias; `sensors` are the ids of
+    the bodies whose sensors are read. Actuators are read with joints.
     """
 
     collisions: bool = False
@@ -41,6 +42,8 @@ class DetailRequest:
     dynamics: bool = False
     constraints: bool = False
     rays: bool = False
+    sensors: frozenset[int] = frozenset()
+    tendons: bool = False
 
     @classmethod
     def told(cls, told: dict[str, Any]) -> DetailRequest:
@@ -49,9 +52,10 @@ class DetailRequest:
         return cls(
             joints="all" if joints == "all" else frozenset(int(body) for body in joints),
             links=frozenset((int(body), int(link)) for body, link in told.get("links", [])[:_MAX_LINKS]),
+            sensors=frozenset(int(body) for body in told.get("sensors", [])),
             **{
                 name: bool(told.get(name, False))
-                for name in ("collisions", "contacts", "dynamics", "constraints", "rays")
+                for name in ("collisions", "contacts", "dynamics", "constraints", "rays", "tendons")
             },
         )
 
@@ -64,6 +68,8 @@ class DetailRequest:
             self.dynamics or other.dynamics,
             self.constraints or other.constraints,
             self.rays or other.rays,
+            self.sensors | other.sensors,
+            self.tendons or other.tendons,
         )
 
 
@@ -120,6 +126,7 @@ class Details:
         if wish.rays:
             self.rays.show()
         wanted = wish.contacts or wish.joints or wish.links or wish.dynamics or wish.constraints
+        wanted = wanted or wish.sensors or wish.tendons
         if not (self._always or wanted):
             return []
         if not self._world_lock.acquire(timeout=_PATIENCE):
@@ -155,8 +162,13 @@ class Details:
             blocks.append(("contacts", readings.contacts(world)))
         if joints:
             blocks.append(("joints", self._joints.rows(joints)))
+            blocks.append(("actuators", readings.actuators(world, joints)))
         if links:
             blocks.append(("links", readings.links(world, sorted(links))))
+        if wish.sensors:
+            blocks.append(("sensors", readings.sensors(world, wish.sensors)))
+        if wish.tendons:
+            blocks.append(("tendons", readings.tendons(world)))
         return [(name, rows) for name, rows in blocks if len(rows)]
 
     def _find_readings(self, bodies: list[Body]) -> None:

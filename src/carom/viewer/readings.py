@@ -1,4 +1,4 @@
-"""Data in a frame besides poses: contacts, joints, and velocities of links, in columns of numbers.
+"""Data in a frame besides poses: contacts, joints, velocities of links and so on, in columns of numbers.
 
 `page/view/readings.js` has the same columns.
 """
@@ -11,8 +11,20 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.layouts.codes import MOTOR_KD, MOTOR_KP, MOTOR_MAX_IMPULSE, MOTOR_POSITION, MOTOR_VELOCITY
+from carom.errors import StateError
+from carom.layouts.codes import (
+    MOTOR_KD,
+    MOTOR_KP,
+    MOTOR_MAX_IMPULSE,
+    MOTOR_POSITION,
+    MOTOR_VELOCITY,
+    PathKind,
+)
 from carom.model.body_spec import BASE
+from carom.scene.sensors.lone_source import LoneSource
+from carom.scene.tendons.making import tendons_of
+from carom.scene.tendons.measure import pieces
+from carom.scene.tendons.tendon import BodyTendon
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -20,6 +32,16 @@ if TYPE_CHECKING:
 Columns = NDArray[np.float32]
 
 CONTACT_COLUMNS, JOINT_COLUMNS, LINK_COLUMNS = 16, 8, 14
+ACTUATOR_COLUMNS, SENSOR_COLUMNS, TENDON_COLUMNS = 5, 4, 9
+COLUMNS = {
+    "contacts": CONTACT_COLUMNS,
+    "joints": JOINT_COLUMNS,
+    "links": LINK_COLUMNS,
+    "actuators": ACTUATOR_COLUMNS,
+    "sensors": SENSOR_COLUMNS,
+    "tendons": TENDON_COLUMNS,
+}
+"""Numbers of columns, by the names of the arrays."""
 # Maximum number of contacts shown.
 _MAX_CONTACTS = 5000
 _MAX_FRICTION = 10.0
@@ -79,6 +101,62 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
         row = body.first_link + 1 + link
         rows.append((number, link, *world.link_velocity[row], *world.joint_reaction[row]))
     return np.array(rows, dtype=np.float32).reshape(-1, LINK_COLUMNS)
+
+
+def actuators(world: World, wanted: frozenset[int] | Literal["all"]) -> Columns:
+    """Controls and forces of the actuators of some bodies.
+
+    Returns:
+        (actuators, 5): body, actuator, control, force in the last step, activation; NaN without one.
+    """
+    state = world.arrays.state.numpy
+    parts = []
+    for number, body in list(world.bodies.items()):
+        count = len(body.spec.actuators)
+        if count and (wanted == "all" or number in wanted):
+            first = body.rows.first["actuator"]
+            rows = slice(first, first + count)
+            moves = np.array([bool(it.dynamics) for it in body.spec.actuators])
+            activation = np.where(moves, state["actuator_activation"][0, rows], np.nan)
+            told = (state["actuator_control"][0, rows], state["actuator_force"][0, rows], activation)
+            parts.append(np.column_stack((np.full(count, number), np.arange(count), *told)))
+    return np.vstack(parts).astype(np.float32) if parts else np.zeros((0, ACTUATOR_COLUMNS), np.float32)
+
+
+def sensors(world: World, wanted: Iterable[int]) -> Columns:
+    """What the sensors of some bodies show.
+
+    Returns:
+        (numbers, 4): body, sensor, place of the number among those of the sensor, the number. Sensors that
+        show nothing yet, as they are delayed, are left out.
+    """
+    rows: list[tuple[float, ...]] = []
+    for number in sorted(wanted):
+        body = world.bodies.get(number)
+        for sensor in () if body is None else body.sensors:
+            try:
+                values = np.ravel(sensor.read()).tolist()
+            except StateError:
+                continue
+            rows += [(number, sensor.index, place, value) for place, value in enumerate(values)]
+    return np.array(rows, dtype=np.float32).reshape(-1, SENSOR_COLUMNS)
+
+
+def tendons(world: World) -> Columns:
+    """The straight pieces of all tendons that go through sites.
+
+    Returns:
+        (pieces, 9): body, start (3) [m], end (3), force of the tendon [N], and 1 if it is at its limit.
+    """
+    rows: list[tuple[float, ...]] = []
+    source = LoneSource(world)
+    for number, body in list(world.bodies.items()):
+        for tie in tendons_of(body):
+            if tie.path[0].kind is PathKind.SITE:
+                tendon = BodyTendon(tie)
+                told = (tendon.force, float(tendon.limit_force > 0.0))
+                rows += [(number, *start, *end, *told) for start, end in pieces(source, body, tie.path)]
+    return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
 
 
 class JointReadings:

@@ -23,6 +23,7 @@ from carom.render.primitives import primitive_mesh
 from carom.render.soft_surfaces import surface_mesh
 from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
+from carom.scene.actuators.actuated_joint import control_range
 from carom.scene.joint_constraints import moving_links
 from carom.scene.soft_body import SoftBody
 from carom.viewer.board import Board
@@ -169,7 +170,22 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
             for link, moves in enumerate(moving_links(body), start=BASE)
         ],
         shapes=shapes,
+        **_driven(body),
     )
+
+
+def _driven(body: Body) -> dict[str, Any]:
+    """Actuators and sensors of a body, if it has any."""
+    facts: dict[str, Any] = {}
+    if body.spec.actuators:
+        facts["actuators"] = [
+            {"name": it.name, "range": control_range(body, it)} for it in body.spec.actuators
+        ]
+    if body.spec.sensors:
+        facts["sensors"] = [
+            {"name": it.name, "kind": it.kind.value, "size": it.dim} for it in body.spec.sensors
+        ]
+    return facts
 
 
 def _colour_in_turn(body: Body, link: int) -> Rgba:

@@ -159,6 +159,7 @@ class Viewer:
             from_page.PREVIEW_WIDTH: lambda page, told: self.previews.ask(page, int(told["width"])),
             from_page.WANT: lambda page, told: self._frames.want(page, DetailRequest.told(told)),
             from_page.DRIVE: self._take_drive,
+            from_page.CONTROL: self._take_control,
             from_page.GIVE_BACK: self._give_back,
             from_page.HANDLE: self._take_handle,
             from_page.SLEEP: lambda page, told: self._chores.add(self._sleeping.toggle),
@@ -524,6 +525,10 @@ class Viewer:
             raise ValueError(f"a joint has no mode {mode!r}")
         hands, pause = self._joint_hands, self.pause_control
         self._chores.add(lambda: hands.drive(body, joint, mode, target, place=pause.closed))
+
+    def _take_control(self, page: int, told: dict[str, Any]) -> None:
+        control = self._joint_hands.control
+        self._chores.add(partial(control, int(told["body"]), int(told["actuator"]), float(told["control"])))
 
     def _give_back(self, page: int, told: dict[str, Any]) -> None:
         self._chores.add(partial(self._joint_hands.give_back, int(told["body"]), int(told["joint"])))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.description.keyframe import BodyKeyframe
-from carom.description.pose import Pose, Vector3
+from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import rotate
 from carom.model.body_spec import BASE
 
@@ -53,7 +54,7 @@ def _parts(bodies: Sequence[Body], model: CompiledModel, state: FileKeyframe) ->
         for number, body in enumerate(bodies)
         for index, link in enumerate(body.spec.links)
     }
-    free = {body.spec.base.name: number for number, body in enumerate(bodies)}
+    free = {body.spec.name: number for number, body in enumerate(bodies)}
     parts = [_Part() for _ in bodies]
     position = velocity = 0
     for name, body_name, kind in model.joints:
@@ -67,17 +68,24 @@ def _parts(bodies: Sequence[Body], model: CompiledModel, state: FileKeyframe) ->
             continue
         number, joint = places[name]
         if q:
-            parts[number].positions[joint] = [*q[1:], q[0]] if kind == _BALL else q
+            parts[number].positions[joint] = [*_unit((q[1], q[2], q[3], q[0]))] if kind == _BALL else q
         if v:
             parts[number].velocities[joint] = v
     return parts
+
+
+def _unit(quaternion: Quaternion) -> Quaternion:
+    """A quaternion of length 1; without rotation if it has none."""
+    x, y, z, w = quaternion
+    size = hypot(x, y, z, w)
+    return (x / size, y / size, z / size, w / size) if size > 0.0 else (0.0, 0.0, 0.0, 1.0)
 
 
 def _put_base(body: Body, part: _Part, q: list[float], v: list[float]) -> None:
     """The state of a free body: that of its link frame, its angular velocity in its own axes."""
     if q:
         px, py, pz, w, x, y, z = q
-        part.pose = Pose((px, py, pz), (x, y, z, w))
+        part.pose = Pose((px, py, pz), _unit((x, y, z, w)))
     if v:
         x, y, z, wx, wy, wz = v
         turn = body.links[BASE].pose.orientation.tolist() if part.pose is None else part.pose.orientation

@@ -84,7 +84,7 @@ def _spec(body: Body, tendon: FileTendon, place: Pose) -> TendonSpec:
         return WORLD if name in (_WORLD, "") else links[name]
 
     def part(it: FilePart) -> PathPart:
-        if it.kind is PathKind.JOINT:
+        if it.kind in (PathKind.JOINT, PathKind.BALL):
             return PathPart(it.kind, joints[it.on], size=it.size)
         pose, side = it.frame, it.side if it.side_on else None
         if it.on == _WORLD:
@@ -103,6 +103,7 @@ def _spec(body: Body, tendon: FileTendon, place: Pose) -> TendonSpec:
         tendon.friction,
         tendon.limit_compliance,
         tendon.limit_margin,
+        tendon.armature,
     )
 
 

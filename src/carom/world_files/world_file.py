@@ -24,6 +24,7 @@ from carom.layouts.codes import (
     MOTOR_KIND,
     WITH_FRICTION,
     ConstraintKind,
+    JointCode,
     PathKind,
     UserConstraintKind,
 )
@@ -142,6 +143,8 @@ class SavedTie:
     range: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     reference: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     impedance: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    inverse_inertia: float = 0.0
+    armature: float = 0.0
 
 
 @dataclass(slots=True)
@@ -455,7 +458,9 @@ def _check_path(body: Body, record: SavedTie) -> None:
         stiffness, damping, *rest = record.spring
         lower, upper, friction, _ = record.range
         bounds = (rest[0], rest[1]), (lower, upper)
-        TendonSpec(record.name, record.path, stiffness, damping, *bounds, friction).check()
+        TendonSpec(
+            record.name, record.path, stiffness, damping, *bounds, friction, armature=record.armature
+        ).check()
     elif any(abs(number) == inf for number in record.range):
         raise ValueError("only tendons have bounds that may be infinite")
     for path in (record.path, *((record.second_path,) if record.second_path else ())):
@@ -469,6 +474,10 @@ def _check_path(body: Body, record: SavedTie) -> None:
                 _check_link(body, link)
         if part.kind is PathKind.JOINT and (part.link < 0 or body.velocity_count[part.link] != 1):
             raise ValueError(f"link {part.link} of body {body.id} has no joint that a tendon could follow")
+        if part.kind is PathKind.BALL and (
+            part.link < 0 or body.joint_types[part.link] != JointCode.SPHERICAL
+        ):
+            raise ValueError(f"link {part.link} of body {body.id} has no spherical joint")
     if record.kind is UserConstraintKind.TRANSMISSION:
         _index(record.actuator, list(body.spec.actuators))
 

@@ -94,6 +94,44 @@ def test_contacts_beyond_the_processing_threshold_do_not_push(client: int) -> No
     assert heights == pytest.approx(expected, abs=1e-6), "it sinks in before it is pushed"
 
 
+HEIGHTS = {
+    "ball": [0.108958, 0.106355, 0.102192, 0.097445, 0.098272, 0.100233, 0.10066, 0.099525],
+    "box": [0.108958, 0.106355, 0.102192, 0.09689, 0.099331, 0.101822, 0.102749, 0.102265],
+    "jointed balls": [0.108958, 0.106355, 0.102192, 0.097472, 0.098272, 0.100154, 0.100521, 0.099539],
+}
+
+
+@pytest.mark.parametrize("kind", HEIGHTS)
+def test_soft_contacts_beyond_the_processing_threshold_do_not_push(client: int, kind: str) -> None:
+    p.setGravity(0, 0, -10)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    if kind == "box":
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.2, 0.2, 0.1])
+    link: dict[str, Any] = {}
+    if kind == "jointed balls":
+        link = {
+            "linkMasses": [0.5],
+            "linkCollisionShapeIndices": [shape],
+            "linkVisualShapeIndices": [-1],
+            "linkPositions": [[0.5, 0, 0]],
+            "linkOrientations": [[0, 0, 0, 1]],
+            "linkInertialFramePositions": [[0, 0, 0]],
+            "linkInertialFrameOrientations": [[0, 0, 0, 1]],
+            "linkParentIndices": [0],
+            "linkJointTypes": [p.JOINT_REVOLUTE],
+            "linkJointAxis": [[0, 1, 0]],
+        }
+    body = p.createMultiBody(1, shape, basePosition=[0, 0, 0.11], **link)
+    for index in range(-1, p.getNumJoints(body)):
+        p.changeDynamics(body, index, contactStiffness=2e4, contactDamping=20, contactProcessingThreshold=0)
+    heights = []
+    for _ in range(8):
+        step(3)
+        heights.append(p.getBasePositionAndOrientation(body)[0][2])
+    assert heights == pytest.approx(HEIGHTS[kind], abs=1e-6)
+
+
 @pytest.mark.parametrize("shape", [p.GEOM_SPHERE, p.GEOM_BOX, p.GEOM_CAPSULE, p.GEOM_CYLINDER])
 @pytest.mark.parametrize("speed", [30.0, 90.0, 400.0])
 def test_what_has_a_swept_sphere_does_not_pass_through_thin_walls(

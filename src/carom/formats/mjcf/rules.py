@@ -20,7 +20,10 @@ _SOLVER = "it is for the solvers of MuJoCo"
 _TURN = "axisangle euler quat xyaxes zaxis"
 
 _BOUNDS = "actlimited actrange ctrllimited ctrlrange forcelimited forcerange"
-_ACTUATOR = f"{_BOUNDS} class gear group joint jointinparent name refsite site tendon"
+_ACTUATOR = (
+    f"{_BOUNDS} class cranklength cranksite gear group joint jointinparent name refsite site slidersite "
+    "tendon"
+)
 _ACTUATORS = {
     "general": "biasprm biastype dynprm dyntype gainprm gaintype",
     "motor": "",
@@ -33,7 +36,7 @@ _ACTUATORS = {
 }
 
 _EQUALITY = "active body1 body2 class name site1 site2 solimp solref"
-_NOT_OF_JOINTS = "cranklength cranksite slidersite body"
+_NOT_OF_JOINTS = "body"
 
 _SENSOR = "cutoff delay interp interval name nsample"
 _FRAME = f"{_SENSOR} objname objtype"
@@ -58,7 +61,8 @@ _SENSORS = {
 }
 
 _TENDON = (
-    "class damping frictionloss limited margin name range solimplimit solreflimit springlength stiffness"
+    "armature class damping frictionloss limited margin name range solimplimit solreflimit springlength "
+    "stiffness"
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
@@ -121,7 +125,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
         (tag, "actuatorfrclimited actuatorfrcrange", "its actuators have no such bound", _YET)
         for tag in _TENDONS
     ],
-    *[(tag, "armature", "it has no inertia", _YET) for tag in _TENDONS],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion condim friction gap margin solimp solref solreffriction", _SOFT, _YET),
     ("weld", "torquescale", _RIGID, _YET),

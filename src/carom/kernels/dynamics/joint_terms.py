@@ -47,6 +47,14 @@ def add_joint_terms(
     blocks = (model.tree[tree].dof_count + 3) // 4
     matrix = model.tree[tree].first_block
     base = model.tree[tree].first_link
+    for i in range(model.link[base].dof_count):
+        dof = model.link[base].first_dof + i
+        damping = model.dof_implicit_damping[world, dof]
+        scratch.dof[world, dof].force -= damping * state.dof_velocity[world, dof]
+        place = dof - first_of_tree
+        scratch.entry_factor[world, 4 * (matrix + place * blocks) + place] += (
+            model.dof_armature[world, dof] + h * damping
+        )
     for link in range(base + 1, base + model.tree[tree].link_count):
         count = model.link[link].dof_count
         if count > 0:

@@ -227,6 +227,10 @@ def contact_terms(
         ) - velocity_from_forces(
             settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal
         )
+    if terms.ignored != 0:
+        # A row on which no impulse acts does not yield to one either.
+        terms.softness = real(0.0)
+        terms.lateral_softness = real(0.0)
     return terms
 
 

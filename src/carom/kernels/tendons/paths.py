@@ -2,12 +2,13 @@
 
 import warp as wp
 
+from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.structs import Model, PairRows, Scratch, State, UserConstraints
 from carom.kernels.tendons.wrapping import wrapped
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
-from carom.layouts.codes import PATH_JOINT, PATH_PULLEY, PATH_SITE
+from carom.layouts.codes import PATH_BALL, PATH_CRANK, PATH_JOINT, PATH_PULLEY, PATH_SITE
 
 _TINY = real(1e-15)
 
@@ -22,6 +23,18 @@ def path_position(state: State, world: Int32, link: Int32, local: Vector3) -> Ve
 def path_orientation(state: State, world: Int32, link: Int32, local: Quaternion) -> Quaternion:
     """World orientation of a frame of a link, or of the world (-1)."""
     return local if link < 0 else wp.transform_get_rotation(state.link_pose[world, link]) * local
+
+
+@func
+def turn_of(q: Quaternion):
+    """Axis and angle, from 0 to pi, of the rotation of a unit quaternion; no axis if it turns nothing."""
+    axis = Vector3(q[0], q[1], q[2])
+    sine = wp.length(axis)
+    if sine == 0.0:
+        return Vector3(0.0, 0.0, 0.0), real(0.0)
+    if q[3] < 0.0:
+        axis = -axis
+    return axis / sine, 2.0 * wp.atan2(sine, wp.abs(q[3]))
 
 
 @func
@@ -78,6 +91,48 @@ def add_segment(
 
 
 @func
+def add_crank(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+    tree: Int32,
+    part: Int32,
+    factor: real,
+    start: Int32,
+) -> real:
+    """Add `factor` times the Jacobian of the position of a slider to a row; returns that position.
+
+    It moves along the z axis of its site, and a rod of a given length connects it to the site that follows.
+    Where the rod is too short to reach the axis, its position is that of the point nearest to the other site.
+    """
+    slider, crank = users.path_link[part], users.path_link[part + 1]
+    origin = path_position(state, world, slider, users.path_point[part])
+    point = path_position(state, world, crank, users.path_point[part + 1])
+    turn = path_orientation(state, world, slider, users.path_turn[part])
+    axis = wp.quat_rotate(turn, Vector3(0.0, 0.0, 1.0))
+    apart = point - origin
+    along = wp.dot(apart, axis)
+    rod = users.path_size[part]
+    reach = along * along + rod * rod - wp.dot(apart, apart)
+    position = along
+    by_axis = apart
+    by_point = axis
+    if reach > 0.0:
+        root = wp.sqrt(reach)
+        position = along - root
+        by_axis = apart * (1.0 - along / root)
+        by_point = axis * (1.0 - along / root) + apart / root
+    force, torque = by_point * factor, wp.cross(axis, by_axis) * factor
+    zero = Vector3(0.0, 0.0, 0.0)
+    add_wrench(model, state, scratch, pair_rows, world, tree, crank, point, force, zero, start)
+    add_wrench(model, state, scratch, pair_rows, world, tree, slider, origin, -force, torque, start)
+    return position
+
+
+@func
 def add_path(
     model: Model,
     state: State,
@@ -106,6 +161,17 @@ def add_path(
             total += coefficient * state.position[world, model.link[joint].first_position]
             place = model.link[joint].first_dof - model.tree[tree].first_dof
             pair_rows.entry_row[world, 4 * start + place] += factor * coefficient
+        elif kind == PATH_BALL:
+            joint = users.path_link[part]
+            coefficient = users.path_size[part]
+            axis, angle = turn_of(load_quaternion(state, world, model.link[joint].first_position))
+            total += coefficient * angle
+            place = model.link[joint].first_dof - model.tree[tree].first_dof
+            for i in range(3):
+                pair_rows.entry_row[world, 4 * start + place + i] += factor * coefficient * axis[i]
+        elif kind == PATH_CRANK:
+            total += add_crank(model, state, scratch, users, pair_rows, world, tree, part, factor, start)
+            part += 1
         elif kind == PATH_PULLEY:
             divisor = users.path_size[part]
             share = factor / divisor

@@ -13,7 +13,7 @@ from carom.kernels.maths.blocks import fill_zero, write_multiple
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
-from carom.kernels.tendons.compliance import is_compliant, write_compliant_row, write_holding_row
+from carom.kernels.tendons.compliance import free_change, is_compliant, write_compliant_row, write_holding_row
 from carom.kernels.tendons.paths import add_path, add_wrench, finish_row, path_orientation, path_position
 from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 from carom.layouts.codes import USER_TENDON, USER_TENDON_COUPLING
@@ -59,7 +59,10 @@ def add_tendon_rows(
     row: Int32,
     block: Int32,
 ):
-    """Add the rows of spring and damper, friction, and limit of a tendon; returns the next row and block."""
+    """Add the rows of a tendon; returns the next free row and block.
+
+    They are those of spring, damper and armature, of friction, and of the limit.
+    """
     h = settings.time_step
     tree = users.user_tree_a[user]
     source = block + 0
@@ -73,15 +76,17 @@ def add_tendon_rows(
     spring = users.user_spring[user]
     stretch = wp.max(length - spring[3], real(0.0)) + wp.min(length - spring[2], real(0.0))
     stiffness = spring[0] if stretch != 0.0 else 0.0
-    yielding = h * (spring[1] + h * stiffness)
+    armature = users.user_armature[user] + 0.0
+    yielding = h * (spring[1] + h * stiffness) + armature
     softness, bound = real(0.0), real(0.0)
+    impulse = -h * stiffness * stretch
+    if armature > 0.0:
+        # Its inertia resists what is faster than before the substep.
+        impulse += armature * (rate - h * free_change(model, scratch, pair_rows, world, tree, source))
     if yielding > 0.0:
         softness = 1.0 / yielding
         bound = _UNBOUNDED
-    write_row(
-        pair_rows, world, row, inverse_mass, -h * stiffness * stretch * softness - rate, softness, -bound,
-        bound, 0.0,
-    )  # fmt: skip
+    write_row(pair_rows, world, row, inverse_mass, impulse * softness - rate, softness, -bound, bound, 0.0)
     row += 1
 
     block = repeat_row(model, pair_rows, world, row, tree, source, block)

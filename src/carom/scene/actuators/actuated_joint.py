@@ -1,12 +1,13 @@
-"""Which joint of a body an actuator drives."""
+"""Which joint of a body an actuator drives, and which controls it is given."""
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
-from carom.layouts.codes import WITH_FRICTION
+from carom.layouts.codes import WITH_FRICTION, ActivationDynamics
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -15,6 +16,23 @@ if TYPE_CHECKING:
 def drives_joint(spec: ActuatorSpec) -> bool:
     """Whether an actuator drives a joint, and not a tendon or a site."""
     return not spec.tendon and not spec.site
+
+
+def control_range(body: Body, spec: ActuatorSpec) -> tuple[float, float]:
+    """The controls that an actuator is usually given, for sliders and action spaces.
+
+    They are those within its bounds if it has any, the lengths that the limits of its joint allow if it is a
+    position servo, and those from -1 to 1 otherwise.
+    """
+    lower, upper = spec.control_range
+    if isfinite(lower) and isfinite(upper):
+        return lower, upper
+    is_servo = spec.gain[0] != 0.0 and spec.gain[0] == -spec.bias[1]
+    if is_servo and spec.joint and spec.dynamics is not ActivationDynamics.INTEGRATOR:
+        ends = [spec.gear * limit for limit in body.joints[spec.joint].limits]
+        if all(map(isfinite, ends)) and ends[0] != ends[1]:
+            return min(ends), max(ends)
+    return -1.0, 1.0
 
 
 def actuated_joint(body: Body, spec: ActuatorSpec) -> int:

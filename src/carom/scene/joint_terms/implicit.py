@@ -7,6 +7,7 @@ from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from carom.layouts.codes import JointCode
+from carom.model.builder import has_base_terms
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -69,7 +70,9 @@ def write_terms(body: Body, joint: int) -> None:
         first, count = body.position_index[joint], body.position_count[joint]
         model["position_spring"][:, first : first + count] = dynamics.joint_spring_reference
     links = body.all_dynamics[1:]
-    model["tree_joint_terms"][:, body.rows.tree] = any(map(body_term_check(body), links))
+    model["tree_joint_terms"][:, body.rows.tree] = has_base_terms(body.spec) or any(
+        map(body_term_check(body), links)
+    )
 
 
 def body_term_check(body: Body) -> Any:

@@ -12,7 +12,7 @@ from carom.description.sensor import SensorObject
 from carom.description.tendon import WORLD, Path, PathPart, TendonSpec
 from carom.description.transform import compose, inverse
 from carom.errors import DescriptionError
-from carom.layouts.codes import PathKind, UserConstraintKind
+from carom.layouts.codes import JointCode, PathKind, UserConstraintKind
 from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.sensors.frames import frame_of
 from carom.scene.sensors.lone_source import LoneSource
@@ -29,7 +29,7 @@ def inertial_path(body: Body, path: Path) -> Path:
     """A path with its poses in inertial frames of links instead of link frames.
 
     Raises:
-        DescriptionError: There is no such link, or its joint has not one degree of freedom.
+        DescriptionError: There is no such link, or its joint is of another kind.
     """
     return tuple(_inertial(body, part) for part in path)
 
@@ -41,6 +41,10 @@ def _inertial(body: Body, part: PathPart) -> PathPart:
     if part.kind is PathKind.JOINT:
         if part.link < 0 or body.velocity_count[part.link] != 1:
             raise DescriptionError(f"link {part.link} of {body.name!r} has no revolute or prismatic joint")
+        return part
+    if part.kind is PathKind.BALL:
+        if part.link < 0 or body.joint_types[part.link] != JointCode.SPHERICAL:
+            raise DescriptionError(f"link {part.link} of {body.name!r} has no spherical joint")
         return part
     pose, side = part.pose, part.side
     if part.link != WORLD:
@@ -69,6 +73,7 @@ def new_tendon(body: Body, spec: TendonSpec, name: str | None = None) -> UserCon
         length = present_length(body, made.path) if spec.stiffness else 0.0
         rest = length, length
     made.spring = (spec.stiffness, spec.damping, *rest)
+    made.armature = spec.armature
     made.range = (*spec.range, spec.friction, spec.limit_margin)
     if spec.limit_compliance is not None:
         yield_as(made, spec.limit_compliance)
@@ -113,6 +118,10 @@ def new_transmission(
     made.actuator = number
     if spec.tendon:
         made.path = tendon_of(body, spec.tendon).path
+        return made
+    if spec.slider_site:
+        slider = replace(_site_part(body, spec.slider_site, frame), kind=PathKind.CRANK, size=spec.rod)
+        made.path = (slider, _site_part(body, spec.site, frame))
         return made
     made.is_wrench = True
     made.path = (_site_part(body, spec.site, frame),)

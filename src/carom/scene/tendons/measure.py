@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,9 @@ from carom.scene.tendons.wrapping import wrapped
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+
+# Straight pieces that stand for an arc where a path is drawn.
+_ARC_PIECES = 8
 
 
 class _Walk:
@@ -74,9 +77,14 @@ class _Walk:
         """Add up the length of a path and its velocity."""
         divisor, at = 1.0, None
         over: PathPart | None = None
+        if path[0].kind is PathKind.CRANK:
+            self._add_crank(path[0], path[1])
+            return
         for part in path:
             if part.kind is PathKind.JOINT:
                 self._add_joint(part)
+            elif part.kind is PathKind.BALL:
+                self._add_ball(part)
             elif part.kind is PathKind.PULLEY:
                 divisor, at = part.size, None
             elif part.kind is PathKind.SITE:
@@ -95,6 +103,42 @@ class _Walk:
         rate = state("dof_velocity")[self._world, body.velocity_index[part.link]]
         self.velocity += part.size * float(rate)
 
+    def _add_ball(self, part: PathPart) -> None:
+        """Add the angle by which a spherical joint is turned, and its rate."""
+        body, state = self._body, self._source.state
+        first, rate = body.position_index[part.link], body.velocity_index[part.link]
+        x, y, z, w = state("position")[self._world, first : first + 4].tolist()
+        sine = hypot(x, y, z)
+        if sine > 0.0:
+            self.length += part.size * 2.0 * atan2(sine, abs(w))
+            rates = state("dof_velocity")[self._world, rate : rate + 3].tolist()
+            along = sum(p * q for p, q in zip((x, y, z), rates, strict=True)) / sine
+            self.velocity += part.size * (along if w >= 0.0 else -along)
+
+    def _add_crank(self, slider: PathPart, crank: PathPart) -> None:
+        """Add the position of a slider that a rod connects to a site; see `kernels.tendons.paths`."""
+        frame = compose(self.pose(slider.link), slider.pose)
+        point = compose(self.pose(crank.link), crank.pose).position
+        axis = rotate(frame.orientation, (0.0, 0.0, 1.0))
+        x, y, z = (q - p for p, q in zip(frame.position, point, strict=True))
+        along = x * axis[0] + y * axis[1] + z * axis[2]
+        reach = along * along + slider.size * slider.size - (x * x + y * y + z * z)
+        root = sqrt(reach) if reach > 0.0 else 0.0
+        by_axis, by_point = (x, y, z), axis
+        if reach > 0.0:
+            share = 1.0 - along / root
+            by_axis = (share * x, share * y, share * z)
+            by_point = (axis[0] * share + x / root, axis[1] * share + y / root, axis[2] * share + z / root)
+        self.length += along - root
+        force = (-by_point[0], -by_point[1], -by_point[2])
+        self.velocity += self._speed(crank.link, point, by_point)
+        torque = (
+            axis[1] * by_axis[2] - axis[2] * by_axis[1],
+            axis[2] * by_axis[0] - axis[0] * by_axis[2],
+            axis[0] * by_axis[1] - axis[1] * by_axis[0],
+        )
+        self.velocity += self.power(slider.link, frame.position, force, torque)
+
     def _around(
         self, part: PathPart, at: tuple[int, Vector3], there: tuple[int, Vector3], divisor: float
     ) -> tuple[int, Vector3]:
@@ -106,6 +150,52 @@ class _Walk:
         self._add(at, (part.link, found.begin), divisor)
         self.length += found.length / divisor
         return part.link, found.end
+
+
+class _Trace(_Walk):
+    """A way along a path that remembers where it went: straight pieces, and those of arcs."""
+
+    def __init__(self, source: Source, body: Body, world: int) -> None:
+        super().__init__(source, body, world)
+        self.pieces: list[tuple[Vector3, Vector3]] = []
+
+    def _add(self, a: tuple[int, Vector3], b: tuple[int, Vector3], divisor: float) -> None:
+        super()._add(a, b, divisor)
+        self.pieces.append((a[1], b[1]))
+
+    def _around(
+        self, part: PathPart, at: tuple[int, Vector3], there: tuple[int, Vector3], divisor: float
+    ) -> tuple[int, Vector3]:
+        count = len(self.pieces)
+        after = super()._around(part, at, there, divisor)
+        if len(self.pieces) > count:
+            self._add_arc(part, self.pieces[-1][1], after[1])
+        return after
+
+    def _add_arc(self, part: PathPart, begin: Vector3, end: Vector3) -> None:
+        """Add the pieces of an arc of less than half a turn on a sphere or cylinder."""
+        frame = compose(self.pose(part.link), part.pose)
+        into = inverse(frame)
+        a, b = compose(into, Pose(begin)).position, compose(into, Pose(end)).position
+        last = begin
+        for number in range(1, _ARC_PIECES + 1):
+            share = number / _ARC_PIECES
+            x, y, z = (p + share * (q - p) for p, q in zip(a, b, strict=True))
+            out = part.size / (hypot(x, y, z if part.kind is PathKind.SPHERE else 0.0) or part.size)
+            point = (out * x, out * y, out * z if part.kind is PathKind.SPHERE else z)
+            there = compose(frame, Pose(point)).position
+            self.pieces.append((last, there))
+            last = there
+
+
+def pieces(source: Source, body: Body, path: Sequence[PathPart]) -> list[tuple[Vector3, Vector3]]:
+    """Start and end of each straight piece of a path in the first world [m]; none of one over joints.
+
+    An arc has several.
+    """
+    trace = _Trace(source, body, 0)
+    trace.follow(path)
+    return trace.pieces
 
 
 def measured(source: Source, body: Body, path: Sequence[PathPart]) -> tuple[Array, Array]:

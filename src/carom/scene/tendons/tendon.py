@@ -71,6 +71,16 @@ class BodyTendon(NamedConstraint):
         self._set_spring(damping=value)
 
     @property
+    def armature(self) -> float:
+        """Inertia along it [kg]; settable."""
+        return self._constraint.armature
+
+    @armature.setter
+    def armature(self, value: float) -> None:
+        self._constraint.armature = _positive(value, "armature")
+        self.body.world.constraints_changed()
+
+    @property
     def spring_range(self) -> Range:
         """Lengths between which its spring is slack [m]; settable."""
         return self._constraint.spring[2:]

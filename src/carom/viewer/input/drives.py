@@ -1,4 +1,4 @@
-"""Driving joints from a page, without code."""
+"""Driving joints and actuators from a page, without code."""
 
 from __future__ import annotations
 
@@ -76,6 +76,12 @@ class JointHands:
         else:
             drives.aim_at_velocity(copysign(_OUT_OF_REACH, target), _VELOCITY_GAIN, abs(target))
         taken.users = self._rows(row)
+
+    def control(self, body_id: int, actuator: int, control: float) -> None:
+        """Sets the control of an actuator, until it is set again; unknown ones are ignored."""
+        body = self._world.bodies.get(body_id)
+        if body is not None and 0 <= actuator < len(body.spec.actuators) and isfinite(control):
+            body.actuators[actuator].control = control
 
     def give_back(self, body_id: int, joint: int) -> None:
         """Sets the motor of a joint as it was before users took it, unless the script has set it since."""

@@ -330,7 +330,7 @@ export class App {
     const joints = wants.joints ? "all" : [...plotted.joints, ...(selected === null ? [] : [selected])];
     const links = [...plotted.links, ...(selected === null ? [] : [[selected, (link ?? 0) - 1]])];
     const dynamics = wants.dynamics || selected !== null;
-    this.send({ type: FromPage.WANT, ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links });
+    this.send({ type: FromPage.WANT, ...wants, dynamics, contacts: wants.contacts || plotted.contacts, joints, links, sensors: plotted.sensors });
   }
 
   tellSize() {

@@ -103,6 +103,8 @@ export const FromPage = Object.freeze(/** @type {const} */ ({
   WANT: "want",
   /** The user drives a joint. */
   DRIVE: "drive",
+  /** The user sets the control of an actuator. */
+  CONTROL: "control",
   /** The user gives a joint back to the script. */
   GIVE_BACK: "give back",
   /** The user has moved a handle. */

@@ -103,6 +103,8 @@ WANT = Message(
         "dynamics": optional(FLAG, "Masses and inertias."),
         "constraints": optional(FLAG, "Constraints of scripts."),
         "rays": optional(FLAG, "Rays that scripts cast."),
+        "sensors": optional(listed(WHOLE), "Bodies whose sensors are read."),
+        "tendons": optional(FLAG, "Paths of tendons."),
     },
 )
 DRIVE = Message(
@@ -115,6 +117,15 @@ DRIVE = Message(
             one_of("position", "velocity", "torque"), "What the target is; a position if missing."
         ),
         "target": needed(NUMBER, "Target in units of the mode [m or rad, m/s or rad/s, N or N m]."),
+    },
+)
+CONTROL = Message(
+    "control",
+    "The user sets the control of an actuator.",
+    {
+        "body": _BODY,
+        "actuator": needed(WHOLE, "Number of the actuator among those of the body."),
+        "control": needed(NUMBER, "Its control."),
     },
 )
 GIVE_BACK = Message(

@@ -49,6 +49,8 @@ _LINK = record(
         "speed": NUMBER,
     },
 )
+_ACTUATOR = record({"name": STRING, "range": PAIR})
+_SENSOR = record({"name": STRING, "kind": STRING, "size": WHOLE})
 _END = record({"body": WHOLE, "link": WHOLE, "position": VECTOR})
 
 TITLE = Message(
@@ -103,6 +105,8 @@ BODY = Message(
         "path": needed(maybe(STRING), "The folder of its file and its name."),
         "links": needed(listed(_LINK), "Its links, the base first: their frames, and their joints."),
         "shapes": needed(listed(_SHAPE), "Its shapes, each in the inertial frame of a link, 0 for the base."),
+        "actuators": optional(listed(_ACTUATOR), "Its actuators, and the ranges of their sliders."),
+        "sensors": optional(listed(_SENSOR), "Its sensors, and how many numbers each gives."),
     },
     kept="body",
 )

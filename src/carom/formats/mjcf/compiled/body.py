@@ -14,7 +14,7 @@ from carom.formats.mjcf.compiled.compiler import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.contact import read_contact
 from carom.formats.mjcf.compiled.elements import Elements, Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
-from carom.formats.mjcf.compiled.joint import FREE, joint_type, read_joint
+from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
@@ -160,7 +160,7 @@ class BodyReader:
                 context.leave_out(
                     element, "the frame of the body is as stated", "frames are not moved to centres", "align"
                 )
-            _report_free_terms(scope, element)
+            _read_free_terms(scope, element, body)
             body.is_free = True
             self.model.joints.append((name, body.name, FREE))
             return
@@ -221,17 +221,18 @@ def _read_inertial(scope: Scope, element: Element) -> BodyInertia:
     return BodyInertia(mass, np.array(pose.position), turned_tensor(turn, tensor))
 
 
-def _report_free_terms(scope: Scope, element: Element) -> None:
-    """Report joint terms of a free joint that its class of defaults or itself states."""
+def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None:
+    """Read the terms of a free joint that its class of defaults or itself states; report others."""
     if element.tag == "freejoint":
         return
+    context = scope.context
     attributes: Attributes = scope.attributes(element)
-    terms = [
+    body.free_damping = first_number(scope, element, attributes, "damping")
+    body.free_armature = first_number(scope, element, attributes, "armature")
+    unbuilt = [
         name
-        for name in ("damping", "armature", "frictionloss", "stiffness")
-        if any(scope.context.singles(element, name, attributes.get(name, "")))
+        for name in ("frictionloss", "stiffness")
+        if any(context.singles(element, name, attributes.get(name, "")))
     ]
-    if terms:
-        scope.context.leave_out(
-            element, "the body moves without them", "free bodies have no such terms", *terms
-        )
+    if unbuilt:
+        context.leave_out(element, "the body moves without them", "free bodies have no such terms", *unbuilt)

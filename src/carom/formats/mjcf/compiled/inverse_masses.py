@@ -52,9 +52,9 @@ class _Tree:
         first, turn = len(self.armature), np.array(rotation_matrix(frame.orientation))
         if body.is_free:
             for axis in np.eye(3):
-                self._add(np.zeros(3), axis, 0.0)
+                self._add(np.zeros(3), axis, body.free_armature)
             for axis in turn.T:
-                self._add(axis, np.cross(np.array(frame.position), axis), 0.0)
+                self._add(axis, np.cross(np.array(frame.position), axis), body.free_armature)
         for each in body.joints:
             joint, begin = each.joint, len(self.armature)
             if joint.type is JointType.PRISMATIC:

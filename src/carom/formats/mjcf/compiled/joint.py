@@ -8,7 +8,7 @@ from carom.description import Joint, JointLimit, JointType
 from carom.description.pose import Vector3
 from carom.description.transform import rotate
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.model import CompiledJoint
+from carom.formats.mjcf.compiled.model import BallLimit, CompiledJoint
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
@@ -34,15 +34,20 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     anchor = scope.point(_triple(scope, element, attributes, "pos", (0.0, 0.0, 0.0)))
     axis = _axis(scope, element, attributes)
     lower, upper = _range(scope, element, attributes, kind)
-    if kind == "ball" and lower <= upper:
-        context.leave_out(element, "the joint turns without limit", "limits of balls are not built", "range")
-        lower, upper = _UNLIMITED
     limited = lower <= upper
+    turn_limit: BallLimit | None = None
+    if kind == "ball" and limited:
+        margin = context.number(element, attributes, "margin", 0.0)
+        turn_limit = BallLimit(
+            max(lower, upper), read_compliance(scope, element, attributes, "limit"), margin
+        )
+        lower, upper = _UNLIMITED
+        limited = False
     described = _TYPES[kind]
     if kind == "hinge" and not limited:
         described = JointType.CONTINUOUS
-    damping = _first(scope, element, attributes, "damping")
-    friction = _first(scope, element, attributes, "frictionloss")
+    damping = first_number(scope, element, attributes, "damping")
+    friction = first_number(scope, element, attributes, "frictionloss")
     if kind == "ball" and friction > 0.0:
         context.leave_out(element, "it has no friction", "friction of balls is not built", "frictionloss")
         friction = 0.0
@@ -57,8 +62,8 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
         limit=JointLimit(lower, upper, effort=_effort(bounds)),
         damping=damping,
         friction=friction,
-        armature=_first(scope, element, attributes, "armature"),
-        stiffness=_first(scope, element, attributes, "stiffness"),
+        armature=first_number(scope, element, attributes, "armature"),
+        stiffness=first_number(scope, element, attributes, "stiffness"),
         spring_reference=0.0 if kind == "ball" else _position(scope, element, attributes, "springref", kind),
         limit_compliance=read_compliance(scope, element, attributes, "limit") if limited else None,
         limit_margin=context.number(element, attributes, "margin", 0.0) if limited else 0.0,
@@ -67,7 +72,9 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     time_constant, ratio = context.numbers(
         element, "springdamper", attributes.get("springdamper", "0 0"), 2, 2
     )
-    return CompiledJoint(joint, anchor, reference, element, context, bounds, (time_constant, ratio))
+    return CompiledJoint(
+        joint, anchor, reference, element, context, bounds, (time_constant, ratio), turn_limit
+    )
 
 
 def _triple(scope: Scope, element: Element, attributes: Attributes, name: str, default: Vector3) -> Vector3:
@@ -96,7 +103,7 @@ def _range(scope: Scope, element: Element, attributes: Attributes, kind: str) ->
     """Lower and upper limit [rad or m]; lower > upper if there are none."""
     if not is_limited(scope, element, attributes, "limited", "range"):
         return _UNLIMITED
-    text = attributes.get("range")
+    text = attributes.get("range", "0 0" if kind == "ball" else None)
     if text is None:
         raise scope.context.error(element, "a limited joint needs a range")
     lower, upper = scope.context.numbers(element, "range", text, 2, 2)
@@ -143,7 +150,7 @@ def _actuator_range(scope: Scope, element: Element, attributes: Attributes) -> t
     return lower, upper
 
 
-def _first(scope: Scope, element: Element, attributes: Attributes, name: str) -> float:
+def first_number(scope: Scope, element: Element, attributes: Attributes, name: str) -> float:
     """The first number of an attribute; others are coefficients of higher powers."""
     text = attributes.get(name)
     if text is None:

@@ -23,6 +23,21 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
 
+@record
+class BallLimit:
+    """The limit of a spherical joint.
+
+    Attributes:
+        angle: The greatest angle of its rotation [rad].
+        compliance: How it yields.
+        margin: Angle from the limit at which it begins to act [rad].
+    """
+
+    angle: float
+    compliance: Compliance
+    margin: float
+
+
 @record(frozen=False, eq=False)
 class CompiledJoint:
     """A joint of a body; its frame, parent and child are set later.
@@ -35,6 +50,7 @@ class CompiledJoint:
         context: The reading of its file.
         actuator_range: Bounds of the sum of its actuators' forces [N m or N].
         spring_damper: Time constant [s] and damping ratio of its spring, if both are positive.
+        ball_limit: Of a spherical joint that is limited.
     """
 
     joint: Joint
@@ -44,6 +60,7 @@ class CompiledJoint:
     context: CompiledContext
     actuator_range: tuple[float, float] = (-inf, inf)
     spring_damper: tuple[float, float] = (0.0, 0.0)
+    ball_limit: BallLimit | None = None
 
 
 @record(frozen=False, eq=False)
@@ -56,6 +73,8 @@ class CompiledBody:
         pose: Of its frame in that of its parent.
         joints: Its joints, in order.
         is_free: It has a free joint.
+        free_damping: Damping of its free joint, along and about all axes [N s/m, N m s/rad].
+        free_armature: Armature of its free joint [kg, kg m²].
         is_mocap: It is moved by users only.
         inertia: Its mass.
         collisions: Its shapes that collide.
@@ -70,6 +89,8 @@ class CompiledBody:
     pose: Pose = IDENTITY
     joints: list[CompiledJoint] = field(default_factory=list)
     is_free: bool = False
+    free_damping: float = 0.0
+    free_armature: float = 0.0
     is_mocap: bool = False
     inertia: BodyInertia = field(default_factory=BodyInertia.none)
     collisions: list[Collision] = field(default_factory=list)
@@ -235,6 +256,7 @@ class FileTendon:
         spring_range: Lengths between which its spring is slack; None for that at the rest of all springs.
         range: Least and greatest length.
         friction: Greatest force of its friction.
+        armature: Inertia along it.
         limit_compliance: How its limit yields.
         limit_margin: Distance from its limit at which it begins to act [m].
     """
@@ -249,6 +271,7 @@ class FileTendon:
     friction: float
     limit_compliance: Compliance = Compliance()
     limit_margin: float = 0.0
+    armature: float = 0.0
 
 
 @record

@@ -15,7 +15,12 @@ _INTEGRATORS = {
     "RK4": "steps are of first order in time",
     "implicit": "what rotations do to velocities is not implicit",
 }
-DEFAULTS: dict[str, Any] = {"timestep": 0.002, "gravity": (0.0, 0.0, -9.81)}
+DEFAULTS: dict[str, Any] = {
+    "timestep": 0.002,
+    "gravity": (0.0, 0.0, -9.81),
+    # Not MuJoCo's: with less, errors of constraints that yield do not become less; see `Scene.apply_options`.
+    "solver_residual_threshold": 1e-11,
+}
 
 
 def read_option(context: CompiledContext, element: Element, options: dict[str, Any]) -> None:

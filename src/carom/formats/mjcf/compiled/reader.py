@@ -98,6 +98,7 @@ def compile_mjcf(
                 element.note()
     tendons = TendonReader(model, names, reader, whole)
     tendons.read(scope)
+    tendons.add_ball_limits()
     model.still = tendons.still
     ActuatorReader(model, names, tendons.moving).read(scope)
     model.robots = [_driven(placed, model) for placed in model.robots]
@@ -119,7 +120,9 @@ def _driven(placed: PlacedRobot, model: CompiledModel) -> PlacedRobot:
     def is_own(spec: ActuatorSpec) -> bool:
         if spec.tendon:
             return model.tendons[spec.tendon].robot == placed.robot.name
-        return model.sites[spec.site].body in links if spec.site else spec.joint in joints
+        if spec.site:
+            return any(model.sites[name].body in links for name in (spec.site, spec.slider_site) if name)
+        return spec.joint in joints
 
     actuators = (it.spec for it in model.actuators if it.spec is not None and is_own(it.spec))
     return replace(placed, robot=replace(placed.robot, actuators=tuple(actuators)))

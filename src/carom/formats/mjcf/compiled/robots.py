@@ -33,17 +33,30 @@ def robot_of_world(world: CompiledBody) -> PlacedRobot | None:
 def robot_of_body(body: CompiledBody) -> PlacedRobot:
     """The robot whose root is a body of the world.
 
-    A body with joints hangs from a massless link, fixed in the world, with the frame of the world.
+    A body with joints hangs from a massless link, fixed in the world, with the frame of the world. A free
+    body with damping or armature is fixed to a massless link with its frame.
     """
     maker = _Maker()
     if body.joints:
         maker.links.append(Link(WORLD, MASSLESS))
         maker.add(body, 0)
         pose = IDENTITY
+    elif body.free_damping != 0.0 or body.free_armature != 0.0:
+        # These are of the motion of the body's frame, not of its centre of mass: so that frame is the base.
+        maker.links.append(Link(f"{body.name}@free", MASSLESS))
+        maker.add(body, 0, IDENTITY)
+        pose = body.pose
     else:
         maker.add(body, None)
         pose = body.pose
-    robot = Robot(body.name, tuple(maker.links), tuple(maker.joints), is_mocap=body.is_mocap)
+    robot = Robot(
+        body.name,
+        tuple(maker.links),
+        tuple(maker.joints),
+        is_mocap=body.is_mocap,
+        base_damping=body.free_damping,
+        base_armature=body.free_armature,
+    )
     return PlacedRobot(robot, pose, fixed_base=not body.is_free)
 
 
@@ -52,9 +65,12 @@ class _Maker:
         self.links: list[Link] = []
         self.joints: list[Joint] = []
 
-    def add(self, body: CompiledBody, parent: int | None) -> None:
-        """Add a body and all bodies in it; `parent` is the link of the body around it."""
-        frame = body.pose
+    def add(self, body: CompiledBody, parent: int | None, frame: Pose | None = None) -> None:
+        """Add a body and all bodies in it; `parent` is the link of the body around it.
+
+        Its frame in that of the parent is `frame` if it is not that of the body.
+        """
+        frame = body.pose if frame is None else frame
         for number, joint in enumerate(body.joints):
             assert parent is not None, "only the root has no parent, and it has no joints then"
             is_last = number == len(body.joints) - 1

@@ -16,6 +16,7 @@ from carom.formats.mjcf.compiled.joint import is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, full, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
+from carom.formats.mjcf.defaults import Attributes
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
@@ -76,9 +77,36 @@ class TendonReader:
                         inverse_mass=self._inverse_mass(robot, parts),
                     ),
                     copy.context.number(element, attributes, "margin", 0.0),
+                    self._armature(copy, element, attributes),
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)
+
+    def add_ball_limits(self) -> None:
+        """Add the limits of spherical joints: tendons along the angles of their rotations."""
+        for name, (_, joint) in self._names.joints.items():
+            if (limit := joint.ball_limit) is not None:
+                robot, inverse_mass = self._robot_of_joint[name], self.model.joint_weights[name]
+                self.model.tendons[f"{name}@limit"] = FileTendon(
+                    f"{name}@limit",
+                    (FilePart(PathKind.BALL, name, size=1.0),),
+                    robot,
+                    stiffness=0.0,
+                    damping=0.0,
+                    spring_range=None,
+                    range=(-inf, limit.angle),
+                    friction=0.0,
+                    limit_compliance=replace(limit.compliance, inverse_mass=inverse_mass),
+                    limit_margin=limit.margin,
+                )
+
+    @staticmethod
+    def _armature(scope: Scope, element: Element, attributes: Attributes) -> float:
+        armature = scope.context.number(element, attributes, "armature", 0.0)
+        if armature and element.tag == "spatial":
+            consequence = "its armature is as if its moment arms were constant"
+            scope.context.leave_out(element, consequence, "what their rates add is not built", "armature")
+        return armature
 
     def _copies(self, scope: Scope, element: Element) -> list[Scope]:
         """The scopes in which what a tendon refers to is known."""
@@ -162,7 +190,7 @@ class TendonReader:
         try:
             TendonSpec(
                 tendon.name, path, tendon.stiffness, tendon.damping, tendon.spring_range, tendon.range,
-                tendon.friction,
+                tendon.friction, armature=tendon.armature,
             ).check()  # fmt: skip
         except DescriptionError as problem:
             raise scope.context.error(element, problem.reason) from None

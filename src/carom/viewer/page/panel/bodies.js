@@ -1,4 +1,4 @@
-// The list of bodies, and the data of the selected body, with sliders that drive its joints.
+// The list of bodies, and the data of the selected body, with sliders that drive its joints and actuators.
 
 import { fixed, shown } from "./numbers.js";
 import { makeSlider } from "./slider.js";
@@ -34,6 +34,8 @@ export class Bodies {
     this.selected = null;
     this.link = null;
     this.sliders = new Map();
+    /** Sliders of actuators. */
+    this.controls = new Map();
     this.known = "";
     /** Called with body and link (or null) when the selection changes. */
     this.selectionChanged = (_body, _link) => {};
@@ -89,6 +91,7 @@ export class Bodies {
 
   build() {
     this.sliders.clear();
+    this.controls.clear();
     this.card.replaceChildren();
     const body = this.scene.bodies.get(this.selected);
     this.card.hidden = !body;
@@ -102,7 +105,25 @@ export class Bodies {
     body.links.forEach((link, index) => {
       if (MOVABLE.test(link.kind ?? "")) this.card.append(this.jointSlider(body.body, index - 1, link));
     });
+    (body.actuators ?? []).forEach((actuator, index) => this.card.append(this.actuatorSlider(body.body, index, actuator)));
     this.show();
+  }
+
+  /** A slider for the control of an actuator; the script may set it again. */
+  actuatorSlider(body, actuator, { name, range: [lower, upper] }) {
+    const control = makeSlider(`actuator-${body}-${actuator}`, name, (value) => {
+      this.send({ type: FromPage.CONTROL, body, actuator, control: value });
+    });
+    const now = Object.assign(document.createElement("small"), { className: "now" });
+    control.element.append(now);
+    this.controls.set(`${body},${actuator}`, { ...control, now, lower, upper });
+    return control.element;
+  }
+
+  showActuator({ now, lower, upper, show }, reading) {
+    if (!reading) return;
+    now.textContent = `force ${fixed(reading.force, 2)}`;
+    show({ lower, upper, value: Math.min(Math.max(reading.control, lower), upper) });
   }
 
   jointSlider(body, joint, link) {
@@ -177,6 +198,7 @@ export class Bodies {
       );
     }
     for (const [key, slider] of this.sliders) this.showJoint(slider, this.readings.joints.get(key));
+    for (const [key, control] of this.controls) this.showActuator(control, this.readings.actuators.get(key));
   }
 
   /** Copies the state of the selected body as calls that restore it. */

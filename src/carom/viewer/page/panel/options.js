@@ -44,6 +44,7 @@ export class Options {
     this.masses = false;
     this.inertias = false;
     this.constraints = false;
+    this.tendons = false;
     this.rays = false;
     this.cameras = false;
     this.linkNames = false;
@@ -81,6 +82,7 @@ export class Options {
       dynamics: this.masses || this.inertias,
       constraints: this.constraints,
       rays: this.rays,
+      tendons: this.tendons,
     };
   }
 

@@ -75,10 +75,11 @@ export class Plots {
 
   /** The data that the plots need from the simulation. */
   get wants() {
-    const wants = { joints: [], links: [], contacts: false };
+    const wants = { joints: [], links: [], contacts: false, sensors: [] };
     for (const { source } of this.plotted.values()) {
       wants.joints.push(...(source.wants.joints ?? []));
       wants.links.push(...(source.wants.links ?? []));
+      wants.sensors.push(...(source.wants.sensors ?? []));
       wants.contacts ||= !!source.wants.contacts;
     }
     return wants;

@@ -19,7 +19,7 @@ const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
  * @property {string} title
  * @property {{name: string, unit?: string, traces: {name: string, target?: boolean}[]}[]} charts
  * @property {(frame: Facts) => ?(?number)[][]} read null if the frame does not have the quantity
- * @property {{joints?: number[], links?: [number, number][], contacts?: boolean}} wants what is to be asked for
+ * @property {{joints?: number[], links?: [number, number][], contacts?: boolean, sensors?: number[]}} wants what is to be asked for
  */
 
 /**
@@ -35,7 +35,7 @@ const XYZ = [{ name: "x" }, { name: "y" }, { name: "z" }];
  */
 export function sourcesOf(scene, valueNames) {
   /** @type {Record<string, Source[]>} */
-  const groups = { Joints: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
+  const groups = { Joints: [], Actuators: [], Sensors: [], Bodies: [], "Contact forces": [], "Force-torque sensors": [], Values: [] };
   const titles = titlesOf(scene);
   for (const body of scene.bodies.values()) {
     const title = titles.get(body.body);
@@ -43,6 +43,8 @@ export function sourcesOf(scene, valueNames) {
       if (MOVABLE.test(link.kind ?? "")) groups.Joints.push(jointSource(body, title, index - 1, link));
       if (index > 0) groups["Force-torque sensors"].push(sensorSource(body, title, index - 1, link));
     });
+    (body.actuators ?? []).forEach(({ name }, index) => groups.Actuators.push(actuatorSource(body, title, index, name)));
+    (body.sensors ?? []).forEach((sensor, index) => groups.Sensors.push(readingSource(body, title, index, sensor)));
     groups.Bodies.push(bodySource(body));
     groups["Contact forces"].push(contactSource(body));
   }
@@ -65,6 +67,30 @@ function jointSource({ body }, name, joint, link) {
   const units = link.kind === "prismatic" ? ["m", "m/s", "N"] : ["rad", "rad/s", "N·m"];
   const charts = ["position", "velocity", "torque"].map((quantity, i) => ({ name: quantity, unit: units[i], traces: [{ name: "" }, { name: "target", target: true }] }));
   return { key: `${body},${joint}`, title: `${name} · ${link.joint}`, charts, read, wants: { joints: [body] } };
+}
+
+/** @returns {Source} */
+function actuatorSource({ body }, owner, index, name) {
+  const read = ({ readings }) => {
+    const row = readings.actuators.get(`${body},${index}`);
+    return row ? [[row.control, row.activation], [row.force]] : null;
+  };
+  const charts = [
+    { name: "control", traces: [{ name: "" }, { name: "activation", target: true }] },
+    { name: "force", traces: [{ name: "" }] },
+  ];
+  return { key: `actuator ${body},${index}`, title: `${owner} · ${name}`, charts, read, wants: { joints: [body] } };
+}
+
+/** @returns {Source} of a sensor; up to four numbers are the lines of one chart */
+function readingSource({ body }, owner, index, { name, kind, size }) {
+  const read = ({ readings }) => {
+    const values = readings.sensors.get(`${body},${index}`);
+    return values ? [values.slice(0, size)] : null;
+  };
+  const names = size === 1 ? [""] : size <= 4 ? ["x", "y", "z", "w"] : Array.from({ length: size }, (_, i) => String(i));
+  const charts = [{ name: kind, traces: names.slice(0, size).map((each) => ({ name: each })) }];
+  return { key: `reading ${body},${index}`, title: `${owner} · ${name}`, charts, read, wants: { sensors: [body] } };
 }
 
 /** @returns {Source} */

@@ -31,6 +31,7 @@ const GROUPS = [
     ["positions", "Positions", ""],
     ["limits", "Limits", "L"],
     ["constraints", "Constraints", "K"],
+    ["tendons", "Tendons", ""],
     ["masses", "Centres of mass", ""],
     ["inertias", "Inertia boxes", ""],
     ["skeleton", "Skeleton", ""],

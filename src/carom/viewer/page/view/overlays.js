@@ -1,4 +1,4 @@
-// Lines that the page draws over the scene: frames, bounding boxes, masses, constraints, rays.
+// Lines that the page draws over the scene: frames, bounding boxes, masses, constraints, tendons, rays.
 
 import { add, scale, turned } from "./maths.js";
 import { boundsOfLink } from "./bounds.js";
@@ -31,6 +31,8 @@ const BEYOND = [0.6, 0.65, 0.7];
 const CAMERA = [0.35, 0.3, 0.75];
 const BONE = [0.95, 0.75, 0.15];
 const TRAIL = [0.9, 0.3, 0.55];
+const TENDON = [0.75, 0.3, 0.2];
+const TENDON_AT_LIMIT = [0.95, 0.55, 0.1];
 
 export class Overlays {
   constructor(scene, options, readings, handles, camera) {
@@ -101,6 +103,7 @@ export class Overlays {
     if (options.bounds) this.eachLink((body, link) => this.addBounds(boundsOfLink(scene, body, link, options.collisions), BOUNDS));
     this.addSelection();
     if (options.constraints) this.addConstraints();
+    if (options.tendons) this.addTendons();
     if (options.rays) this.addRays();
     if (options.cameras && !this.camera.lens) this.addCamera();
     if (options.trail) this.addTrail();
@@ -163,6 +166,12 @@ export class Overlays {
       if (!a || !b) continue;
       this.lines.line(a, b, TIE, 2.5);
       for (const end of [a, b]) this.lines.star(end, 0.02, TIE);
+    }
+  }
+
+  addTendons() {
+    for (const { body, start, end, atLimit } of this.readings.tendons) {
+      if (!this.scene.hidden.has(body)) this.lines.line(start, end, atLimit ? TENDON_AT_LIMIT : TENDON, 4);
     }
   }
 

@@ -1,9 +1,13 @@
-// Data in a frame besides poses: contacts, joints, and velocities of links, in columns of numbers.
+// Data in a frame besides poses: contacts, joints, velocities of links and so on, in columns of numbers.
 
 /** Numbers of columns; src/carom/viewer/readings.py documents them. */
 const CONTACT = 16;
 const JOINT = 8;
 const LINK = 14;
+const ACTUATOR = 5;
+const SENSOR = 4;
+const TENDON = 9;
+const WIDTHS = { contacts: CONTACT, joints: JOINT, links: LINK, actuators: ACTUATOR, sensors: SENSOR, tendons: TENDON };
 
 export class Readings {
   constructor() {
@@ -14,6 +18,7 @@ export class Readings {
     this.contacts = [];
     this.joints = new Map();
     this.links = new Map();
+    this.clearDriven();
     this.values = {};
   }
 
@@ -24,12 +29,35 @@ export class Readings {
     this.contacts = [];
     this.joints = new Map();
     this.links = new Map();
+    this.clearDriven();
     for (const [kind, count] of blocks) {
-      const width = { contacts: CONTACT, joints: JOINT, links: LINK }[kind];
+      const width = WIDTHS[kind];
       const numbers = new Float32Array(payload, at, count * width);
       at += numbers.byteLength;
       for (let row = 0; row < count; row++) this[`add_${kind}`](numbers.subarray(row * width, (row + 1) * width));
     }
+  }
+
+  clearDriven() {
+    this.actuators = new Map();
+    /** The numbers of each sensor. */
+    this.sensors = new Map();
+    /** The straight pieces of tendons. */
+    this.tendons = [];
+  }
+
+  add_actuators([body, actuator, control, force, activation]) {
+    this.actuators.set(`${body},${actuator}`, { control, force, activation: Number.isNaN(activation) ? null : activation });
+  }
+
+  add_sensors([body, sensor, place, value]) {
+    const key = `${body},${sensor}`;
+    if (!this.sensors.has(key)) this.sensors.set(key, []);
+    this.sensors.get(key)[place] = value;
+  }
+
+  add_tendons(row) {
+    this.tendons.push({ body: row[0], start: [...row.subarray(1, 4)], end: [...row.subarray(4, 7)], force: row[7], atLimit: row[8] > 0 });
   }
 
   add_contacts(row) {

@@ -37,7 +37,7 @@ _DYNAMICS = {
     FILTER_EXACT: ActivationDynamics.FILTER_EXACT,
     MUSCLE: ActivationDynamics.MUSCLE,
 }
-_TRANSMISSIONS = ("body", "cranksite", "slidersite")
+_TRANSMISSIONS = ("body",)
 _UNBOUNDED = (-inf, inf)
 _NO_FORCE = (0.0, 0.0)
 _LOST = "it does not act"
@@ -64,8 +64,9 @@ class ActuatorReader:
             attributes, law = _law(of, element)
             joint = attributes.get("joint") or attributes.get("jointinparent") or ""
             tendon, site = attributes.get("tendon") or "", attributes.get("site") or ""
+            crank = attributes.get("cranksite") or ""
             unbuilt = any(attributes.get(name) for name in _TRANSMISSIONS)
-            if element.tag == "plugin" or law.unbuilt() or unbuilt or not (joint or tendon or site):
+            if element.tag == "plugin" or law.unbuilt() or unbuilt or not (joint or tendon or site or crank):
                 self._leave_out(of, element, attributes, law)
             elif joint:
                 for copy in self.names.copies_or_missing(of, element, [joint], known, "joint"):
@@ -74,6 +75,8 @@ class ActuatorReader:
                 tendons = {*self.model.tendons}
                 for copy in self.names.copies_or_missing(of, element, [tendon], tendons, "tendon"):
                     self._add_to_tendon(copy, element, attributes, law, full(copy, tendon))
+            elif crank:
+                self._read_crank(of, element, attributes, law, crank)
             else:
                 self._read_sites(of, element, attributes, law, site)
         self._bound_joints()
@@ -98,6 +101,26 @@ class ActuatorReader:
             spec = ActuatorSpec(
                 "", "", site=of_site, reference_site=of_reference, wrench=(fx, fy, fz, tx, ty, tz)
             )
+            self._add_path(copy, element, attributes, law, spec, problem, None)
+
+    def _read_crank(
+        self, scope: Scope, element: Element, attributes: Attributes, law: Law, crank: str
+    ) -> None:
+        context, sites = scope.context, {*self.model.sites}
+        slider = attributes.get("slidersite") or ""
+        if not slider:
+            raise context.error(element, "a crank needs a slidersite")
+        rod = context.number(element, attributes, "cranklength", 0.0)
+        if not rod > 0.0:
+            raise context.error(element, f"cranklength={rod:g} must be greater than 0")
+        gear = context.numbers(element, "gear", attributes.get("gear", "1"), 1, 6)[0]
+        for copy in self.names.copies_or_missing(scope, element, [crank, slider], sites, "site"):
+            ends = full(copy, crank), full(copy, slider)
+            moved = {self.moving.get(self.model.sites[name].body, "") for name in ends} - {""}
+            problem = "" if gear else "its gear is 0"
+            if len(moved) != 1:
+                problem = "it pulls bodies of the world that move apart" if moved else "it moves nothing"
+            spec = ActuatorSpec("", "", site=ends[0], gear=gear or 1.0, slider_site=ends[1], rod=rod)
             self._add_path(copy, element, attributes, law, spec, problem, None)
 
     def _add_to_tendon(
@@ -156,7 +179,8 @@ class ActuatorReader:
     def _robot_of(self, spec: ActuatorSpec) -> str:
         if spec.tendon:
             return self.model.tendons[spec.tendon].robot
-        return self.moving[self.model.sites[spec.site].body]
+        ends = [self.model.sites[name].body for name in (spec.site, spec.slider_site) if name]
+        return next(self.moving[body] for body in ends if body in self.moving)
 
     def _unknown_force(self, muscle: MuscleSpec | None, robot: str) -> str:
         """Why the force of a muscle is not known; empty if it is."""

@@ -1,0 +1,317 @@
+"""What Carom makes of MJCF files beside the answers of `ask_mujoco.py`.
+
+    python ask_carom.py ANSWERS ERRORS [--whole]
+
+A line of ERRORS has the errors of one file, by question, as JSON. Contacts, limits, dry friction and equality
+constraints are off, unless the whole file is asked about: then only the rollout with everything is compared.
+Files that are in ERRORS already are left out, so it can be run again after a crash.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import logging
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from carom import World, algorithms
+from carom.description.keyframe import BodyKeyframe
+from carom.description.pose import Pose
+from carom.description.transform import rotation_matrix
+from carom.formats.mjcf.compiled import option
+from carom.scene.body import Body
+from carom.scene.joint import Joint
+from carom.world.scene import Scene
+
+FREE, BALL = 0, 1
+COUNTS = {FREE: (7, 6), BALL: (4, 3)}
+LEAST = {"poses": 1e-3, "matrix": 1e-9, "bias": 1e-3, "acceleration": 1e-2, "forces": 1e-3, "sensors": 1e-3}
+"""Greatest values of a file less than these count as these: errors are relative to the greatest value."""
+STEP = 1e-8
+OFF = ("contact", "limit", "frictionloss", "equality")
+# Sensors that tell what constraints do, or of which MuJoCo 4.0 gives nothing to compare with.
+NOT_COMPARED = ("touch", "contact", "tactile")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("answers", type=Path)
+    parser.add_argument("errors", type=Path)
+    parser.add_argument("--whole", action="store_true")
+    arguments = parser.parse_args()
+    logging.disable(logging.WARNING)
+    if not arguments.whole:
+        option.DEFAULTS |= {f"flag.{name}": False for name in OFF}
+    done = arguments.errors.read_text().splitlines() if arguments.errors.exists() else []
+    known = {json.loads(line)["file"] for line in done}
+    for line in arguments.answers.read_text().splitlines():
+        answer = json.loads(line)
+        if answer["file"] in known or "error" in answer:
+            continue
+        begin = time.process_time()
+        with arguments.errors.open("a") as out:
+            place = out.tell()
+            out.write(json.dumps({"file": answer["file"], "crash": "Carom crashed"}) + "\n")
+        try:
+            found = compared(answer, whole=arguments.whole)
+        except Exception as error:
+            found = {
+                "crash": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:300]
+            }
+        found |= {"file": answer["file"], "seconds": time.process_time() - begin}
+        with arguments.errors.open("r+") as out:
+            out.truncate(place)
+            out.seek(place)
+            out.write(json.dumps(found) + "\n")
+
+
+def compared(answer: dict[str, Any], *, whole: bool) -> dict[str, Any]:
+    """The errors of a file by question, and what Carom says that it leaves out."""
+    with World() as world:
+        begin = time.process_time()
+        scene = world.load(answer["file"])
+        found: dict[str, Any] = {"load_seconds": time.process_time() - begin}
+        found["ignored"] = sorted(
+            {f"{it.element}: {it.consequence}: {it.reason}" for it in scene.ignored.that_matter}
+        )
+        scene.apply_options()
+        model = Model(scene, answer)
+        if whole:
+            if "rollout" in answer and model.is_equal:
+                found["rollout"] = rolled_out(model, answer, "rollout")
+            return found
+        found["structure"] = float(not model.is_equal)
+        found["total mass"] = relative([total_mass(scene) - answer["total"]], [answer["total"]], 1e-9)
+        found["masses"] = relative(*masses(model, answer), 1e-9)
+        found["reference"] = relative(*model.poses(answer["poses"]), LEAST["poses"])
+        if "states" not in answer or not model.is_equal:
+            return found
+        for number, state in enumerate(answer["states"]):
+            for name, error in in_state(model, state, number).items():
+                found[name] = max(found.get(name, 0.0), error)
+        found["rollout alone"] = rolled_out(model, answer, "alone")
+    return found
+
+
+class Model:
+    """A scene beside MuJoCo's model: bodies by name, joints in the order of the file."""
+
+    def __init__(self, scene: Scene, answer: dict[str, Any]) -> None:
+        self.scene = scene
+        self.links = {link.name: link for body in reversed(scene.bodies) for link in body.links}
+        kinds = {name: body for body, name in ((body, body.name) for body in scene.bodies)}
+        self.joints: list[tuple[Body, Joint | None]] = []
+        for body in scene.bodies:
+            if not body.fixed_base:
+                self.joints.append((body, None))
+            self.joints += [(body, joint) for joint in body.joints.movable]
+        stated = answer["joints"]
+        named = [name for name in answer["bodies"] if name]
+        self.is_equal = (
+            len(stated) == len(self.joints)
+            and all(name in self.links for name in named)
+            and all(
+                (kind == FREE) == (joint is None)
+                for (_, kind), (_, joint) in zip(stated, self.joints, strict=True)
+            )
+            and all(
+                joint is None or not name or joint.name == name
+                for (name, _), (_, joint) in zip(stated, self.joints, strict=True)
+            )
+            and len(kinds) == len(scene.bodies)
+        )
+        self.answer = answer
+        # Names of actuators as Carom has them, which makes some up.
+        self.actuators = [name for name, _ in answer["actuators"]]
+        if len(scene.actuators) == len(self.actuators):
+            self.actuators = list(scene.actuators)
+
+    def set(self, name: str, qpos: list[float], qvel: list[float], ctrl: list[float]) -> None:
+        """Put the scene into a state as MuJoCo states it."""
+        parts: dict[str, dict[str, Any]] = {
+            body.name: {"positions": [], "velocities": []} for body in self.scene.bodies
+        }
+        q = v = 0
+        for (_, kind), (body, _) in zip(self.answer["joints"], self.joints, strict=True):
+            positions, velocities = COUNTS.get(kind, (1, 1))
+            own, rates = qpos[q : q + positions], qvel[v : v + velocities]
+            q, v = q + positions, v + velocities
+            part = parts[body.name]
+            if kind == FREE:
+                pose = Pose((own[0], own[1], own[2]), (own[4], own[5], own[6], own[3]))
+                turn = np.array(rotation_matrix(pose.orientation))
+                part |= {"pose": pose, "linear_velocity": tuple(rates[:3])}
+                part["angular_velocity"] = tuple((turn @ rates[3:]).tolist())
+            else:
+                part["positions"] += [*own[1:], own[0]] if kind == BALL else own
+                part["velocities"] += rates
+        controls = dict(zip(self.actuators, ctrl, strict=True))
+        for body in self.scene.bodies:
+            part = parts[body.name]
+            values = tuple(controls.get(it.name, 0.0) for it in body.actuators)
+            body.add_keyframe(
+                BodyKeyframe(
+                    name,
+                    pose=part.get("pose"),
+                    linear_velocity=part.get("linear_velocity"),
+                    angular_velocity=part.get("angular_velocity"),
+                    positions=tuple(part["positions"]),
+                    velocities=tuple(part["velocities"]),
+                    controls=values or None,
+                )
+            )
+        self.scene.reset(name)
+
+    def poses(self, answer: list[list[float]]) -> tuple[list[float], list[float]]:
+        """Errors of poses of the bodies that have names, and MuJoCo's positions."""
+        errors, sizes = [0.0], [0.0]
+        for name, numbers in zip(self.answer["bodies"], answer, strict=True):
+            if name in self.links:
+                pose = self.links[name].pose
+                errors += [a - b for a, b in zip(pose.position, numbers[:3], strict=True)]
+                turn = np.reshape(rotation_matrix(tuple(pose.orientation)), 9)
+                errors += (turn - numbers[3:]).tolist()
+                sizes += numbers[:3]
+        return errors, sizes
+
+
+def total_mass(scene: Scene) -> float:
+    """Mass of all links that can move."""
+    total = 0.0
+    for body in scene.bodies:
+        moving = {-1} if not body.fixed_base else set()
+        for index, link in enumerate(body.spec.links):
+            if link.parent in moving or body.velocity_count[index]:
+                moving.add(index)
+        total += sum(body.dynamics(link).mass for link in moving)
+    return total
+
+
+def masses(model: Model, answer: dict[str, Any]) -> tuple[list[float], list[float]]:
+    """Errors of masses of the bodies that have names and move, and MuJoCo's masses."""
+    stated = zip(answer["bodies"], answer["masses"], answer["moves"], strict=True)
+    known = [(model.links[name].mass, mass) for name, mass, moves in stated if moves and name in model.links]
+    return [a - b for a, b in known] or [0.0], [mass for _, mass in known] or [1.0]
+
+
+def relative(errors: Any, values: Any, least: float) -> float:
+    """The greatest error over the greatest value."""
+    greatest = float(np.abs(errors).max(initial=0.0)) / max(float(np.abs(values).max(initial=0.0)), least)
+    return greatest if np.isfinite(greatest) else 1e9
+
+
+def in_state(model: Model, state: dict[str, Any], number: int) -> dict[str, float]:
+    """The errors of what follows from a state."""
+    scene, found = model.scene, {}
+    world = scene.world
+    model.set(f"asked {number}", state["qpos"], state["qvel"], state["ctrl"])
+    found["poses"] = relative(*model.poses(state["poses"]), LEAST["poses"])
+    matrix, bias = dynamics_of(model, np.array(state["qvel"]))
+    wanted = np.array(state["matrix"])
+    found["mass matrix"] = relative(matrix - wanted, wanted, LEAST["matrix"])
+    found["bias"] = relative(bias - state["bias"], state["bias"], LEAST["bias"])
+    before = velocities(model)
+    found_rates = []
+    for step in (STEP, 0.5 * STEP):
+        scene.reset(f"asked {number}")
+        world.parameters.time_step = step
+        world.apply_parameters()
+        world.step()
+        found_rates.append((velocities(model) - before) / step)
+    acceleration = 2.0 * found_rates[1] - found_rates[0]
+    wanted = np.array(state["acceleration"])
+    found["acceleration"] = relative(acceleration - wanted, wanted, LEAST["acceleration"])
+    told = zip(model.actuators, state["forces"], strict=True)
+    forces = [(scene.actuators[name].force, value) for name, value in told if name in scene.actuators]
+    if forces:
+        found["forces of actuators"] = relative(
+            [a - b for a, b in forces], [b for _, b in forces], LEAST["forces"]
+        )
+    errors: list[float] = []
+    sensors = scene.sensors
+    for name, at, size, _ in model.answer["sensors"]:
+        if name in sensors and sensors[name].spec.kind.name.lower() not in NOT_COMPARED:
+            values = np.array(state["sensors"][at : at + size])
+            errors.append(relative(np.ravel(sensors[name].read()) - values, values, 1.0))
+    if errors:
+        found["sensors"] = max(errors)
+    scene.apply_options()
+    return found
+
+
+def velocities(model: Model) -> np.ndarray:
+    """All velocities as MuJoCo has them in `qvel`."""
+    parts: list[float] = []
+    for body, joint in model.joints:
+        if joint is not None:
+            parts += np.ravel(joint.rates).tolist()
+            continue
+        base = body.links[-1]
+        turn = np.array(rotation_matrix(tuple(base.pose.orientation)))
+        omega = np.array(base.velocity.angular)
+        lever = np.array(base.pose.position) - np.array(base.inertial_pose.position)
+        parts += (np.array(base.velocity.linear) + np.cross(omega, lever)).tolist()
+        parts += (turn.T @ omega).tolist()
+    return np.array(parts)
+
+
+def dynamics_of(model: Model, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The mass matrix and the bias forces of all bodies, for MuJoCo's velocities."""
+    count = len(rates)
+    matrix, bias = np.zeros((count, count)), np.zeros(count)
+    first = 0
+    for body in dict.fromkeys(body for body, _ in model.joints):
+        dofs = sum(joint.degrees_of_freedom for joint in body.joints.movable) + (0 if body.fixed_base else 6)
+        rows = slice(first, first + dofs)
+        own, first = rates[rows], first + dofs
+        positions = body.joints.positions
+        change, added = np.eye(dofs), np.zeros(dofs)
+        order = np.arange(dofs)
+        if not body.fixed_base:
+            base = body.links[-1]
+            pose = base.inertial_pose
+            turn = np.array(rotation_matrix(tuple(base.pose.orientation)))
+            inertial = np.array(rotation_matrix(tuple(pose.orientation)))
+            lever = np.array(pose.position) - np.array(base.pose.position)
+            # Carom's velocities are change @ MuJoCo's, and their derivatives also have what is added.
+            change[:6, :6] = 0.0
+            change[:3, 3:6] = inertial.T @ turn
+            change[3:6, :3] = inertial.T
+            cross = np.array([[0, lever[2], -lever[1]], [-lever[2], 0, lever[0]], [lever[1], -lever[0], 0]])
+            change[3:6, 3:6] = inertial.T @ cross @ turn
+            omega = turn @ own[3:6]
+            added[3:6] = inertial.T @ np.cross(omega, np.cross(omega, lever))
+            order[:6] = (3, 4, 5, 0, 1, 2)
+            positions = [*pose.position, *pose.orientation, *positions]
+        matrix[rows, rows] = change.T @ algorithms.mass_matrix(body, body.joints.positions) @ change
+        forces = algorithms.inverse_dynamics(body, positions, change @ own, added)
+        bias[rows] = change.T @ np.asarray(forces)[order]
+    return matrix, bias
+
+
+def rolled_out(model: Model, answer: dict[str, Any], name: str) -> float | None:
+    """Greatest error of a position after a second, over the greatest one; None if MuJoCo has no answer."""
+    if answer[name] is None:
+        return None
+    scene = model.scene
+    with World() as world:
+        scene = world.load(answer["file"])
+        scene.apply_options()
+        if keys := scene.keyframes:
+            key = next(iter(keys))
+            scene.reset(key)
+            for actuator in scene.actuators.values():
+                if actuator.spec.dynamics:
+                    actuator.activation = 0.0
+        world.step(round(1.0 / answer["timestep"]))
+        errors, sizes = Model(scene, answer).poses(answer[name])
+    places = [error for i, error in enumerate(errors[1:]) if i % 12 < 3]
+    return relative(places, sizes, LEAST["poses"])
+
+
+if __name__ == "__main__":
+    main()
