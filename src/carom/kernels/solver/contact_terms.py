@@ -193,9 +193,6 @@ def contact_terms(
         shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
     )
     terms.ignored = Int32(terms.distance > solved_up_to)
-    if terms.ignored != 0:
-        # Rows without inverse mass are off; softness alone would make them push without bound.
-        terms.softness = real(0.0)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b
     )
@@ -228,7 +225,7 @@ def contact_terms(
             settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal
         )
     if terms.ignored != 0:
-        # A row on which no impulse acts does not yield to one either.
+        # Rows without inverse mass are off; softness alone would make them push without bound.
         terms.softness = real(0.0)
         terms.lateral_softness = real(0.0)
     return terms
