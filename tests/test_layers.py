@@ -23,7 +23,6 @@ FLOORS = (
         "carom.errors",
         "carom.logger",
         "carom.forks",
-        "carom.record",
         "carom.suggestions",
         "carom.version",
         "carom.writing",
@@ -72,12 +71,12 @@ FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
 
 # Rooms that are kept free of the others below them, and what they may import.
 KEPT_APART = {
-    "carom.description": {"carom.errors", "carom.record", "carom.layouts", "carom.native"},
-    "carom.geometry": {"carom.errors", "carom.record", "carom.description", "carom.native"},
-    "carom.layouts": {"carom.record"},
+    "carom.description": {"carom.errors", "carom.layouts", "carom.native"},
+    "carom.geometry": {"carom.errors", "carom.description", "carom.native"},
+    "carom.layouts": set(),
     # Device code: nothing that runs on the host imports it but what compiles and launches it.
     "carom.kernels": {"carom.layouts"},
-    "carom.native": {"carom.errors", "carom.forks", "carom.record", "carom.layouts"},
+    "carom.native": {"carom.errors", "carom.forks", "carom.layouts"},
     # They know nothing of physics.
     "carom.remote": {"carom.errors", "carom.writing"},
     "carom.cluster": {"carom.errors"},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,6 @@ import pybullet_data
 from carom import Body, World
 from carom.description.transform import multiplied, rotation_matrix
 from carom.layouts.codes import DOF_COUNT, POSITION_COUNT, JointCode
-from carom.record import record
 
 Vector = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def load(world: World, name: str) -> Body:
     return body
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Motion:
     """A robot, and positions, velocities, accelerations and forces in the order of the velocities."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections import Counter
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 from carom.geometry.hull import ROUNDING
 from carom.geometry.native_hull import COPLANAR, MIN_FACES
 from carom.native.products import dots, product
-from carom.record import record
 
 Points = NDArray[np.float64]
 Triangle = tuple[int, int, int]
@@ -28,7 +28,7 @@ def reference_loops(
     return merged_loops(points, [face.corners for face in hull.faces.values()], size)
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class _Face:
     """A triangle of the growing hull.
 

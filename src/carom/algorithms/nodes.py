@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,13 +14,12 @@ from carom.layouts.codes import JointCode
 from carom.model.body_spec import BASE
 from carom.native.products import dots, length, product
 from carom.native.trigonometry import cos, sin
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Node:
     """A joint and the rigid body behind it; the first node is the base.
 
@@ -46,7 +46,7 @@ class Node:
     armature: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class End:
     """A link, to which points for Jacobians refer.
 

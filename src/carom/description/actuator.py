@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf, pi
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.layouts.codes import ActivationDynamics
-from carom.record import record
 
 Range = tuple[float, float]
 UNBOUNDED: Range = (-inf, inf)
@@ -17,7 +17,7 @@ Wrench = tuple[float, float, float, float, float, float]
 NO_WRENCH: Wrench = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class MuscleSpec:
     """The force of a muscle, by its length and velocity.
 
@@ -46,7 +46,7 @@ class MuscleSpec:
     smoothing: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class ActuatorSpec:
     """An actuator of a joint with one degree of freedom, of a tendon or a site, as the engine simulates it.
 
@@ -113,7 +113,7 @@ class ActuatorSpec:
             raise DescriptionError(f"actuator {self.name!r}: its time constant must be greater than 0")
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class GeneralActuator:
     """An actuator of a joint, a tendon or a site, affine or a muscle; attributes as of `ActuatorSpec`."""
 
@@ -157,7 +157,7 @@ class GeneralActuator:
         )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Motor:
     """Its force is the control."""
 
@@ -173,7 +173,7 @@ class Motor:
         )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class PositionActuator:
     """A position servo: force = kp (control - length) - kv velocity, implicit in velocity.
 
@@ -211,7 +211,7 @@ class PositionActuator:
         )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class VelocityActuator:
     """A velocity servo: force = kv (control - velocity), implicit in velocity."""
 
@@ -227,7 +227,7 @@ class VelocityActuator:
         return ActuatorSpec(name, self.joint, gain, bias, self.gear, self.control_range, self.force_range)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class IntegratedVelocityActuator:
     """A position servo whose target is the integral of the control, within `activation_range`."""
 
@@ -254,7 +254,7 @@ class IntegratedVelocityActuator:
         )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Damper:
     """A damper that the control sets: force = -kv control velocity; the control is not negative."""
 
@@ -278,7 +278,7 @@ class Damper:
         )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Cylinder:
     """A pneumatic or hydraulic cylinder: the control is filtered to a pressure that acts on an area.
 

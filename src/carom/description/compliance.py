@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from carom.record import record
+from dataclasses import dataclass
 
 Four = tuple[float, float, float, float]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Compliance:
     """Spring, damper and impedance of a constraint, as `solref` and `solimp` of MJCF files give them.
 
@@ -49,7 +49,7 @@ class Compliance:
         return (self.least, self.greatest, self.width, self.inverse_mass)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class ContactCompliance:
     """How the contacts of a link yield, as `<geom>` of MJCF files gives it.
 

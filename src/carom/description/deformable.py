@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
-from carom.record import record
 
-
-@record
+@dataclass(frozen=True, slots=True)
 class SpringCoefficients:
     """`<spring>`: springs along the edges of cells.
 
@@ -22,7 +21,7 @@ class SpringCoefficients:
     bending: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class LameCoefficients:
     """`<neohookean>` or `<corotated>`: Lamé coefficients of tetrahedra.
 
@@ -37,7 +36,7 @@ class LameCoefficients:
     damping: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Deformable:
     """`<deformable>` or `<reduced_deformable>`.
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
-from carom.record import record
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,21 +16,21 @@ MAX_SIZE = 1e15
 """Size [m] up to which scripts make and scale shapes; beyond it the normals of contacts are lost."""
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Sphere:
     """A sphere centred on its frame."""
 
     radius: float
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Box:
     """A cuboid centred on its frame; `half_extents` is half its size along x, y and z."""
 
     half_extents: Vector3
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Cylinder:
     """A cylinder centred on its frame, its axis along z; `length` is its full height."""
 
@@ -39,7 +38,7 @@ class Cylinder:
     length: float
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Capsule:
     """A cylinder of height `length` along z with a hemisphere of `radius` on each end."""
 
@@ -47,14 +46,14 @@ class Capsule:
     length: float
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Plane:
     """The half space below the origin of its frame; `normal` points out of it."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Mesh:
     """A triangle mesh from a file.
 
@@ -71,14 +70,14 @@ class Mesh:
     asked_for: str = field(default="", compare=False)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class SignedDistanceField:
     """A shape given by distances on a grid, from a file."""
 
     path: Path
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class ConvexHull:
     """The convex hull of points.
 
@@ -91,7 +90,7 @@ class ConvexHull:
     scale: Vector3 = (1.0, 1.0, 1.0)
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class TriangleMesh:
     """A triangle mesh that is not replaced by its convex hull.
 
@@ -112,7 +111,7 @@ class TriangleMesh:
     uvs: NDArray[np.float64] | None = None
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Heightfield:
     """Terrain: heights on a grid, centred on its frame, z up.
 

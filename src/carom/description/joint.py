@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 
 from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import JointCode
-from carom.record import record
 
 
 class JointType(Enum):
@@ -41,7 +41,7 @@ JOINT_CODE = {
 }
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class JointLimit:
     """Bounds of a joint; `lower > upper` means unlimited.
 
@@ -60,7 +60,7 @@ class JointLimit:
     twist: float = -1.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Mimic:
     """This joint follows another: position = multiplier · other + offset."""
 
@@ -69,7 +69,7 @@ class Mimic:
     offset: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class SafetyController:
     """Soft limits of a drive, as the file states them."""
 
@@ -79,7 +79,7 @@ class SafetyController:
     k_velocity: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Joint:
     """A joint between two links of a robot.
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
 
 from carom.description.pose import Pose, Vector3
 from carom.errors import DescriptionError
-from carom.record import record
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class BodyKeyframe:
     """A state of one body; those of several bodies with the same name are a state of their scene.
 

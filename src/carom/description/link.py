@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.description.compliance import ContactCompliance
 from carom.description.geometry import Geometry
 from carom.description.pose import IDENTITY, Pose
-from carom.record import record
 
 Rgba = tuple[float, float, float, float]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Inertial:
     """Mass and rotational inertia about the centre of mass.
 
@@ -28,7 +27,7 @@ class Inertial:
     tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Material:
     """Appearance of a visual shape: colour, specular colour and texture file."""
 
@@ -38,7 +37,7 @@ class Material:
     texture: Path | None = None
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Collision:
     """A collision shape; `frame` is its pose in the link frame.
 
@@ -55,7 +54,7 @@ class Collision:
     ends_frame: Pose | None = None
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Visual:
     """A visual shape; `frame` is its pose in the link frame.
 
@@ -70,7 +69,7 @@ class Visual:
     stands_in: bool = False
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class ContactParameters:
     """Contact parameters of a link; None means the engine's default.
 
@@ -100,7 +99,7 @@ class ContactParameters:
     compliance: ContactCompliance | None = None
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Link:
     """One rigid body of a robot.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from carom.record import record
+from dataclasses import dataclass
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-@record(hot=True)
+@dataclass(frozen=True, slots=True)
 class Pose:
     """Position and orientation of a frame in its parent frame.
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.actuator import ActuatorSpec
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.description.deformable import Deformable
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Robot:
     """Links and joints as a file describes them, checked to form one tree.
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from math import ceil, inf
 
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
-from carom.record import record
 
 
 class SensorKind(Enum):
@@ -110,7 +110,7 @@ _TENDON_KINDS = (SensorKind.TENDON_POSITION, SensorKind.TENDON_VELOCITY)
 SUBTREE_KINDS: tuple[SensorKind, ...] = tuple(SensorKind)[28:32]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class SensorSpec:
     """A sensor of a body.
 

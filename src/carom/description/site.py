@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from math import inf
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
-from carom.record import record
 
 
 class SiteShape(Enum):
@@ -20,7 +20,7 @@ class SiteShape(Enum):
     BOX = "box"
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class SiteSpec:
     """A frame on a link.
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
 
 from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.errors import DescriptionError
 from carom.layouts.codes import PathKind
-from carom.record import record
 
 WORLD = -2
 """The link of a part of a path that is in the world."""
 _OF_JOINTS = (PathKind.JOINT, PathKind.BALL)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class PathPart:
     """A part of the path of a tendon.
 
@@ -41,7 +41,7 @@ class PathPart:
 Path = tuple[PathPart, ...]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class TendonSpec:
     """A tendon of a body: a spring, a damper, dry friction and a limit along a path.
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from carom.record import record
+from dataclasses import dataclass
 
 DEFAULT_TIME_STEP = 1.0 / 240.0
 # Bullet's -0.04 is a float32.
 DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class EngineParameters:
     """The parameters of `setPhysicsEngineParameter` and similar functions.
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import re
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
 from carom.formats.unpacking import appears
-from carom.record import record
 
 # Scripts written against a source tree name files relative to a `data` folder near the working directory.
 _DATA_PREFIXES = ("", "./data/", "../data/", "../../data/", "../../../data/", "../../../../data/")
@@ -18,7 +18,7 @@ _PACKAGE_NAME = re.compile(r"<name>([^<]*)</name>")
 _PACKAGE_BYTES = 1 << 16
 
 
-@record(hot=True)
+@dataclass(frozen=True, slots=True)
 class AssetSearch:
     """The directories that are searched for files, and their order.
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.native.products import dots
-from carom.record import record
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Polyhedron:
     """Flat faces around a solid, or the triangles of a surface. The arrays are read-only.
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.geometry.polyhedron import Polyhedron
-from carom.record import record
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class TriangleHierarchy:
     """A complete binary tree of boxes over the faces of a surface.
 

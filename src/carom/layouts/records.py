@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from carom.record import record
 
-
-@record
+@dataclass(frozen=True, slots=True)
 class CType:
     """Type of a field.
 

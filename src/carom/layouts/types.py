@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
-
-from carom.record import record
 
 _SCALARS: dict[str, Any] = {
     "int32": ctypes.c_int32,
@@ -22,7 +21,7 @@ _SCALARS: dict[str, Any] = {
 }
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Type:
     """Type of a scalar, or of a vector or matrix of fixed size.
 
@@ -45,7 +44,7 @@ class Type:
         return c_type
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class ArrayType:
     """Type of an array of one or two dimensions; the first of two is the world axis.
 

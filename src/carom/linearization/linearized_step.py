@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,6 @@ from carom.linearization.exact import step_derivatives
 from carom.linearization.inputs import CONTROLS, PARAMETERS, Input, chosen_inputs
 from carom.linearization.stepping import copy_of, differences
 from carom.linearization.tangent import TangentSpace
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.world.world import World
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _SIZE = 1e-6
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class LinearizedStep:
     """What steps of a world do to small changes: x⁺ = A x + B u + E p, y = C x + D u.
 

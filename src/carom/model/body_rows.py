@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from carom.description.pose import IDENTITY
 from carom.model.body_spec import BodySpec
 from carom.model.bounds import Bounds
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays, Surface
-from carom.record import record
 
 MAX_BYTES = 1 << 20
 """Bodies with larger rows, those of large triangle meshes, are written anew each time [bytes]."""
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class BodyRows:
     """The rows of a body, with row numbers as if it were alone; its base is at the origin.
 

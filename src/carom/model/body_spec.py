@@ -6,7 +6,7 @@ appends it to the flat arrays of a `Model`. Functions that report on bodies read
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from struct import pack, unpack
 from typing import Any
@@ -22,7 +22,6 @@ from carom.description.site import SiteSpec
 from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
-from carom.record import record
 
 BASE = -1
 # Bullet's default [1/s], a float32 in its source.
@@ -30,7 +29,7 @@ DEFAULT_LINK_DAMPING = unpack("f", pack("f", 0.04))[0]
 DEFAULT_CONTACT = ContactParameters()
 
 
-@record(frozen=False, hot=True)
+@dataclass(slots=True)
 class LinkSpec:
     """A link and its parent joint.
 
@@ -130,7 +129,7 @@ class Reusable:
         self.pattern: Any = None
 
 
-@record(frozen=False, hot=True)
+@dataclass(slots=True)
 class BodySpec(Reusable):
     """A tree of links; it does not change any more after a body has been made from it.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from copy import deepcopy
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +33,6 @@ from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
 from carom.native.tables import ArrayTable
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.model.body_rows import BodyRows
@@ -79,7 +78,7 @@ def has_joint_terms(spec: BodySpec) -> bool:
     )
 
 
-@record(frozen=False, hot=True)
+@dataclass(slots=True)
 class TreeRows:
     """The rows of a body in the flat arrays."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import sqrt
 
 from carom.description import SignedDistanceField
@@ -14,7 +14,6 @@ from carom.model.bounds import Bounds
 from carom.model.inertia import placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, is_swept
-from carom.record import record
 
 _log = Logger(__name__)
 
@@ -22,7 +21,7 @@ AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class PlacedPiece:
     """A piece and its pose.
 

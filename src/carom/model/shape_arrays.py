@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import hypot
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -22,7 +22,6 @@ from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
 from carom.native.tables import ArrayTable
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.model.body_rows import BodyRows
@@ -82,7 +81,7 @@ class Surface(Protocol):
     anisotropic_friction: tuple[float, float, float]
 
 
-@record(frozen=False, eq=False, hot=True)
+@dataclass(eq=False, slots=True)
 class BodyShapes:
     """The rows of a body's shapes.
 

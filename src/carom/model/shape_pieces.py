@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from threading import RLock
@@ -35,7 +36,6 @@ from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 from carom.native.trigonometry import cos, sin
-from carom.record import record
 
 MAX_HULL_VERTICES = 512
 """Most vertices of a hull; hulls of finer meshes are simplified."""
@@ -57,7 +57,7 @@ _CACHED = 1024
 MeshGeometry = ConvexHull | TriangleMesh
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class ShapePiece:
     """One convex shape, one triangle mesh or one height field.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from carom.model.builder import TreeRows
 from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
 from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
-from carom.record import record
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
 # Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
@@ -31,7 +30,7 @@ _INDEX_FIELDS = {
 }
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class SoftRows:
     """The rows of a soft body.
 
@@ -48,7 +47,7 @@ class SoftRows:
     count: dict[str, int] = field(default_factory=dict)
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class Anchor:
     """A node that is attached to a link or to the world.
 

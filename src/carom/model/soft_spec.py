@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-from carom.record import record
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +17,7 @@ SHORT = 1.0e-12
 """Springs and edges shorter than this fraction of the body's size count as having no length."""
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class Skin:
     """A mesh that follows the nodes of a soft body.
 
@@ -33,7 +32,7 @@ class Skin:
     triangles: NDArray[np.int32]
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class SoftSpec:
     """Nodes, springs and tetrahedra.
 

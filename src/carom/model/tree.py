@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import heapq
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from carom.description import Joint, Link, Robot
-from carom.record import record
 
 
-@record(frozen=False, eq=False, hot=True)
+@dataclass(eq=False, slots=True)
 class TreeNode:
     """A link, its parent joint, and its children.
 

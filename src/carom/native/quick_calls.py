@@ -13,6 +13,7 @@ import ctypes
 import sys
 import sysconfig
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from carom.layouts.gates import MOST_CLIENTS, Conduct, Guard
@@ -20,10 +21,9 @@ from carom.layouts.quick_calls import MAX_CALLS, QuickCall
 from carom.native.gates import BuiltinMaker, GateLock, lock_of
 from carom.native.library import library
 from carom.native.uninterrupted import begin, end, is_our_own
-from carom.record import record
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of a quick call.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary, ref
@@ -19,7 +19,6 @@ from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.body_spec import BASE, LinkSpec
-from carom.record import record
 from carom.render.images import Texels, read_image
 from carom.render.lights import Light
 from carom.render.meshes import shape_mesh
@@ -44,7 +43,7 @@ WINDOW_COLOURS: tuple[Rgba, ...] = (
 """Green, yellow, red and blue, for shapes without a colour."""
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class ShapeLook:
     """One visible shape of a link, with its present colours and texture.
 
@@ -71,7 +70,7 @@ class ShapeLook:
     coloured: bool = True
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class Appearance:
     """The colours, textures and light of one world; get it from `appearance_of`.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,6 @@ from carom.native.kernels import shadow_map_kernel, whole_image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product
 from carom.native.tables import put_array, put_zeros
-from carom.record import record
 from carom.render.lights import Light
 from carom.render.projection import Matrix
 from carom.render.scene import SceneArrays
@@ -21,7 +21,7 @@ from carom.render.shadows import ShadowCameras, shadow_cameras
 from carom.render.views import ViewBuffers, write_bias, write_lighting
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class RawImages:
     """The results of `RawImage` for n worlds, but for the depth; row 0 is the top.
 

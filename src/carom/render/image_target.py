@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,6 @@ from carom.native.kernels import image_kernel
 from carom.native.launch import Launch
 from carom.native.products import product
 from carom.native.tables import put_zeros
-from carom.record import record
 from carom.render.lights import Light
 from carom.render.parallel import Task, run_all
 from carom.render.projection import Matrix
@@ -21,7 +21,7 @@ from carom.render.shadows import shadow_cameras
 from carom.render.views import ViewBuffers, write_bias, write_lighting
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class RawImage:
     """The results of one image; row 0 is the top.
 
@@ -51,7 +51,7 @@ class RawImage:
         )
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class _Shadows:
     """The view from the light, and the tasks that depend on it."""
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 
 from carom.description.pose import Vector3
-from carom.record import record
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Light:
     """How a scene is lit. The defaults are PyBullet's.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
@@ -16,7 +16,6 @@ from carom.layouts.images import Scene
 from carom.model.body_spec import BASE
 from carom.native.products import product
 from carom.native.tables import put_array
-from carom.record import record
 from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
 from carom.render.soft_surfaces import SoftSurface
@@ -35,7 +34,7 @@ LINK_SHIFT = 24
 """Labels hold the body id in the bits below this one, and the link + 1 from this one upwards."""
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class Piece:
     """Part of a mesh with its own vertices, and its bounding sphere."""
 
@@ -70,7 +69,7 @@ def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
     return tuple(pieces)
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class _Columns:
     """Lists from which the arrays of a scene are concatenated."""
 

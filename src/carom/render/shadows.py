@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isinf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.native.products import dots, product
-from carom.record import record
 from carom.render.lights import Light
 from carom.render.projection import Matrix, look_along, parallel_projection, unit_vector
 from carom.render.scene import SceneArrays
@@ -27,7 +27,7 @@ _PARALLEL_BIAS = 3.0
 """Of parallel light [pixels of the shadow map]."""
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class ShadowCameras:
     """A camera at the light in each of n worlds; its depth buffer is the shadow map.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from carom.description import TriangleMesh
 from carom.description.transform import rotation_matrix
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.soft_body import SoftBody
@@ -51,7 +51,7 @@ def surface_mesh(body: SoftBody) -> RenderMesh:
     return mesh_of(places[corners], normals[corners], visual.uvs, visual.triangles)
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class SoftSurface:
     """The surface of a soft body in the arrays of a scene, three vertices for each triangle.
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from carom.description.compliance import Compliance, Four
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
-from carom.record import record
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.constraint_rows import ConstraintRows
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 NONE: Four = (0.0, 0.0, 0.0, 0.0)
 
 
-@record(frozen=False, eq=False, hot=True)
+@dataclass(eq=False, slots=True)
 class JointConstraint:
     """A motor, a limit, the friction or an actuator of one joint, or a user constraint.
 

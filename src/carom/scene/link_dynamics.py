@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from operator import attrgetter
 
 from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
-from carom.record import record
 
 DEFAULT_FRICTION = 0.5
 DEFAULT_LIMIT_IMPULSE = 100.0
@@ -17,7 +16,7 @@ DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
 
 
-@record(frozen=False, hot=True)
+@dataclass(slots=True)
 class LinkDynamics:
     """Inertia, surface and joint limits of a link.
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from carom.model.body_rows import BodyRows, body_rows
-from carom.record import record
 from carom.scene.body import Outline
 
 if TYPE_CHECKING:
     from carom.model.body_spec import BodySpec
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Pattern:
     """What is the same for all bodies with one specification.
 

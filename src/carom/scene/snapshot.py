@@ -8,7 +8,7 @@ shapes of bodies, constraints, gravity and the other parameters are not part of 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +16,6 @@ import numpy as np
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
@@ -31,7 +30,7 @@ _COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 _DRIVES = ("dof_motor", "dof_pd")
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class BodyLayout:
     """The properties of a body that a state has to match.
 
@@ -70,7 +69,7 @@ class BodyLayout:
         return mine == others
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class Snapshot:
     """A state; get one from `World.snapshot`.
 
@@ -92,7 +91,7 @@ class Snapshot:
     user_impulses: np.ndarray = field(default_factory=lambda: np.zeros((0, 6)))
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Layout:
     """Which bodies a world has, in the order of their rows.
 

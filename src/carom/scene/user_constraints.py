@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,6 @@ from carom.description.tendon import WORLD, Path
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
 from carom.native.tables import ArrayTable
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -76,7 +76,7 @@ _PATH_FIELDS = (
 _UNKNOWN = (None,) * (1 + len(_FIELDS))
 
 
-@record(frozen=False, eq=False, hot=True)
+@dataclass(eq=False, slots=True)
 class UserConstraint:
     """A user constraint.
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from carom.model.body_spec import BASE, BodySpec
 from carom.native.undo import Undo
-from carom.record import record
 
 WHOLE = -1
 """Used instead of a visual shape if the text belongs to the link, or, for the base, to the body."""
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class UserDatum:
     """A text attached to a body, a link or a visual shape.
 

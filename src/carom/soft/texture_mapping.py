@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 from carom.formats.visuals.reader import read_mesh_visual
 from carom.logger import Logger
-from carom.record import record
 
 _log = Logger(__name__)
 
@@ -21,7 +21,7 @@ Ints = NDArray[np.int32]
 _REPEATS = 10.0
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class TextureMapping:
     """How a texture lies on the visible triangles of a soft body.
 

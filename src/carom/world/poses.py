@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from carom.engine.contact_arrays import ContactArrays
@@ -12,7 +13,6 @@ from carom.engine.quick_scene import QuickScene
 from carom.model.builder import WorldArrays
 from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
-from carom.record import record
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from carom.scene.snapshot import Layout
 
 
-@record(frozen=False, hot=True)
+@dataclass(slots=True)
 class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 

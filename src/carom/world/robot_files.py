@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,6 @@ from carom.formats.search import AssetSearch
 from carom.formats.shipped import shipped_folder
 from carom.logger import Logger
 from carom.model.body_spec import BodySpec
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
@@ -30,7 +29,7 @@ _log = Logger("carom.world")
 MISSING_MESHES = ("error", "warn")
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class Choices:
     """How a robot file is loaded; see `World.load`."""
 
@@ -58,7 +57,7 @@ class Choices:
         return AssetSearch(shipped_folder(), packages=packages)
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class RobotFile:
     """What a file describes, before it is in a world.
 

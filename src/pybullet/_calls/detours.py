@@ -10,11 +10,11 @@ Python.
 from __future__ import annotations
 
 import inspect
+from dataclasses import dataclass
 from threading import Lock
 from types import CodeType, FunctionType
 from typing import Any, Protocol
 
-from carom.record import record
 from pybullet._calls.builtin import UsualForm, exports
 from pybullet._calls.quick import pause
 
@@ -33,7 +33,7 @@ _ASKING = (
 )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Function:
     """A function of the public interface.
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from carom.record import record
 from pybullet._calls.constants import SHARED_MEMORY_KEY
 
 _WORDS = re.compile(r'(?:[^\s"]|"[^"]*")+')
@@ -18,7 +18,7 @@ def named_values(options: str) -> Iterator[tuple[str, str]]:
         yield name, value.replace('"', "")
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Target:
     """The arguments of `connect` after the method.
 

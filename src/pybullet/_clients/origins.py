@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from carom.record import record
 
-
-@record(eq=False, hot=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class FileLoad:
     """A call that loaded `count` bodies from a file, with its arguments except the file, by name.
 
@@ -20,7 +19,7 @@ class FileLoad:
     count: int = 1
 
 
-@record(hot=True)
+@dataclass(frozen=True, slots=True)
 class Origin:
     """Origin of a body: it is number `index`, from 0, of the bodies loaded by a call."""
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from carom.description import Collision, Visual
 from carom.native.undo import Undo
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.description import Robot
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Shape = TypeVar("Shape")
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class CollisionShape:
     """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 

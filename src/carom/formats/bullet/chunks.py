@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from carom.formats.bullet.structures import Damaged, Member, Structure, read_structures
-from carom.record import record
 
 MAGIC = b"BULLET"
 _HEADER_SIZE = 12
@@ -26,7 +26,7 @@ _DESCRIPTION = b"DNA1"
 _NUMBERS = {"double": "d", "float": "f", "int": "i", "short": "h", "char": "b"}
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Chunk:
     """Structures of one kind, one after the other.
 

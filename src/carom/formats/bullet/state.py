@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
 from carom.errors import DescriptionError
 from carom.formats.bullet.chunks import MAGIC, BulletFile, Item
 from carom.formats.bullet.structures import Damaged
-from carom.record import record
 
 _MULTI_BODY, _RIGID_BODY = b"MBDY", b"RBDY"
 _COORDINATES, _VELOCITIES = 7, 6
@@ -22,7 +22,7 @@ Quaternion = tuple[float, float, float, float]
 Vector = tuple[float, float, float]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class LinkState:
     """Coordinates of the joint of a link [m, rad, or a quaternion xyzw] and velocities [m/s, rad/s]."""
 
@@ -30,7 +30,7 @@ class LinkState:
     velocity: tuple[float, ...]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class MultiBodyState:
     """State of a body with reduced coordinates.
 
@@ -49,7 +49,7 @@ class MultiBodyState:
     links: tuple[LinkState, ...]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class RigidBodyState:
     """State of a body with maximal coordinates; fields as in `MultiBodyState`.
 
@@ -64,7 +64,7 @@ class RigidBodyState:
     angular: Vector
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class BulletState:
     """State of all bodies: those with reduced coordinates in Bullet's order, the others by creation."""
 

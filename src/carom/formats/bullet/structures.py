@@ -16,8 +16,7 @@ from __future__ import annotations
 
 import re
 import struct
-
-from carom.record import record
+from dataclasses import dataclass
 
 _COUNT = re.compile(r"\[(\d{1,9})\]")
 _ALIGNMENT = 4
@@ -27,7 +26,7 @@ class Damaged(ValueError):
     """A file contradicts itself; the message says how."""
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Member:
     """A member of a structure.
 
@@ -46,7 +45,7 @@ class Member:
     pointer: bool
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Structure:
     """A structure: its name, size in bytes, and members by name, without `*` and `[n]`."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 
@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
-from carom.record import record
 
 _AFTER_SLASH = re.compile(rb"/\S*")
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class _Group:
     """Face lines between two `o` or `g` lines.
 

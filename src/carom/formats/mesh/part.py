@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import DescriptionError
-from carom.record import record
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class MeshPart:
     """One piece of a mesh file: an object or group of an OBJ, a geometry of a DAE, a whole STL.
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
-
-from carom.record import record
 
 _HEADER = ("element", "attributes", "count", "where", "consequence", "reason")
 _MAX_NAMES = 4
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Ignored:
     """Something in a file that is not simulated.
 

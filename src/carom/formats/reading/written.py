@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from carom.description import Inertial
-from carom.record import record
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Written:
     """Choices of a reading that takes a file as written.
 

@@ -5,6 +5,7 @@ Images and colours are not read: PyBullet's software renderer does not show them
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +17,11 @@ from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 from carom.formats.xml_element import Element
 from carom.native.products import product
-from carom.record import record
 
 Floats = NDArray[np.float64]
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class _Corners:
     """Values at the corners of triangles.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
@@ -9,7 +10,6 @@ from carom.description.link import Rgba
 from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.logger import Logger
-from carom.record import record
 
 _log = Logger("carom")
 
@@ -17,7 +17,7 @@ MAX_FILE_BYTES = 16 << 20
 """Largest material file that is read."""
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class ObjMaterial:
     """One material of a material file.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import chain, islice
 from pathlib import Path
 
@@ -16,7 +16,6 @@ from carom.formats.mesh.part import cut_into_fans
 from carom.formats.mesh.reader import MAX_FILE_BYTES
 from carom.formats.visuals.mtl import ObjMaterial, read_materials
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
-from carom.record import record
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
 # Images are rendered in single precision.
@@ -27,7 +26,7 @@ _MAX_LIBRARIES = 1000
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
 
 
-@record(frozen=False)
+@dataclass(slots=True)
 class _Lines:
     """The lines of an OBJ file, by keyword.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.link import Rgba
-from carom.record import record
 
 Floats = NDArray[np.float32]
 Indices = NDArray[np.int32]
@@ -17,7 +17,7 @@ NO_TEXTURE_UV = 0.5
 """Value of both texture coordinates of vertices that have none."""
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class RenderMesh:
     """Triangles ready to be drawn. All arrays are read-only.
 

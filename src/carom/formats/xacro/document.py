@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.errors import DescriptionError
@@ -14,10 +14,9 @@ from carom.formats.xacro.limits import Budget
 from carom.formats.xacro.sources import Sources, is_unchanged
 from carom.formats.xacro.texts import Texts
 from carom.formats.xml_element import MAX_DEPTH, Element, PlacedElement
-from carom.record import record
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class Expanded:
     """A document without macros.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 from carom.formats.xacro.limits import ExpressionError
 from carom.formats.xml_element import Element
-from carom.record import record
 
 _DEFAULT = r"""(?:\$\{[^}]*\}|\$\([^)]*\)|'[^']*'|"[^"]*"|[^\s'"$]|\$)*"""
 _PARAMETER = re.compile(
@@ -15,7 +15,7 @@ _PARAMETER = re.compile(
 )
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of a macro.
 
@@ -32,7 +32,7 @@ class Parameter:
     is_forwarded: bool = False
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Macro:
     """A macro.
 

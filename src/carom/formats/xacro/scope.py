@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,6 @@ from carom.formats.xacro.functions import Namespace
 from carom.formats.xacro.limits import MAX_PROPERTIES, Budget, ExpressionError
 from carom.formats.xacro.values import Value, literal
 from carom.formats.xml_element import Element
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.formats.xacro.macro import Macro
@@ -24,7 +24,7 @@ class Unevaluated(str):
     file: Path
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Block:
     """Elements that a property or a parameter of a macro stands for.
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from carom.algorithms.nodes import End, node_inertias
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.model.body_spec import BASE
-from carom.record import record
 from carom.scene.body import Body
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class NodeParameters:
     """What can differ between worlds.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,12 @@ from carom.description.transform import rotation_matrix
 from carom.formats.mjcf.compiled.compiler import Compiler
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
 from carom.native.products import dots, turned_tensor
-from carom.record import record
 
 Matrix = NDArray[np.float64]
 _ROUNDING = 1e-12
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class BodyInertia:
     """Mass and inertia of a body.
 
@@ -39,7 +39,7 @@ class BodyInertia:
         return cls(0.0, np.zeros(3), np.zeros((3, 3)))
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class GeomMass:
     """Mass of a geom, its distribution, and the pose of its frame in the body."""
 

@@ -7,6 +7,7 @@ its inverse inertia likewise of a torque; that of a joint is by a force or torqu
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +17,12 @@ from carom.description.pose import IDENTITY
 from carom.description.transform import compose, rotation_matrix
 from carom.formats.mjcf.compiled.model import CompiledBody
 from carom.native.products import dots, product
-from carom.record import record
 
 Matrix = NDArray[np.float64]
 _LEAST_PIVOT = 1e-15
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class _Part:
     """A body, the dofs that move it, and its Jacobian: (6, dofs), of its centre of mass, linear first."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,6 @@ from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.placed import PlacedRobot
 from carom.formats.xml_element import Element
 from carom.layouts.codes import PathKind
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class BallLimit:
     """The limit of a spherical joint.
 
@@ -38,7 +37,7 @@ class BallLimit:
     margin: float
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class CompiledJoint:
     """A joint of a body; its frame, parent and child are set later.
 
@@ -63,7 +62,7 @@ class CompiledJoint:
     ball_limit: BallLimit | None = None
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class CompiledBody:
     """A body and all bodies in it.
 
@@ -95,12 +94,12 @@ class CompiledBody:
     inertia: BodyInertia = field(default_factory=BodyInertia.none)
     collisions: list[Collision] = field(default_factory=list)
     visuals: list[Visual] = field(default_factory=list)
-    contact: ContactParameters = ContactParameters()
+    contact: ContactParameters = field(default_factory=ContactParameters)
     gravity_compensation: float = 0.0
     children: list[CompiledBody] = field(default_factory=list)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class Site:
     """A named frame on a body.
 
@@ -119,7 +118,7 @@ class Site:
     size: Vector3
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FileCamera:
     """A camera on a body.
 
@@ -140,7 +139,7 @@ class FileCamera:
     mode: str
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FileKeyframe:
     """A named state, as MJCF lists it: all joints of the file in its order.
 
@@ -161,7 +160,7 @@ class FileKeyframe:
     activations: tuple[float, ...] = ()
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class FileActuator:
     """An actuator of the file.
 
@@ -176,7 +175,7 @@ class FileActuator:
     has_activation: bool
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FileCoupling:
     """A joint that follows another.
 
@@ -197,7 +196,7 @@ class FileCoupling:
     compliance: Compliance
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FileTie:
     """A frame on a body that coincides with one on another, or, unless it is a weld, its origin.
 
@@ -222,7 +221,7 @@ class FileTie:
     compliance: Compliance
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FilePart:
     """A part of the path of a tendon.
 
@@ -243,7 +242,7 @@ class FilePart:
     side: Vector3 = (0.0, 0.0, 0.0)
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FileTendon:
     """A tendon.
 
@@ -269,12 +268,12 @@ class FileTendon:
     spring_range: tuple[float, float] | None
     range: tuple[float, float]
     friction: float
-    limit_compliance: Compliance = Compliance()
+    limit_compliance: Compliance = field(default_factory=Compliance)
     limit_margin: float = 0.0
     armature: float = 0.0
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class FileTendonCoupling:
     """A tendon whose length follows that of another.
 
@@ -295,7 +294,7 @@ class FileTendonCoupling:
     compliance: Compliance
 
 
-@record(frozen=False, eq=False)
+@dataclass(eq=False, slots=True)
 class CompiledModel:
     """All of a file.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -21,12 +22,11 @@ from carom.formats.reading.cursor import layered
 from carom.formats.robot.context import MissingFile, shown
 from carom.formats.xml_element import Element
 from carom.native.products import product
-from carom.record import record
 
 LEGACY = "legacy"
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class MeshAsset:
     """A mesh as geoms use it.
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.record import record
-
 Moments = tuple[float, float, float]
 
 
-@record
+@dataclass(frozen=True, slots=True)
 class MassShape:
     """How mass is distributed in a shape.
 
