@@ -72,7 +72,7 @@ def begin() -> int:
     try:
         if thread == threading.main_thread().ident:
             _put_handlers_aside()
-        if not _State.keeps_tracing and (sys.gettrace() or sys.getprofile()):
+        if not _State.keeps_tracing and (sys.gettrace() or _profile_function()):
             _put_tracers_aside(thread)
         with _State.changing:
             if not _State.quiet:
@@ -145,7 +145,8 @@ def _finish(thread: int) -> None:
             gc.enable()
     if thread in _State.tracers:
         trace, profile = _State.tracers[thread]
-        sys.setprofile(profile)
+        if profile is not None:
+            sys.setprofile(profile)
         sys.settrace(trace)
         _State.tracers.pop(thread, None)
     if _State.handlers and thread == threading.main_thread().ident:
@@ -198,6 +199,18 @@ def _deliver() -> None:
 
 
 def _put_tracers_aside(thread: int) -> None:
-    _State.tracers[thread] = sys.gettrace(), sys.getprofile()
+    profile = _profile_function()
+    _State.tracers[thread] = sys.gettrace(), profile
     sys.settrace(None)
-    sys.setprofile(None)
+    if profile is not None:
+        sys.setprofile(None)
+
+
+def _profile_function() -> Any:
+    """The profile function of the thread, None if there is none or it is in C.
+
+    One in C, such as that of `cProfile` before Python 3.12, runs no line of Python. It could not be put back
+    either: `sys.getprofile` returns an object that cannot be called.
+    """
+    profile = sys.getprofile()
+    return profile if callable(profile) else None
