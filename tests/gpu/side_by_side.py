@@ -49,7 +49,9 @@ class SideBySide:
             for ours, theirs in (*self._beside(world), *self._parameters_beside(world)):
                 ours[number, : theirs.shape[1]] = theirs[0, : ours.shape[1]]
         workspace.pairs.reserve({"pair": 256, "queue": 512})
-        workspace.pair_rows.reserve({"row": rows, "jacobian": 8 * rows, "matrix": 8 * rows})
+        workspace.pair_rows.reserve(
+            {"row": rows, "jacobian": 8 * rows, "matrix": 8 * rows, "single": rows // 8}
+        )
         self.engine.due[0] = max(1, first.parameters.substeps)
         self.engine.prepare()
 

@@ -30,6 +30,7 @@ def test_worlds_side_by_side_are_each_what_they_are_alone(build: str, steps: int
         start = alone[0].position.copy()
         for _ in range(steps):
             worlds.step()
+            assert (worlds.engine.status[:, STATUS] != OVERFLOW).all()
             for world in alone:
                 world.step()
         for number, world in enumerate(alone):

@@ -44,6 +44,7 @@ class Contact:
         share: (3,).
         mass: (3,), effective masses.
         kept: Of the normal row.
+        softness: Of the lateral rows.
         impulse: (4,), as `PairRows.single_impulse`.
         velocity: (8, 4), delta velocities before.
         fixed: Whether the second body cannot move.
@@ -54,6 +55,7 @@ class Contact:
     share: np.ndarray
     mass: np.ndarray
     kept: float
+    softness: float
     impulse: np.ndarray
     velocity: np.ndarray
     fixed: bool
@@ -75,6 +77,7 @@ class Contact:
         setting.cone_friction = int(cone)
         pair_rows.single_place = array(np.array([[A, A if self.fixed else B]]), Index2)
         pair_rows.single_impulse = array(self.impulse[None], Vector4)
+        pair_rows.single_softness = array(np.array([self.softness]), real)
         pair_rows.single_normal = array(normal, NormalRow)
         pair_rows.single_lateral = array(lateral, LateralRows)
         scratch.delta_velocity = array(self.velocity, Vector4)
@@ -91,7 +94,7 @@ class Contact:
 
         def wanted(row: int) -> float:
             rate = (self.jacobian[:, row] * bodies).sum()
-            kept = self.kept if row == 0 else 1.0
+            kept = self.kept if row == 0 else 1.0 - self.softness * self.mass[row]
             return impulse[row] * kept + self.share[row] - rate * self.mass[row]
 
         def change_to(row: int, after: float) -> float:
@@ -134,7 +137,8 @@ def random_contact(seed: int, push: float, fixed: bool) -> Contact:
     share = random.normal(size=3)
     share[0] = push
     mass = 1.0 / (jacobian * response).sum(axis=(0, 2))
-    return Contact(jacobian, response, share, mass, random.uniform(0.5, 1.0), impulse, velocity, fixed)
+    kept, softness = random.uniform(0.5, 1.0), max(0.0, random.uniform(-0.1, 0.1))
+    return Contact(jacobian, response, share, mass, kept, softness, impulse, velocity, fixed)
 
 
 @settings(max_examples=cases(200), deadline=None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cProfile
 import gc
 import os
 import signal
@@ -133,3 +134,38 @@ def test_trace_functions_are_put_aside_in_a_section() -> None:
     assert inside == 0
     assert after > 0
     assert found is trace
+
+
+def test_the_profiler_of_the_standard_library_counts_what_comes_in_and_after_a_section() -> None:
+    def called() -> None:
+        pass
+
+    profile = cProfile.Profile()
+    profile.enable()
+    with uninterrupted:
+        called()
+    called()
+    profile.disable()
+    counts = [entry.callcount for entry in profile.getstats() if entry.code is called.__code__]
+    assert counts == [2]
+
+
+def test_a_profile_function_hears_nothing_in_a_section() -> None:
+    heard: list[str] = []
+
+    def called() -> None:
+        pass
+
+    def profile(frame: Any, _event: str, _argument: object) -> None:
+        heard.append(frame.f_code.co_name)
+
+    sys.setprofile(profile)
+    try:
+        with uninterrupted:
+            called()
+        inside = "called" in heard
+        called()
+    finally:
+        sys.setprofile(None)
+    assert not inside
+    assert "called" in heard

@@ -340,6 +340,7 @@ class ManifoldBlock:
     matrices: Int32  # first block of its matrices in `matrix_block` if a tree is articulated, else -1
     members: Index4  # rows of its contacts, -1 for none
     count: Int32
+    yields: Int32  # 1: its friction may have a softness
     friction: Vector4  # coefficients
 
     # For rigid bodies: impulses before a sweep, and the conjugate direction of the search after it.
@@ -435,11 +436,12 @@ class NormalRow:
     effective_mass: real
     inverse_mass: real
     kept: real  # 1 - softness
+    friction: real  # coefficient, of a row of spinning friction; see `kernels.solver.single_contacts`
 
 
 @struct
 class LateralRows:
-    """The two friction rows of a single contact of rigid bodies; as `NormalRow`."""
+    """The two rows of lateral or rolling friction of a single contact of rigid bodies; as `NormalRow`."""
 
     jacobian_a: Vector12  # of the first and the second row in turn, dof by dof
     jacobian_b: Vector12
@@ -450,7 +452,6 @@ class LateralRows:
     share: Vector2
     effective_mass: Vector2
     inverse_mass: Vector2
-    kept: Vector2
 
 
 @struct
@@ -489,10 +490,11 @@ class PairRows:
     )
     unit_code: IntRows  # units of an island's sweep, in order; see `kernels.solver.units`
 
-    # Single contacts of rigid bodies.
+    # Single contacts of rigid bodies; those with rolling or spinning friction have two places.
     single_contact: IntRows
     single_place: Index2Rows  # first blocks of a and b in `delta_velocity`; of the other if one cannot move
-    single_impulse: Vector4Rows  # along the normal and both friction directions; coefficient of friction
+    single_impulse: Vector4Rows  # along the normal and both lateral directions; coefficient of friction
+    single_softness: RealRows  # of its lateral rows, 0 unless it yields
     single_normal: Rows[NormalRow]
     single_lateral: Rows[LateralRows]
 

@@ -18,9 +18,10 @@ _LEAST = real(1e-15)
 @func
 def yields(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> bool:
     """Whether contacts of two links yield as MuJoCo's: if one link has an impedance, and no spring counts."""
-    if shapes.link_stiffness[world, a] >= 0.0 or shapes.link_stiffness[world, b] >= 0.0:
+    # Few links have an impedance, so this is asked first.
+    if shapes.link_impedance[world, a][1] <= 0.0 and shapes.link_impedance[world, b][1] <= 0.0:
         return False
-    return shapes.link_impedance[world, a][1] > 0.0 or shapes.link_impedance[world, b][1] > 0.0
+    return shapes.link_stiffness[world, a] < 0.0 and shapes.link_stiffness[world, b] < 0.0
 
 
 @func

@@ -16,7 +16,7 @@ from carom.kernels.parallel.workspace import (
 )
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.pair_rows import tree_blocks
-from carom.kernels.solver.units import is_single, next_unit
+from carom.kernels.solver.units import next_unit, places_of_single, twists
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import (
     Contacts,
@@ -56,7 +56,13 @@ def room_for_constraints(
 
 @func
 def room_for_contacts(
-    model: Model, shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32, root: Int32
+    settings: Settings,
+    model: Model,
+    shapes: Shapes,
+    contacts: Contacts,
+    pair_rows: PairRows,
+    world: Int32,
+    root: Int32,
 ) -> Window:
     """Maximum room for the contacts of an island.
 
@@ -74,11 +80,12 @@ def room_for_contacts(
         members, count = next_unit(shapes, contacts, pair_rows, world, contact, rigid)
         room[UNIT] += 1
         room[TERMS] = wp.max(room[TERMS], count)
-        if count == 1 and is_single(shapes, contacts, world, contact, rigid):
-            room[SINGLE] += 1
-        elif count == 1:
-            room[PAIR_ROW] += ROWS_PER_PAIR
-            room[JACOBIAN] += ROWS_PER_PAIR * blocks
+        if count == 1:
+            places = places_of_single(settings, rigid, twists(shapes, contacts, world, contact))
+            room[SINGLE] += places
+            if places == 0:
+                room[PAIR_ROW] += ROWS_PER_PAIR
+                room[JACOBIAN] += ROWS_PER_PAIR * blocks
         else:
             room[MANIFOLD_BLOCK] += 1
             if not rigid:
@@ -108,7 +115,7 @@ def lay_out_islands(
     for tree in range(settings.tree_count):
         if state.tree_island[world, tree] == tree:
             room = room_for_constraints(model, users, pair_rows, world, tree) + room_for_contacts(
-                model, shapes, contacts, pair_rows, world, tree
+                settings, model, shapes, contacts, pair_rows, world, tree
             )
             work.tree_window[world, tree] = free
             work.tree_room[world, tree] = room

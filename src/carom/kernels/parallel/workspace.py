@@ -109,6 +109,7 @@ def pair_rows_of_island(pair_rows: PairRows, work: IslandWork, world: Int32, roo
     own.single_contact = pair_rows.single_contact[:, single:last_single]
     own.single_place = pair_rows.single_place[:, single:last_single]
     own.single_impulse = pair_rows.single_impulse[:, single:last_single]
+    own.single_softness = pair_rows.single_softness[:, single:last_single]
     own.single_normal = pair_rows.single_normal[:, single:last_single]
     own.single_lateral = pair_rows.single_lateral[:, single:last_single]
 

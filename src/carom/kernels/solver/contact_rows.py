@@ -1,4 +1,7 @@
-"""Rows of single contacts: normal, and lateral, rolling and spinning friction."""
+"""Rows over two trees of contacts that are neither in a manifold block nor single contacts of rigid bodies.
+
+They are normal, and lateral, rolling and spinning friction.
+"""
 
 import warp as wp
 

@@ -138,6 +138,24 @@ def velocity_from_forces(
 
 
 @func
+def parting_from_forces(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    terms: ContactTerms,
+    direction: Vector3,
+) -> real:
+    """Change of the velocity of a relative to b along a direction by the forces of this substep [m/s]."""
+    return velocity_from_forces(
+        settings, model, state, scratch, world, terms.ends[0], terms.ends[1], terms.point_a, direction
+    ) - velocity_from_forces(
+        settings, model, state, scratch, world, terms.ends[2], terms.ends[3], terms.point_b, direction
+    )
+
+
+@func
 def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, point: Vector3) -> Vector3:
     """Velocity of a point that moves with a fixed base, which no impulse changes; 0 for free bases."""
     if model.tree[tree].fixed == 0:
@@ -202,30 +220,44 @@ def contact_terms(
     terms.from_forces = real(0.0)
     terms.yields = Int32(0)
     terms.lateral_softness = real(0.0)
-    rebounds = combined_restitution(shapes, world, a, b) > 0.0
-    yielding = not rebounds and yields(shapes, world, a, b)
-    if yielding:
-        terms = let_contact_yield(settings, shapes, terms, world, a, b)
-    if yielding:
-        first, second = terms.lateral1, terms.lateral2
-        terms.lateral_from_forces[0] = velocity_from_forces(
-            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, first
-        ) - velocity_from_forces(
-            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, first
-        )
-        terms.lateral_from_forces[1] = velocity_from_forces(
-            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, second
-        ) - velocity_from_forces(
-            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, second
-        )
-    if rebounds or yielding:
-        terms.from_forces = velocity_from_forces(
-            settings, model, state, scratch, world, terms.ends[0], a, terms.point_a, terms.normal
-        ) - velocity_from_forces(
-            settings, model, state, scratch, world, terms.ends[2], b, terms.point_b, terms.normal
-        )
+    if combined_restitution(shapes, world, a, b) > 0.0:
+        terms.from_forces = parting_from_forces(settings, model, state, scratch, world, terms, terms.normal)
     if terms.ignored != 0:
         # Rows without inverse mass are off; softness alone would make them push without bound.
+        terms.softness = real(0.0)
+    return terms
+
+
+@func
+def may_yield(shapes: Shapes, world: Int32, terms: ContactTerms) -> bool:
+    """Whether a contact yields if it is within its margin: not if it rebounds."""
+    a, b = terms.ends[1], terms.ends[3]
+    return yields(shapes, world, a, b) and combined_restitution(shapes, world, a, b) <= 0.0
+
+
+@func
+def yielding_terms(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    world: Int32,
+    terms: ContactTerms,
+) -> ContactTerms:
+    """The terms of a contact that may yield.
+
+    This is apart from `contact_terms` so that other contacts take no time for it.
+    """
+    terms = let_contact_yield(settings, shapes, terms, world, terms.ends[1], terms.ends[3])
+    terms.from_forces = parting_from_forces(settings, model, state, scratch, world, terms, terms.normal)
+    terms.lateral_from_forces[0] = parting_from_forces(
+        settings, model, state, scratch, world, terms, terms.lateral1
+    )
+    terms.lateral_from_forces[1] = parting_from_forces(
+        settings, model, state, scratch, world, terms, terms.lateral2
+    )
+    if terms.ignored != 0:
         terms.softness = real(0.0)
         terms.lateral_softness = real(0.0)
     return terms

@@ -1,5 +1,7 @@
 """Making manifold blocks from contacts, and storing their impulses; see `rigid_manifolds`."""
 
+import warp as wp
+
 from carom.kernels.solver.articulated_manifold_rows import clear_matrices, write_articulated_contact
 from carom.kernels.solver.contact_terms import keep_contact_impulse
 from carom.kernels.solver.pair_rows import tree_blocks
@@ -7,8 +9,6 @@ from carom.kernels.solver.rigid_manifold_rows import write_rigid_rows
 from carom.kernels.solver.warm_starting import SOLVED, SOLVED_AND_HOLDS, holds
 from carom.kernels.structs import (
     Contacts,
-    ManifoldBlock,
-    ManifoldSide,
     Model,
     PairRows,
     Scratch,
@@ -17,6 +17,32 @@ from carom.kernels.structs import (
     State,
 )
 from carom.kernels.types import Index4, Int32, func
+from carom.kernels.warp_types import warp_type
+from carom.layouts import contacts as layouts
+from carom.layouts.types import Rows
+
+ManifoldBlocks = warp_type(Rows[layouts.ManifoldBlock])
+ManifoldSides = warp_type(Rows[layouts.ManifoldSide])
+
+
+# An empty struct would be written twice: where it is made, and where it is stored.
+_CLEAR = """
+    auto* bytes = reinterpret_cast<char*>(&wp::index(rows, world, row));
+    for (unsigned i = 0; i < sizeof(wp::index(rows, world, row)); ++i)
+        bytes[i] = 0;
+"""
+
+
+@wp.func_native(_CLEAR)
+def clear_block(rows: ManifoldBlocks, world: Int32, row: Int32):
+    """Set all numbers of a manifold block to zero."""
+    ...
+
+
+@wp.func_native(_CLEAR)
+def clear_side(rows: ManifoldSides, world: Int32, row: Int32):
+    """As `clear_block`, of the matrices of one of its bodies."""
+    ...
 
 
 @func
@@ -47,7 +73,7 @@ def write_manifold_block(
     `matrices` is the first block of their matrices in `PairRows.matrix_block`, -1 if both trees are rigid
     bodies. Blocks from `temporary` on, for rows over two trees, are workspace.
     """
-    pair_rows.manifold_block[world, manifold_block] = ManifoldBlock()
+    clear_block(pair_rows.manifold_block, world, manifold_block)
     pair_rows.manifold_block[world, manifold_block].place = Index4(
         tree_place(model, a), tree_blocks(model, a), tree_place(model, b), tree_blocks(model, b)
     )
@@ -56,7 +82,7 @@ def write_manifold_block(
     pair_rows.manifold_block[world, manifold_block].count = count
     if matrices < 0:
         for body in range(2):
-            pair_rows.side[world, 2 * manifold_block + body] = ManifoldSide()
+            clear_side(pair_rows.side, world, 2 * manifold_block + body)
         write_rigid_rows(settings, model, state, scratch, shapes, pair_rows, world, manifold_block, a, b)
         return
     clear_matrices(pair_rows, world, manifold_block)

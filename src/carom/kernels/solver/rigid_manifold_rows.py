@@ -86,7 +86,11 @@ def write_row_numbers(
     else:
         i = 2 * contact + row - 1
         pair_rows.manifold_block[world, manifold_block].friction_share[i] = change * mass
-        pair_rows.manifold_block[world, manifold_block].friction_softness[i] = terms.lateral_softness * mass
+        if terms.lateral_softness > 0.0:
+            pair_rows.manifold_block[world, manifold_block].yields = Int32(1)
+            pair_rows.manifold_block[world, manifold_block].friction_softness[i] = (
+                terms.lateral_softness * mass
+            )
         pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i] = inverse_mass
         pair_rows.manifold_block[world, manifold_block].friction_impulse[i] = impulse
     return mass

@@ -89,6 +89,8 @@ def normals_alone(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> V
 @func
 def friction_alone(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
     """As `normals_alone`, of friction."""
+    if pair_rows.manifold_block[world, manifold_block].yields == 0:
+        return pair_rows.manifold_block[world, manifold_block].friction_share
     softness = pair_rows.manifold_block[world, manifold_block].friction_softness
     impulse = pair_rows.manifold_block[world, manifold_block].friction_impulse
     return pair_rows.manifold_block[world, manifold_block].friction_share - wp.cw_mul(softness, impulse)

@@ -1,9 +1,14 @@
-"""Single contacts of rigid bodies, without rolling and spinning friction: their three rows.
+"""Single contacts of rigid bodies: their normal row, and rows of lateral, rolling and spinning friction.
 
 These are the same Gauss-Seidel steps as with rows over two trees (`pair_rows`), with sums in the same order.
 But all bodies have six dofs, so that sizes are known to the compiler, the rows of a contact are two pieces of
 memory, and two numbers are computed at a time: the parts of a normal row by both bodies, or both friction
 rows. Piles of balls consist of such contacts.
+
+A contact with rolling or spinning friction has two places, one after the other. The first has its normal and
+lateral rows, like that of any single contact; the second has its spinning row in `single_normal` and both
+rolling rows in `single_lateral`. These are rows of the angular velocity of a relative to b; the same
+functions relax them. Both kinds of rows are always there; a coefficient of 0 turns them off.
 
 If one of two bodies cannot move, its place among the delta velocities is that of the other. As its Jacobian
 and responses are zero, that changes nothing, and takes less time than to distinguish the cases.
@@ -14,7 +19,12 @@ import warp as wp
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.equal_steps import equal_steps
 from carom.kernels.maths.min_max import maximum, within_bounds
-from carom.kernels.solver.contact_terms import keep_contact_impulse, lateral_change, normal_change
+from carom.kernels.solver.contact_terms import (
+    friction_change,
+    keep_contact_impulse,
+    lateral_change,
+    normal_change,
+)
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.rigid_manifold_rows import row_direction
 from carom.kernels.solver.warm_starting import NOT_RESTING
@@ -31,10 +41,12 @@ from carom.kernels.types import (
     func,
     real,
 )
-from carom.layouts.codes import ISOTROPIC
+from carom.layouts.codes import ISOTROPIC, SPINNING_ROW
 
-# Added to the index of a single contact, this is the code of its unit; see `units`.
+# Added to the index of a single contact, this is the code of its unit; see `units`. Another bit says that it
+# has rolling or spinning friction.
 SINGLES = 1 << 30
+TWISTING = 1 << 29
 UNBOUNDED = real(1e10)
 
 
@@ -101,8 +113,16 @@ def push_twice(
 
 
 @func
-def relax_single_normal(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
-    """Relax the normal row of a single contact; returns the change of its velocity."""
+def single_of(code: Int32) -> Int32:
+    """Index of a single contact by the code of its unit."""
+    return code & (TWISTING - 1)
+
+
+@func
+def relax_single_row(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, lower: real, upper: real
+) -> real:
+    """Relax row `single` of `PairRows.single_normal` within bounds; returns the change of its velocity."""
     place = pair_rows.single_place[world, single]
     before = pair_rows.single_impulse[world, single][0]
     velocity = normal_velocity(
@@ -113,12 +133,18 @@ def relax_single_normal(scratch: Scratch, pair_rows: PairRows, world: Int32, sin
         + pair_rows.single_normal[world, single].share
         - velocity * pair_rows.single_normal[world, single].effective_mass
     )
-    impulse = within_bounds(wanted, 0.0, UNBOUNDED)
+    impulse = within_bounds(wanted, lower, upper)
     change = impulse - before
     pair_rows.single_impulse[world, single][0] = impulse
     push(scratch.delta_velocity, world, place[0], change, pair_rows.single_normal[world, single].response_a)
     push(scratch.delta_velocity, world, place[1], change, pair_rows.single_normal[world, single].response_b)
     return change * pair_rows.single_normal[world, single].inverse_mass
+
+
+@func
+def relax_single_normal(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
+    """Relax the normal row of a single contact; returns the change of its velocity."""
+    return relax_single_row(scratch, pair_rows, world, single, 0.0, UNBOUNDED)
 
 
 @func
@@ -132,8 +158,13 @@ def wanted_friction(
     ) + lateral_velocities(
         scratch.delta_velocity, world, place[1], pair_rows.single_lateral[world, single].jacobian_b
     )
+    softness = pair_rows.single_softness[world, single]
+    kept = before
+    if softness > 0.0:
+        lost = softness * pair_rows.single_lateral[world, single].effective_mass
+        kept = wp.cw_mul(before, Vector2(1.0, 1.0) - lost)
     return (
-        wp.cw_mul(before, pair_rows.single_lateral[world, single].kept)
+        kept
         + pair_rows.single_lateral[world, single].share
         - wp.cw_mul(velocity, pair_rows.single_lateral[world, single].effective_mass)
     )
@@ -156,10 +187,12 @@ def push_sideways(scratch: Scratch, pair_rows: PairRows, world: Int32, single: I
 
 
 @func
-def relax_in_pyramid(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32) -> real:
-    """Relax one friction row of a contact, then the other; returns the larger change of their velocities."""
+def relax_in_pyramid(scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, bound: real) -> real:
+    """Relax one friction row of a contact, then the other; returns the larger change of their velocities.
+
+    Each impulse is at most `bound`.
+    """
     impulses = pair_rows.single_impulse[world, single]
-    bound = impulses[3] * impulses[0]
     largest = real(0.0)
     if bound > 0.0:
         row = Int32(0)
@@ -196,15 +229,15 @@ def lateral_coupling(pair_rows: PairRows, world: Int32, single: Int32) -> real:
 
 @func
 def relax_in_cone(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, bound: real
 ) -> real:
     """Relax both friction rows of a contact at once; returns the sum of the changes of their velocities.
 
-    If friction is isotropic, the length of both changes is returned instead.
+    The length of both impulses is at most `bound`. If friction is isotropic, the length of both changes is
+    returned instead.
     """
     impulses = pair_rows.single_impulse[world, single]
     before = Vector2(impulses[1], impulses[2])
-    bound = impulses[3] * impulses[0]
     after = wanted_friction(scratch, pair_rows, world, single, before)
     if settings.cone_friction == ISOTROPIC:
         inverse_mass = pair_rows.single_lateral[world, single].inverse_mass
@@ -229,9 +262,11 @@ def relax_single_friction(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32
 ) -> real:
     """Relax the friction rows of a single contact; returns the change of their velocities."""
+    impulses = pair_rows.single_impulse[world, single]
+    bound = impulses[3] * impulses[0]
     if settings.cone_friction != 0:
-        return relax_in_cone(settings, scratch, pair_rows, world, single)
-    return relax_in_pyramid(scratch, pair_rows, world, single)
+        return relax_in_cone(settings, scratch, pair_rows, world, single, bound)
+    return relax_in_pyramid(scratch, pair_rows, world, single, bound)
 
 
 @func
@@ -260,6 +295,18 @@ def own_product(jacobian: Vector6, response: Vector6) -> real:
 
 
 @func
+def response_of_body(
+    model: Model, state: State, scratch: Scratch, world: Int32, tree: Int32, jacobian: Vector6
+):
+    """Response and present velocity of a row with this Jacobian for a body that can move."""
+    velocity = real(0.0)
+    first = model.tree[tree].first_dof
+    for i in range(6):
+        velocity += jacobian[5 - i] * state.dof_velocity[world, first + 5 - i]
+    return response6(scratch, world, model.tree[tree].first_block, jacobian), velocity
+
+
+@func
 def row_of_body(
     model: Model,
     state: State,
@@ -281,10 +328,7 @@ def row_of_body(
         reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         moment = wp.cross(point - reference, direction)
         jacobian = Vector6(moment[0], moment[1], moment[2], direction[0], direction[1], direction[2])
-        response = response6(scratch, world, model.tree[tree].first_block, jacobian)
-        first = model.tree[tree].first_dof
-        for i in range(6):
-            velocity += jacobian[5 - i] * state.dof_velocity[world, first + 5 - i]
+        response, velocity = response_of_body(model, state, scratch, world, tree, jacobian)
     return jacobian, response, velocity
 
 
@@ -334,6 +378,34 @@ def write_row_of_body(
 
 
 @func
+def write_numbers_of_single(
+    pair_rows: PairRows,
+    world: Int32,
+    single: Int32,
+    row: Int32,
+    inverse_mass: real,
+    softness: real,
+    change: real,
+):
+    """Write what a row has besides its vectors; it requests a `change` of its velocity.
+
+    `row` is as for `write_row_of_body`, `inverse_mass` without softness.
+    """
+    mass = inverse_or_off(inverse_mass + softness)
+    share = mass * change
+    diagonal = 1.0 / mass if mass > 0.0 else 0.0
+    if row == 0:
+        pair_rows.single_normal[world, single].share = share
+        pair_rows.single_normal[world, single].effective_mass = mass
+        pair_rows.single_normal[world, single].inverse_mass = diagonal
+        pair_rows.single_normal[world, single].kept = 1.0 - softness * mass
+    else:
+        pair_rows.single_lateral[world, single].share[row - 1] = share
+        pair_rows.single_lateral[world, single].effective_mass[row - 1] = mass
+        pair_rows.single_lateral[world, single].inverse_mass[row - 1] = diagonal
+
+
+@func
 def write_row_of_single(
     settings: Settings,
     model: Model,
@@ -366,19 +438,8 @@ def write_row_of_single(
     softness = terms.softness if row == 0 else terms.lateral_softness
     if terms.ignored != 0:
         inverse_mass = real(0.0)
-    mass = inverse_or_off(inverse_mass + softness)
-    share = mass * requested_change(settings, shapes, terms, world, row, velocity)
-    inverse_mass = 1.0 / mass if mass > 0.0 else 0.0
-    if row == 0:
-        pair_rows.single_normal[world, single].share = share
-        pair_rows.single_normal[world, single].effective_mass = mass
-        pair_rows.single_normal[world, single].inverse_mass = inverse_mass
-        pair_rows.single_normal[world, single].kept = 1.0 - softness * mass
-    else:
-        pair_rows.single_lateral[world, single].share[row - 1] = share
-        pair_rows.single_lateral[world, single].effective_mass[row - 1] = mass
-        pair_rows.single_lateral[world, single].kept[row - 1] = 1.0 - softness * mass
-        pair_rows.single_lateral[world, single].inverse_mass[row - 1] = inverse_mass
+    change = requested_change(settings, shapes, terms, world, row, velocity)
+    write_numbers_of_single(pair_rows, world, single, row, inverse_mass, softness, change)
 
 
 @func
@@ -401,6 +462,7 @@ def write_single_contact(
         place_of_body(model, terms.ends[2], terms.ends[0]),
     )
     pair_rows.single_impulse[world, single] = Vector4(0.0, 0.0, 0.0, terms.friction[0])
+    pair_rows.single_softness[world, single] = terms.lateral_softness
     row = Int32(0)
     while row < 3:
         write_row_of_single(settings, model, state, scratch, shapes, pair_rows, terms, world, single, row)
@@ -415,3 +477,99 @@ def keep_single_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, 
         contacts, world, pair_rows.single_contact[world, single], impulse[0], impulse[1], impulse[2],
         impulse[3], Int32(NOT_RESTING),
     )  # fmt: skip
+
+
+@func
+def relax_single_torsion(
+    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, kind: Int32
+) -> real:
+    """Relax the spinning or the rolling rows of a contact, whose first place is `single`.
+
+    Returns the change of their velocities.
+    """
+    normal = pair_rows.single_impulse[world, single][0]
+    second = single + 1
+    change = real(0.0)
+    if kind == SPINNING_ROW:
+        bound = pair_rows.single_normal[world, second].friction * normal
+        if bound > 0.0:
+            change = relax_single_row(scratch, pair_rows, world, second, -bound, bound)
+    else:
+        bound = pair_rows.single_impulse[world, second][3] * normal
+        if bound > 0.0:
+            if settings.cone_friction != 0:
+                change = relax_in_cone(settings, scratch, pair_rows, world, second, bound)
+            else:
+                change = relax_in_pyramid(scratch, pair_rows, world, second, bound)
+    return change
+
+
+@func
+def torsion_axis(terms: ContactTerms, row: Int32) -> Vector3:
+    """Axis of a row of torsional friction: row 0 is spinning, rows 1 and 2 are rolling friction."""
+    return terms.normal if row == 0 else terms.rolling1 if row == 1 else terms.rolling2
+
+
+@func
+def write_torsion_row(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    terms: ContactTerms,
+    world: Int32,
+    second: Int32,
+    row: Int32,
+):
+    """Write a row of torsional friction at the second place of a contact; `row` as for `torsion_axis`."""
+    inverse_mass, velocity = real(0.0), real(0.0)
+    tree = terms.ends[0]
+    axis = torsion_axis(terms, row)
+    carried = wp.dot(terms.carried_spin, axis)
+    body = Int32(0)
+    while body < 2:
+        jacobian = Vector6(0.0)
+        response = Vector6(0.0)
+        velocity_of_body = real(0.0)
+        if tree_blocks(model, tree) > 0:
+            jacobian = Vector6(axis[0], axis[1], axis[2], 0.0, 0.0, 0.0)
+            response, velocity_of_body = response_of_body(model, state, scratch, world, tree, jacobian)
+        write_row_of_body(pair_rows, world, second, row, body, jacobian, response)
+        inverse_mass += own_product(jacobian, response)
+        velocity += velocity_of_body
+        tree = terms.ends[2]
+        axis = -axis
+        body += 1
+    if terms.ignored != 0:
+        inverse_mass = real(0.0)
+    # A drift is along the surface, so there is none about an axis.
+    change = friction_change(settings, velocity + carried, terms.drift, Vector3(0.0, 0.0, 0.0))
+    write_numbers_of_single(pair_rows, world, second, row, inverse_mass, 0.0, change)
+
+
+@func
+def write_twisting_contact(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    shapes: Shapes,
+    pair_rows: PairRows,
+    terms: ContactTerms,
+    world: Int32,
+    contact: Int32,
+    single: Int32,
+):
+    """Write the rows of a contact with rolling or spinning friction at `single` and the place after it."""
+    write_single_contact(settings, model, state, scratch, shapes, pair_rows, terms, world, contact, single)
+    second = single + 1
+    pair_rows.single_contact[world, second] = contact
+    pair_rows.single_place[world, second] = pair_rows.single_place[world, single]
+    pair_rows.single_impulse[world, second] = Vector4(0.0, 0.0, 0.0, terms.friction[1])
+    pair_rows.single_softness[world, second] = real(0.0)
+    pair_rows.single_normal[world, second].friction = terms.friction[2]
+    row = Int32(0)
+    while row < 3:
+        write_torsion_row(settings, model, state, scratch, pair_rows, terms, world, second, row)
+        row += 1

@@ -7,7 +7,14 @@ from carom.kernels.solver.articulated_manifolds import relax_articulated_frictio
 from carom.kernels.solver.joint_solver import relax_rows, row_sweep
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
 from carom.kernels.solver.rigid_manifolds import relax_rigid_friction, relax_rigid_normals
-from carom.kernels.solver.single_contacts import SINGLES, relax_single_friction, relax_single_normal
+from carom.kernels.solver.single_contacts import (
+    SINGLES,
+    TWISTING,
+    relax_single_friction,
+    relax_single_normal,
+    relax_single_torsion,
+    single_of,
+)
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
@@ -95,7 +102,7 @@ def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int
         if code < 0:
             residual = maximum(residual, relax_normals(scratch, pair_rows, world, -1 - code))
         elif code >= SINGLES:
-            change = relax_single_normal(scratch, pair_rows, world, code - SINGLES)
+            change = relax_single_normal(scratch, pair_rows, world, single_of(code))
             residual = maximum(residual, change * change)
         else:
             change = relax_pair_row(
@@ -146,7 +153,10 @@ def friction_sweep(
         unit += 1
         if code >= SINGLES:
             if kind == LATERAL_ROW:
-                change = relax_single_friction(settings, scratch, pair_rows, world, code - SINGLES)
+                change = relax_single_friction(settings, scratch, pair_rows, world, single_of(code))
+                residual = maximum(residual, change * change)
+            elif code >= SINGLES + TWISTING:
+                change = relax_single_torsion(settings, scratch, pair_rows, world, single_of(code), kind)
                 residual = maximum(residual, change * change)
         elif code >= 0:
             residual = maximum(

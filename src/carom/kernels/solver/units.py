@@ -1,19 +1,28 @@
 """Units of an island's sweeps: its contacts, grouped into manifold blocks or single.
 
 The code of a unit, in `PairRows.unit_code`, is -1 - block for a manifold block, `SINGLES` + i for single
-contact i of rigid bodies, and the contact itself for any other.
+contact i of rigid bodies (with `TWISTING`, if it has rolling or spinning friction), and the contact itself
+for any other.
 """
 
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK
 from carom.kernels.solver.contact_order import same_shapes
 from carom.kernels.solver.contact_rows import add_contact_rows, keep_contact_impulses
-from carom.kernels.solver.contact_terms import contact_friction, contact_terms
+from carom.kernels.solver.contact_terms import contact_friction, contact_terms, may_yield, yielding_terms
 from carom.kernels.solver.manifold_writing import keep_manifold_impulses, write_manifold_block
 from carom.kernels.solver.pair_rows import has_room, tree_blocks
-from carom.kernels.solver.single_contacts import SINGLES, keep_single_impulses, write_single_contact
+from carom.kernels.solver.single_contacts import (
+    SINGLES,
+    TWISTING,
+    keep_single_impulses,
+    single_of,
+    write_single_contact,
+    write_twisting_contact,
+)
 from carom.kernels.solver.warm_starting import is_rigid
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
+from carom.layouts.codes import ISOTROPIC
 
 
 @func
@@ -68,9 +77,15 @@ def next_unit(
 
 
 @func
-def is_single(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32, rigid: bool) -> bool:
-    """Whether a contact without others in its unit is a single contact of `PairRows.single_contact`."""
-    return rigid and not twists(shapes, contacts, world, contact)
+def places_of_single(settings: Settings, rigid: bool, torsion: bool) -> Int32:
+    """Number of places among single contacts of a contact without others in its unit; 0 if it is not one.
+
+    `rigid` says whether its bodies are, `torsion` whether it has rolling or spinning friction. Such contacts
+    have rows over two trees if friction is isotropic, because the sums of these are in another order.
+    """
+    if not rigid or (torsion and settings.cone_friction == ISOTROPIC):
+        return Int32(0)
+    return Int32(2) if torsion else Int32(1)
 
 
 @func
@@ -111,6 +126,10 @@ def write_units(
             pair_rows.terms[world, i] = contact_terms(
                 settings, model, state, scratch, shapes, contacts, world, members[i], share
             )
+            if may_yield(shapes, world, pair_rows.terms[world, i]):
+                pair_rows.terms[world, i] = yielding_terms(
+                    settings, model, state, scratch, shapes, world, pair_rows.terms[world, i]
+                )
             i += 1
         room = has_room(model, pair_rows, row, block, a, b)
         if count > 1:
@@ -127,25 +146,35 @@ def write_units(
             )  # fmt: skip
             pair_rows.unit_code[world, units] = -1 - manifold_blocks
             manifold_blocks += 1
-        elif rigid and not has_torsion(pair_rows.terms[world, 0].friction):
-            if singles == pair_rows.single_normal.shape[1]:
-                return Int32(-1), manifold_blocks, torsion
-            write_single_contact(
-                settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
-                singles,
-            )  # fmt: skip
-            pair_rows.unit_code[world, units] = SINGLES + singles
-            singles += 1
         else:
-            if not room:
-                return Int32(-1), manifold_blocks, torsion
-            if has_torsion(pair_rows.terms[world, 0].friction):
+            twisting = has_torsion(pair_rows.terms[world, 0].friction)
+            if twisting:
                 torsion = Int32(1)
-            row, block = add_contact_rows(
-                settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world, contact,
-                row, block,
-            )  # fmt: skip
-            pair_rows.unit_code[world, units] = contact
+            places = places_of_single(settings, rigid, twisting)
+            if places > 0:
+                if singles + places > pair_rows.single_normal.shape[1]:
+                    return Int32(-1), manifold_blocks, torsion
+                pair_rows.unit_code[world, units] = SINGLES + singles
+                if twisting:
+                    pair_rows.unit_code[world, units] = SINGLES + TWISTING + singles
+                    write_twisting_contact(
+                        settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world,
+                        contact, singles,
+                    )  # fmt: skip
+                else:
+                    write_single_contact(
+                        settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world,
+                        contact, singles,
+                    )  # fmt: skip
+                singles += places
+            else:
+                if not room:
+                    return Int32(-1), manifold_blocks, torsion
+                row, block = add_contact_rows(
+                    settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world,
+                    contact, row, block,
+                )  # fmt: skip
+                pair_rows.unit_code[world, units] = contact
         units += 1
         contact = pair_rows.contact_next[world, members[count - 1]]
     return units, manifold_blocks, torsion
@@ -159,6 +188,6 @@ def keep_unit_impulses(contacts: Contacts, pair_rows: PairRows, world: Int32, un
         if code < 0:
             keep_manifold_impulses(contacts, pair_rows, world, -1 - code, outcome)
         elif code >= SINGLES:
-            keep_single_impulses(contacts, pair_rows, world, code - SINGLES)
+            keep_single_impulses(contacts, pair_rows, world, single_of(code))
         else:
             keep_contact_impulses(contacts, pair_rows, world, code)
