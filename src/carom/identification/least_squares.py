@@ -1,0 +1,136 @@
+"""Levenberg and Marquardt's method with lower bounds, and what data say about combinations of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.checks import Array
+from carom.identification.unknowns import Unknowns
+
+_ITERATIONS = 100
+_ENOUGH = 1e-9
+_REDUNDANT = 1e-9
+_LONGEST = 1.0
+# Effects of parameters below this share of the greatest do not count.
+_FAINT = 1e-7
+
+
+class Normal(NamedTuple):
+    """A quadratic model of a cost, half the sum of weighted squares.
+
+    Attributes:
+        cost: The cost.
+        gradient: By p, (n,).
+        matrix: JᵀJ, (n, n).
+        follow: What happens to values that are eliminated where p changes: called before the next model is
+            asked for, with the change of p.
+    """
+
+    cost: float
+    gradient: Array
+    matrix: Array
+    follow: Callable[[Array], None]
+
+
+def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> tuple[Array, Normal]:
+    """Minimise a cost.
+
+    Args:
+        model: The cost at some values p, and its derivatives. If a model was worse than the one before,
+            `follow` of the latter is called again with a smaller change.
+        unknowns: Names, scales and bounds.
+        x: Coordinates at which to start.
+
+    Returns:
+        The coordinates at the minimum, and the model there.
+    """
+    p = unknowns.values(x)
+    now = model(p)
+    damping = 1e-3
+    for _ in range(_ITERATIONS):
+        chain = unknowns.jacobian(x)
+        gradient, matrix = chain.T @ now.gradient, chain.T @ now.matrix @ chain
+        free = (x > unknowns.lower) | (gradient < 0.0)
+        step = np.zeros(len(x))
+        step[free] = _step(gradient[free], matrix[np.ix_(free, free)], damping)
+        # Coordinates of inertia are logarithms, or relative.
+        longest = np.abs(step[: unknowns.relative]).max(initial=0.0)
+        after = np.maximum(x + step * min(1.0, _LONGEST / max(longest, 1e-300)), unknowns.lower)
+        expected = -(gradient @ (after - x)) - 0.5 * (after - x) @ matrix @ (after - x)
+        tried = unknowns.values(after)
+        now.follow(tried - p)
+        other = model(tried)
+        if other.cost <= now.cost:
+            gained = now.cost - other.cost
+            x, p, now = after, tried, other
+            damping = max(damping * 0.1, 1e-12)
+            if gained <= _ENOUGH * (1.0 + now.cost) and expected <= _ENOUGH * (1.0 + now.cost):
+                break
+        else:
+            now.follow(np.zeros(len(p)))
+            if expected <= _ENOUGH * (1.0 + now.cost) or damping > 1e8:
+                now = model(p)
+                break
+            damping = max(damping * 10.0, 1e-6)
+    return x, now
+
+
+def _step(gradient: Array, matrix: Array, damping: float) -> Array:
+    """The damped step, of the least size where directions have no effect."""
+    size = np.sqrt(np.diag(matrix))
+    scale = 1.0 / np.maximum(size, max(_FAINT * size.max(initial=0.0), 1e-300))
+    values, vectors = np.linalg.eigh(matrix * np.outer(scale, scale))
+    known = values > 1e-13 * max(values.max(initial=0.0), 1.0)
+    along = vectors.T @ (scale * gradient)
+    return -scale * (vectors[:, known] @ (along[known] / (values[known] + damping)))
+
+
+class Combinations(NamedTuple):
+    """Combinations of parameters that data determine.
+
+    Attributes:
+        factors: Of the parameters in each, (k, n): 1 for its first.
+        covariance: Of the combinations, (k, k).
+    """
+
+    factors: Array
+    covariance: Array
+
+
+def combinations(matrix: Array, scale: Array) -> Combinations:
+    """What can be told apart, from JᵀJ of residuals of unit variance.
+
+    A parameter whose effect is a combination of those of parameters before it stands with these: its factor in
+    their combinations says how. The last parameters are the first to be chosen, for those of the last
+    links of an arm are usually determined by themselves.
+
+    Args:
+        matrix: JᵀJ, (n, n).
+        scale: Sizes of the parameters: effects are compared at these.
+    """
+    scaled = matrix * np.outer(scale, scale)
+    whole = max(np.diag(scaled).max(initial=0.0), 1e-300)
+    chosen: list[int] = []
+    for place in reversed(range(len(scale))):
+        if not scaled[place, place] > _FAINT**2 * whole:
+            continue
+        if chosen:
+            own = scaled[np.ix_(chosen, chosen)]
+            sizes = 1.0 / np.sqrt(np.diag(own))
+            effect = sizes * scaled[chosen, place]
+            part = np.linalg.solve(own * np.outer(sizes, sizes), effect)
+            if scaled[place, place] - effect @ part <= _REDUNDANT * scaled[place, place]:
+                continue
+        chosen.append(place)
+    rows = sorted(chosen)
+    size = 1.0 / np.sqrt(np.diag(scaled)[rows])
+    inverse = np.linalg.inv(scaled[np.ix_(rows, rows)] * np.outer(size, size)) * np.outer(size, size)
+    factors = inverse @ scaled[rows]
+    factors[:, rows] = np.eye(len(rows))
+    factors = np.where(np.abs(factors) > 1e-5, factors, 0.0)
+    return Combinations(
+        factors * np.outer(scale[rows], 1.0 / scale), inverse * np.outer(scale[rows], scale[rows])
+    )
