@@ -14,6 +14,8 @@ _ITERATIONS = 100
 _ENOUGH = 1e-9
 _REDUNDANT = 1e-9
 _LONGEST = 1.0
+# Eigenvalues of JᵀJ below this share of the greatest are rounding errors.
+_NOISE = 1e-14
 # Effects of parameters below this share of the greatest do not count.
 _FAINT = 1e-7
 
@@ -49,7 +51,7 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
     """
     p = unknowns.values(x)
     now = model(p)
-    damping = 1e-3
+    damping = 1e-6
     for _ in range(_ITERATIONS):
         chain = unknowns.jacobian(x)
         gradient, matrix = chain.T @ now.gradient, chain.T @ now.matrix @ chain
@@ -66,7 +68,7 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
         if other.cost <= now.cost:
             gained = now.cost - other.cost
             x, p, now = after, tried, other
-            damping = max(damping * 0.1, 1e-12)
+            damping = max(damping * 0.03, 1e-16)
             if gained <= _ENOUGH * (1.0 + now.cost) and expected <= _ENOUGH * (1.0 + now.cost):
                 break
         else:
@@ -74,18 +76,20 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
             if expected <= _ENOUGH * (1.0 + now.cost) or damping > 1e8:
                 now = model(p)
                 break
-            damping = max(damping * 10.0, 1e-6)
+            damping = max(damping * 30.0, 1e-12)
     return x, now
 
 
 def _step(gradient: Array, matrix: Array, damping: float) -> Array:
-    """The damped step, of the least size where directions have no effect."""
-    size = np.sqrt(np.diag(matrix))
-    scale = 1.0 / np.maximum(size, max(_FAINT * size.max(initial=0.0), 1e-300))
-    values, vectors = np.linalg.eigh(matrix * np.outer(scale, scale))
-    known = values > 1e-13 * max(values.max(initial=0.0), 1.0)
-    along = vectors.T @ (scale * gradient)
-    return -scale * (vectors[:, known] @ (along[known] / (values[known] + damping)))
+    """The damped step, of the least size where directions have no effect.
+
+    Coordinates are relative to sizes of the parameters, so all count alike.
+    """
+    values, vectors = np.linalg.eigh(matrix)
+    whole = max(values.max(initial=0.0), 1e-300)
+    known = values > _NOISE * whole
+    along = vectors[:, known].T @ gradient
+    return -vectors[:, known] @ (along / (values[known] + damping * whole))
 
 
 class Combinations(NamedTuple):
