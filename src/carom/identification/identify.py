@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _REWEIGHTINGS = 3
+_SAME = 1e-3
 
 
 def identify(
@@ -67,7 +68,8 @@ def identify(
             log has torques and no controls.
         window: Rows on each side over which positions are smoothed, for "torque".
         degree: Degree of the polynomials that smooth them.
-        slow: Rate below which a joint with friction may stick [rad/s or m/s]; torques there are left out.
+        slow: Rate below which a joint with friction may stick [rad/s or m/s]; torques near there are left
+            out, for accelerations jump.
         horizon: Rows that are predicted from one state, for "prediction"; 2 for predictions of one step.
         starts: "fitted" if these states are to be fitted, too, or "measured".
         prior: Standard deviations of the parameters about the world's values, relative to their sizes; with
@@ -124,8 +126,11 @@ def _solve(
 
     x = unknowns.origin
     for _ in range(_REWEIGHTINGS):
-        x, _ = minimise(model, unknowns, x)
+        x, normal = minimise(model, unknowns, x)
+        before = problem.deviations.copy()
         problem.reweight(unknowns.values(x))
+        if np.abs(problem.deviations - before).max() <= _SAME * before.max():
+            return x, normal
     return minimise(model, unknowns, x)
 
 

@@ -11,9 +11,11 @@ from carom.checks import Array
 from carom.identification.unknowns import Unknowns
 
 _ITERATIONS = 100
-_ENOUGH = 1e-9
+_ENOUGH = 1e-7
 _REDUNDANT = 1e-9
 _LONGEST = 1.0
+# Information about each coordinate of inertia, as if it were known to within a factor of e: next to none.
+_PULL = 1.0
 # Eigenvalues of JᵀJ below this share of the greatest are rounding errors.
 _NOISE = 1e-14
 # Effects of parameters below this share of the greatest do not count.
@@ -49,12 +51,16 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
     Returns:
         The coordinates at the minimum, and the model there.
     """
+    # Where data say nothing, inertia stays as it was: else it would drift towards bodies that are degenerate.
+    pull = np.zeros(len(x))
+    pull[: unknowns.relative] = _PULL
     p = unknowns.values(x)
     now = model(p)
     damping = 1e-6
     for _ in range(_ITERATIONS):
         chain = unknowns.jacobian(x)
-        gradient, matrix = chain.T @ now.gradient, chain.T @ now.matrix @ chain
+        gradient = chain.T @ now.gradient + pull * x
+        matrix = chain.T @ now.matrix @ chain + np.diag(pull)
         free = (x > unknowns.lower) | (gradient < 0.0)
         step = np.zeros(len(x))
         step[free] = _step(gradient[free], matrix[np.ix_(free, free)], damping)
@@ -65,8 +71,8 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
         tried = unknowns.values(after)
         now.follow(tried - p)
         other = model(tried)
-        if other.cost <= now.cost:
-            gained = now.cost - other.cost
+        gained = now.cost - other.cost + 0.5 * pull @ (x**2 - after**2)
+        if gained >= 0.0:
             x, p, now = after, tried, other
             damping = max(damping * 0.03, 1e-16)
             if gained <= _ENOUGH * (1.0 + now.cost) and expected <= _ENOUGH * (1.0 + now.cost):

@@ -11,7 +11,7 @@ from carom.checks import Array
 from carom.identification.least_squares import Normal
 from carom.identification.measurements import Measurements
 from carom.identification.smoothing import smoothed
-from carom.identification.unknowns import Unknowns
+from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
 from carom.layouts.codes import JointCode
 from carom.linearization.inputs import INERTIAL, PARAMETERS, chosen_inputs
@@ -30,6 +30,7 @@ class Motion:
 
     Attributes:
         rows: Which rows of the measurements these are.
+        window: Rows on each side that smoothing has mixed with each.
         positions: [rad or m].
         velocities: Before the step.
         accelerations: Mean ones of the step.
@@ -37,6 +38,7 @@ class Motion:
     """
 
     rows: slice
+    window: int
     positions: Array
     velocities: Array
     accelerations: Array
@@ -50,11 +52,11 @@ def motion_of(measured: Measurements, window: int, degree: int) -> Motion:
     place, velocity, acceleration = smoothed(measured.positions, measured.time_step, window, degree)
     rows = slice(window, len(measured) - window)
     if measured.velocities is not None and measured.accelerations is not None:
-        rows = slice(0, len(measured))
+        rows, window = slice(0, len(measured)), 0
         place, velocity, acceleration = measured.positions, measured.velocities, measured.accelerations
     elif measured.accelerations is not None:
         acceleration = measured.accelerations[rows]
-    return Motion(rows, place, velocity, acceleration, measured.torques[rows])
+    return Motion(rows, window, place, velocity, acceleration, measured.torques[rows])
 
 
 class TorqueResiduals:
@@ -65,7 +67,8 @@ class TorqueResiduals:
         body: The body there.
         motion: The motion.
         unknowns: What is fitted.
-        slow: Rates below which a joint with friction may stick [rad/s or m/s]: such rows are left out.
+        slow: Rates below which a joint with friction may stick [rad/s or m/s]: rows near such ones are left
+            out.
 
     Attributes:
         channels: Names of the joints.
@@ -107,7 +110,9 @@ class TorqueResiduals:
             if 0 <= joint < joints:
                 value = read_value(world, it)
                 constant[:, joint] += value * terms[it.kind][:, joint]
-                rubbing[joint] |= it.kind == "joint_friction"
+                rubbing[joint] |= it.kind == "joint_friction" and (
+                    it.name in unknowns.names or value > SMALL_FRICTION
+                )
         self._design = np.zeros((count, joints, len(unknowns.names)))
         for place, it in enumerate(unknowns.inputs):
             if it is None:
@@ -118,8 +123,13 @@ class TorqueResiduals:
             else:
                 self._design[:, it.row - first, place] = terms[it.kind][:, it.row - first]
         self._target = motion.torques - constant + self._design @ unknowns.start
-        known = np.isfinite(motion.torques)
-        self._used = known & ~(rubbing & (np.abs(after) < slow))
+        left_out = _turning(after[:, rubbing], slow, motion.window)
+        self._used = np.isfinite(motion.torques) & ~left_out[:, None]
+        if self._used.sum() <= len(unknowns.names):
+            raise ValueError(
+                f"only {self._used.sum()} torques are left where no joint with friction is slow, or turns round: "
+                "the log is too short, or `slow` or `window` too great"
+            )
         self._factors = [
             np.linalg.qr(np.column_stack([self._design[own, j], self._target[own, j]]), mode="r")
             for j, own in enumerate(self._used.T)
@@ -150,6 +160,16 @@ class TorqueResiduals:
         """Rows of the log, measured and fitted torques."""
         predicted = self._motion.torques - self._target + self._design @ p
         return self._motion.rows, self._motion.torques, predicted
+
+
+def _turning(rates: Array, slow: float, window: int) -> Array:
+    """Rows near which some joint may stick or turns round, (m,).
+
+    Friction jumps there, and so do accelerations, which smoothing spreads over its window, for all joints.
+    """
+    near = (np.abs(rates) < slow).any(axis=1)
+    near[1:] |= (rates[1:] * rates[:-1] <= 0.0).any(axis=1)
+    return np.convolve(near, np.ones(2 * window + 1), mode="same") > 0.5
 
 
 def _spring_rest(world: World, body: Body) -> Array:

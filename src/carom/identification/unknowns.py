@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 DELAYS = "delays"
 _DELAY = ".delay"
-_SMALL_FRICTION = 1e-9
+SMALL_FRICTION = 1e-9
 # Scales of parameters that are 0 at the start: only the steps of the solver depend on them.
 _LEAST_SCALE = 0.01
 _ANY_SIGN = ("actuator_gains", "actuator_biases", "motor_position_gains", "motor_velocity_gains")
@@ -62,7 +62,7 @@ class Unknowns:
         self.body = body
         names = [chosen] if isinstance(chosen, str) else list(chosen)
         if any(name == "joint_friction" or name.endswith(".joint_friction") for name in names):
-            with_friction(body, _SMALL_FRICTION)
+            with_friction(body, SMALL_FRICTION)
         world.prepare()
         self.space = TangentSpace(world)
         links, others = self._links_among(world, names)
