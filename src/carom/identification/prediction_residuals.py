@@ -61,9 +61,7 @@ class PredictionResiduals:
         least = 2 if self._fits_starts else 1
         if horizon <= least:
             raise ValueError(f"a window needs more than {least} rows, not {horizon}")
-        self._windows = [
-            slice(first, min(first + horizon, count)) for first in range(0, count, horizon)
-        ]
+        self._windows = [slice(first, min(first + horizon, count)) for first in range(0, count, horizon)]
         self._windows = [it for it in self._windows if it.stop - it.start > least]
         names = [body.spec.links[j].joint_name for j, moving in enumerate(body.velocity_count) if moving]
         self.channels: tuple[str, ...] = tuple(f"{name} position" for name in names)
@@ -75,9 +73,7 @@ class PredictionResiduals:
         self._q = [body.position_index[j] for j, moving in enumerate(body.velocity_count) if moving]
         self._u = [body.velocity_index[j] for j, moving in enumerate(body.velocity_count) if moving]
         self._first_states = self._measured_states()
-        self._controls = chosen_inputs(
-            world, unknowns.space, CONTROLS, list(measured.controls), "control"
-        )
+        self._controls = chosen_inputs(world, unknowns.space, CONTROLS, list(measured.controls), "control")
         self._joints = joints
         self._predicted = np.full_like(self._targets, np.nan)
 
@@ -146,7 +142,11 @@ class PredictionResiduals:
         by_p, by_start = np.zeros((width, len(p))), np.eye(width, 2 * joints)
         rows = window.stop - window.start
         channels = len(self.channels)
-        found = np.zeros((rows, channels)), np.zeros((rows, channels, len(p))), np.zeros((rows, channels, 2 * joints))
+        found = (
+            np.zeros((rows, channels)),
+            np.zeros((rows, channels, len(p))),
+            np.zeros((rows, channels, 2 * joints)),
+        )
         for row in range(rows):
             state = copies.engine.arrays.state.numpy
             now = np.concatenate([state["position"][0, self._q], state["dof_velocity"][0, self._u]])

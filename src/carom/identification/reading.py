@@ -162,5 +162,3 @@ def _of_world_log(log: Any, body: Body) -> dict[str, Any]:
         return values
     u = [body.velocity_index[j] for j, count in enumerate(body.velocity_count) if count]
     return {**values, "velocities": velocity[:, u]}
-
-

@@ -45,7 +45,9 @@ class Combination:
     deviation: float
 
     def __str__(self) -> str:
-        terms = [f"{'' if factor == 1.0 else f'{factor:+.4g} '}{name}" for name, factor in self.factors.items()]
+        terms = [
+            f"{'' if factor == 1.0 else f'{factor:+.4g} '}{name}" for name, factor in self.factors.items()
+        ]
         more = f" + {len(terms) - _LISTED} more" if len(terms) > _LISTED else ""
         return " ".join(terms[:_LISTED]) + more
 
@@ -206,5 +208,3 @@ def result_of(
         _unknowns=unknowns,
         _p=p,
     )
-
-

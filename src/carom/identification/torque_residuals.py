@@ -79,9 +79,7 @@ class TorqueResiduals:
             be fitted that torques do not depend on.
     """
 
-    def __init__(
-        self, world: World, body: Body, motion: Motion, unknowns: Unknowns, slow: float
-    ) -> None:
+    def __init__(self, world: World, body: Body, motion: Motion, unknowns: Unknowns, slow: float) -> None:
         _check(world, body, unknowns)
         self.channels: tuple[str, ...] = tuple(
             body.spec.links[j].joint_name for j, count in enumerate(body.velocity_count) if count

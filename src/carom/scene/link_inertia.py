@@ -115,5 +115,3 @@ def _quaternion(turn: np.ndarray) -> tuple[float, float, float, float]:
     )
     x, y, z, w = np.linalg.eigh(matrix)[1][:, 3].tolist()
     return (x, y, z, w) if w >= 0.0 else (-x, -y, -z, -w)
-
-
