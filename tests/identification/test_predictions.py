@@ -98,7 +98,7 @@ def test_gains_and_delay_of_a_servo_are_recovered():
     positions += rng.normal(0.0, 2e-4, positions.shape)
     control = "physics.servo.control"
     log = {"time": time, "positions": positions, "controls": {control: command(time)}}
-    other, model = servo(150.0, 10.0)
+    other, _ = servo(150.0, 10.0)
     names = ["physics.servo.gain.0", "physics.servo.bias.1", "physics.servo.bias.2", "delays"]
     result = identify(log, other, names, horizon=120)
     true = dict(zip(result.values, [300.0, -300.0, -20.0, delay], strict=True))

@@ -32,7 +32,7 @@ def identify(
     body: Body | str | None = None,
     controls: Mapping[str, ArrayLike] | None = None,
     residuals: str = "auto",
-    window: int = 8,
+    window: int = 12,
     degree: int = 4,
     slow: float = 0.02,
     horizon: int = 120,
@@ -45,12 +45,12 @@ def identify(
     The world does not change; `result.apply(world)` gives it the values. Derivatives are exact: of torques
     those of `joint_torque_regressor`, of predictions those of `World.linearize`, step by step.
 
-    Inertial parameters remain those of some body of positive density: see `PseudoInertia`. All ten of each link
-    are fitted, though data never determine all; `result.combinations` are what they determine. The rest
-    stays near the values of the world.
+    Inertial parameters remain those of some body of positive density. All ten of each link are fitted, though
+    data never determine all; `result.combinations` are what they determine. The rest stays near the values
+    of the world.
 
-    Residuals are weighted by their noise, which is estimated from them for each joint. Bounds assume that it is
-    independent from row to row, and small in positions where these are smoothed.
+    Residuals are weighted by their noise, which is estimated from them for each joint. Bounds allow for what
+    smoothing makes of it, and assume that it is small in positions that are smoothed.
 
     Args:
         log: What was measured: a path (a log of `STATE_LOGGING_GENERIC_ROBOT`, a `.csv` file with columns
@@ -66,12 +66,14 @@ def identify(
         residuals: "torque" for measured torques less those of the equations of motion, "prediction" for
             measured positions and velocities less those of the simulator; "auto" is "torque" if the
             log has torques and no controls.
-        window: Rows on each side over which positions are smoothed, for "torque".
+        window: Rows on each side over which positions are smoothed, for "torque". If noise of accelerations
+            is no longer small, inertias come out wrong; the longer the window, the less there is of it.
         degree: Degree of the polynomials that smooth them.
         slow: Rate below which a joint with friction may stick [rad/s or m/s]; torques near there are left
             out, for accelerations jump.
-        horizon: Rows that are predicted from one state, for "prediction"; 2 for predictions of one step.
-        starts: "fitted" if these states are to be fitted, too, or "measured".
+        horizon: Rows that are predicted from one state, for "prediction".
+        starts: "fitted" if these states are to be fitted, too, or "measured": then a horizon of 2 is that of
+            predictions of one step.
         prior: Standard deviations of the parameters about the world's values, relative to their sizes; with
             one, all parameters are determined.
         confidence: Probability that all bounds together hold.
@@ -80,9 +82,9 @@ def identify(
         Values, bounds, what cannot be told apart, and what fits how well.
 
     Raises:
-        ValueError: An argument has a value that it cannot have, the log does not fit the robot, there is no such
-            parameter, or data do not determine anything.
-        NotImplementedError: Steps of this world have no exact derivatives, or centres of links cannot be moved.
+        ValueError: An argument has a value that it cannot have, the log does not fit the robot, there is no
+            such parameter, or data do not determine anything.
+        NotImplementedError: Steps of this world have no exact derivatives, or centres of links cannot move.
         OSError: The file cannot be read.
     """
     if residuals not in ("auto", "torque", "prediction"):

@@ -11,7 +11,9 @@ from carom.checks import Array
 from carom.identification.unknowns import Unknowns
 
 _ITERATIONS = 100
-_ENOUGH = 1e-7
+# Gain of a step, in squares of standard deviations, that is not worth another.
+_ENOUGH = 1e-4
+_MOST_DAMPING = 1e4
 _REDUNDANT = 1e-9
 _LONGEST = 1.0
 # Information about each coordinate of inertia, as if it were known to within a factor of e: next to none.
@@ -56,18 +58,20 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
     pull[: unknowns.relative] = _PULL
     p = unknowns.values(x)
     now = model(p)
-    damping = 1e-6
+    damping = 1e-8
     for _ in range(_ITERATIONS):
         chain = unknowns.jacobian(x)
         gradient = chain.T @ now.gradient + pull * x
         matrix = chain.T @ now.matrix @ chain + np.diag(pull)
         free = (x > unknowns.lower) | (gradient < 0.0)
         step = np.zeros(len(x))
-        step[free] = _step(gradient[free], matrix[np.ix_(free, free)], damping)
+        of_free = gradient[free], matrix[np.ix_(free, free)]
+        step[free] = _step(*of_free, damping)
+        # What could be gained without damping, if the cost were quadratic.
+        left = -0.5 * of_free[0] @ _step(*of_free, 0.0)
         # Coordinates of inertia are logarithms, or relative.
         longest = np.abs(step[: unknowns.relative]).max(initial=0.0)
         after = np.maximum(x + step * min(1.0, _LONGEST / max(longest, 1e-300)), unknowns.lower)
-        expected = -(gradient @ (after - x)) - 0.5 * (after - x) @ matrix @ (after - x)
         tried = unknowns.values(after)
         now.follow(tried - p)
         other = model(tried)
@@ -75,14 +79,14 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
         if gained >= 0.0:
             x, p, now = after, tried, other
             damping = max(damping * 0.03, 1e-16)
-            if gained <= _ENOUGH * (1.0 + now.cost) and expected <= _ENOUGH * (1.0 + now.cost):
+            if max(gained, left) <= _ENOUGH:
                 break
         else:
             now.follow(np.zeros(len(p)))
-            if expected <= _ENOUGH * (1.0 + now.cost) or damping > 1e8:
+            if left <= _ENOUGH or damping > _MOST_DAMPING:
                 now = model(p)
                 break
-            damping = max(damping * 30.0, 1e-12)
+            damping = max(damping * 30.0, 1e-14)
     return x, now
 
 
@@ -104,17 +108,19 @@ class Combinations(NamedTuple):
     Attributes:
         factors: Of the parameters in each, (k, n): 1 for its first.
         covariance: Of the combinations, (k, k).
+        rows: Which parameters have the factor 1.
     """
 
     factors: Array
     covariance: Array
+    rows: list[int]
 
 
 def combinations(matrix: Array, scale: Array) -> Combinations:
     """What can be told apart, from JᵀJ of residuals of unit variance.
 
-    A parameter whose effect is a combination of those of parameters before it stands with these: its factor in
-    their combinations says how. The last parameters are the first to be chosen, for those of the last
+    A parameter whose effect is a sum of those of parameters before it stands with these: its factor in their
+    combinations says how. The last parameters are the first to be chosen, for those of the last
     links of an arm are usually determined by themselves.
 
     Args:
@@ -142,5 +148,5 @@ def combinations(matrix: Array, scale: Array) -> Combinations:
     factors[:, rows] = np.eye(len(rows))
     factors = np.where(np.abs(factors) > 1e-5, factors, 0.0)
     return Combinations(
-        factors * np.outer(scale[rows], 1.0 / scale), inverse * np.outer(scale[rows], scale[rows])
+        factors * np.outer(scale[rows], 1.0 / scale), inverse * np.outer(scale[rows], scale[rows]), rows
     )

@@ -185,6 +185,9 @@ class PredictionResiduals:
         freedom = max(len(rows) - spent / len(self.channels), 1.0)
         self.deviations = np.maximum(np.sqrt((residual**2).sum(axis=0) / freedom), 1e-12)
 
+    def spread(self, p: Array) -> None:
+        """Nothing: noise of measurements is taken as independent."""
+
     def fit(self, p: Array) -> tuple[slice, Array, Array]:
         """Rows of the log, measured and predicted values of the channels."""
         return slice(0, self._windows[-1].stop), self._targets[: self._windows[-1].stop], self._predicted

@@ -27,6 +27,8 @@ class _Problem(Protocol):
 
     def fit(self, p: Array) -> tuple[slice, Array, Array]: ...
 
+    def spread(self, p: Array) -> Array | None: ...
+
 
 @record(eq=False)
 class Combination:
@@ -100,7 +102,7 @@ class IdentificationResult:
 
         Raises:
             ValueError: There is no such body, or its links are others.
-            NotImplementedError: Something is fixed to the inertial frames of its links, so centres cannot move.
+            NotImplementedError: Something is fixed to inertial frames of its links, so centres cannot move.
         """
         own = self._unknowns.body
         if body is None:
@@ -177,7 +179,13 @@ def result_of(
         raise ValueError("the log does not depend on any of the parameters")
     # Bonferroni's inequality: together they hold with at least this probability.
     quantile = NormalDist().inv_cdf(1.0 - 0.5 * (1.0 - confidence) / count)
-    sizes = np.sqrt(np.diag(found.covariance))
+    covariance, spread = found.covariance, problem.spread(p)
+    variances = np.diag(covariance)
+    if spread is not None:
+        # That of correlated noise; estimated, so that it is no reason for bounds less than those without.
+        covariance = covariance @ spread[np.ix_(found.rows, found.rows)] @ covariance
+        variances = np.maximum(variances, np.diag(covariance))
+    sizes = np.sqrt(variances)
     sums: list[Combination] = []
     bounds, deviations = dict.fromkeys(names, np.inf), dict.fromkeys(names, np.inf)
     for factors, size in zip(found.factors, sizes.tolist(), strict=True):
@@ -204,7 +212,7 @@ def result_of(
         time=measured.time_step * np.arange(len(measured))[rows],
         measured=seen,
         fitted=fitted,
-        covariance=found.covariance,
+        covariance=covariance,
         _unknowns=unknowns,
         _p=p,
     )

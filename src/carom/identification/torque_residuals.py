@@ -125,7 +125,7 @@ class TorqueResiduals:
         self._used = np.isfinite(motion.torques) & ~left_out[:, None]
         if self._used.sum() <= len(unknowns.names):
             raise ValueError(
-                f"only {self._used.sum()} torques are left where no joint with friction is slow, or turns round: "
+                f"only {self._used.sum()} torques are left where no joint with friction is slow or turns round: "
                 "the log is too short, or `slow` or `window` too great"
             )
         self._factors = [
@@ -153,6 +153,28 @@ class TorqueResiduals:
             residual = factor[:, :-1] @ p - factor[:, -1]
             freedom = max(float(self._used[:, joint].sum()) - share, 1.0)
             self.deviations[joint] = max(np.sqrt(residual @ residual / freedom), 1e-9)
+
+    def spread(self, p: Array) -> Array:
+        """Covariance of the gradient of the cost, (np, np), for noise as it is.
+
+        Smoothing makes noise of accelerations that lasts for its window, in all joints at once. So
+        covariances of the residuals of joints are estimated for all lags that a window has.
+        """
+        used = self._used[:, :, None]
+        weighted = np.where(used, self._design, 0.0) / self.deviations[:, None]
+        residual = np.where(self._used, self._target - self._design @ p, 0.0) / self.deviations
+        count, size = len(residual), len(p)
+        mask = self._used.astype(float)
+        share = 1.0 - min(size / max(mask.sum(), 1.0), 0.5)
+        found = np.zeros((size, size))
+        for lag in range(2 * self._motion.window + 1):
+            early, late = slice(0, count - lag), slice(lag, count)
+            pairs = mask[early].T @ mask[late]
+            covariance = residual[early].T @ residual[late] / (share * np.maximum(pairs, 1.0))
+            later = np.einsum("ij,tjp->tip", covariance, weighted[late])
+            part = weighted[early].reshape(-1, size).T @ later.reshape(-1, size)
+            found += part if lag == 0 else part + part.T
+        return found
 
     def fit(self, p: Array) -> tuple[slice, Array, Array]:
         """Rows of the log, measured and fitted torques."""

@@ -36,7 +36,7 @@ class _Link(NamedTuple):
 class Unknowns:
     """The parameters that are fitted.
 
-    Their values are p; the solver moves coordinates x: those of `PseudoInertia` for the inertial parameters of
+    Their values are p; the solver moves coordinates x: those of `PseudoInertia` for inertial parameters of
     links, values in units of their scales for others, which have lower bounds.
 
     Args:

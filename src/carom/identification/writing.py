@@ -67,7 +67,7 @@ def _link_of(world: World, row: int) -> tuple[Body, int]:
 
 
 def with_friction(body: Body, smallest: float) -> None:
-    """Give the joints of a body that have no friction a tiny one: parameters of the engine for it exist then."""
+    """Give joints without friction a tiny one, so that the engine has parameters for it."""
     for joint in body.joints.movable:
         if joint.friction_loss == 0.0:
             joint.friction_loss = smallest
