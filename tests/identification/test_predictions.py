@@ -49,7 +49,7 @@ def test_mass_length_and_damping_of_a_pole_are_recovered_from_positions(seed):
     assert mass == pytest.approx(0.35, abs=0.01)
     assert moment / mass == pytest.approx(0.4, abs=0.01)
     assert result.values["physics.cart_to_pole.damping"] == pytest.approx(0.03, abs=1e-3)
-    assert result.bounds["physics.cart_to_pole.damping"] < 1e-3
+    assert result.bounds["physics.cart_to_pole.damping"] < 2e-3
     for noise in result.noise.values():
         assert noise == pytest.approx(_NOISE, rel=0.15)
     # It turns about one axis only.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _REWEIGHTINGS = 3
-_SAME = 1e-3
+_SAME = 0.02
 
 
 def identify(
@@ -131,7 +131,7 @@ def _solve(
         x, normal = minimise(model, unknowns, x)
         before = problem.deviations.copy()
         problem.reweight(unknowns.values(x))
-        if np.abs(problem.deviations - before).max() <= _SAME * before.max():
+        if (np.abs(problem.deviations - before) <= _SAME * before).all():
             return x, normal
     return minimise(model, unknowns, x)
 

@@ -69,7 +69,7 @@ class PredictionResiduals:
         if measured.velocities is not None:
             self.channels += tuple(f"{name} velocity" for name in names)
             self._targets = np.concatenate([measured.positions, measured.velocities], axis=1)
-        self.deviations: Array = np.ones(len(self.channels))
+        self.deviations: Array = _roughness(self._targets, measured.time_step)
         self._q = [body.position_index[j] for j, moving in enumerate(body.velocity_count) if moving]
         self._u = [body.velocity_index[j] for j, moving in enumerate(body.velocity_count) if moving]
         self._first_states = self._measured_states()
@@ -191,6 +191,14 @@ class PredictionResiduals:
     def fit(self, p: Array) -> tuple[slice, Array, Array]:
         """Rows of the log, measured and predicted values of the channels."""
         return slice(0, self._windows[-1].stop), self._targets[: self._windows[-1].stop], self._predicted
+
+
+def _roughness(values: Array, time_step: float) -> Array:
+    """Deviations of values (N, channels) from smooth ones, as a first guess of their noise."""
+    size = min(_START_WINDOW, (len(values) - 2) // 2)
+    smooth = smoothed(values, time_step, size, min(_START_DEGREE, 2 * size))[0]
+    rough = np.sqrt(((values[size : len(values) - size] - smooth) ** 2).mean(axis=0))
+    return np.maximum(rough, 1e-6 * np.maximum(np.ptp(values, axis=0), 1e-6))
 
 
 def _put(state: dict[str, Array], given: Input, value: float) -> None:

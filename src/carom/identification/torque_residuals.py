@@ -125,8 +125,8 @@ class TorqueResiduals:
         self._used = np.isfinite(motion.torques) & ~left_out[:, None]
         if self._used.sum() <= len(unknowns.names):
             raise ValueError(
-                f"only {self._used.sum()} torques are left where no joint with friction is slow or turns round: "
-                "the log is too short, or `slow` or `window` too great"
+                f"only {self._used.sum()} torques are left where no joint with friction turns round: the log is "
+                "too short, or `slow` or `window` too great"
             )
         self._factors = [
             np.linalg.qr(np.column_stack([self._design[own, j], self._target[own, j]]), mode="r")
