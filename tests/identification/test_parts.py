@@ -16,7 +16,9 @@ from carom.scene.link_inertia import set_link_inertia
 def _parameters(rng):
     arm = rng.normal(size=(30, 3)) * (0.1, 0.2, 0.3) + (0.1, -0.2, 0.3)
     masses = rng.uniform(0.1, 0.2, 30)
-    inertia = sum(m * (x @ x * np.eye(3) - np.outer(x, x)) for m, x in zip(masses, arm, strict=True))
+    inertia = np.sum(
+        [m * (x @ x * np.eye(3) - np.outer(x, x)) for m, x in zip(masses, arm, strict=True)], axis=0
+    )
     six = inertia[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
     return np.array([masses.sum(), *(masses @ arm), *six])
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from tests.identification.robots import STEP, load
@@ -38,7 +40,8 @@ def test_csv_archives_and_arrays_are_the_same(tmp_path):
     log = _swing(world, robot)
     command = np.cos(log["time"])
     _same(measurements_of(log, robot), log)
-    np.savez(tmp_path / "log.npz", **log, **{_CONTROL: command})
+    arrays: dict[str, Any] = {**log, _CONTROL: command}
+    np.savez(tmp_path / "log.npz", **arrays)
     found = measurements_of(tmp_path / "log.npz", robot)
     _same(found, log)
     assert found.controls[_CONTROL] == pytest.approx(command)

@@ -134,15 +134,18 @@ def _read_bullet(path: Path, body: Body) -> dict[str, Any]:
         raise ValueError(f"{path} has {len(rows)} records of the body; its bodies are {bodies}")
     table = np.array(rows, dtype=float)
     joints = int(table[0, column["qNum"]])
-    own = {letter: [column.get(f"{letter}{index}") for index in range(joints)] for letter in "qut"}
+
+    def numbers(letter: str) -> np.ndarray:
+        return table[:, [column[f"{letter}{index}"] for index in range(joints)]]
+
     values = {
         "time": table[:, column["timeStamp"]],
-        "positions": table[:, own["q"]],
-        "velocities": table[:, own["u"]],
+        "positions": numbers("q"),
+        "velocities": numbers("u"),
     }
-    if None not in own["t"]:
+    if "t0" in column:
         # The torques of a record led to its state: they belong to the one before.
-        values["torques"] = np.concatenate([table[1:, own["t"]], np.full((1, joints), np.nan)])
+        values["torques"] = np.concatenate([numbers("t")[1:], np.full((1, joints), np.nan)])
     return values
 
 

@@ -7,6 +7,7 @@ from statistics import NormalDist
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.checks import Array
 from carom.identification.least_squares import combinations
@@ -106,9 +107,9 @@ class IdentificationResult:
         """
         own = self._unknowns.body
         if body is None:
-            body = own.id if own.id in world.bodies else own.name  # type: ignore[assignment]
-        if isinstance(body, int):
-            target = world.bodies[body]
+            target = world.bodies.get(own.id)
+            if target is None:
+                raise ValueError(f"the world has no body {own.id}: say which one is the robot")
         elif isinstance(body, str):
             named = [it for it in world.bodies.values() if it.name == body]
             if len(named) != 1:
@@ -161,7 +162,7 @@ class IdentificationResult:
 def result_of(
     unknowns: Unknowns,
     p: Array,
-    at_bound: Array,
+    at_bound: NDArray[np.bool_],
     matrix: Array,
     problem: _Problem,
     measured: Measurements,
@@ -195,7 +196,7 @@ def result_of(
         sums.append(Combination(own, float(factors @ p), quantile * size, size))
         if len(own) == 1:
             bounds[names[places[0]]], deviations[names[places[0]]] = quantile * size, size
-    used = found.factors.any(axis=0)
+    used = np.any(found.factors, axis=0)
     rows, seen, fitted = problem.fit(p)
     values = dict(zip(names, p.tolist(), strict=True))
     return IdentificationResult(
@@ -204,12 +205,12 @@ def result_of(
         bounds=bounds,
         deviations=deviations,
         combinations=sums,
-        ineffective=[name for name, it in zip(names, used.tolist(), strict=True) if not it],
+        ineffective=[name for name, it in zip(names, used, strict=True) if not it],
         at_bound=[name for name, it in zip(names, at_bound.tolist(), strict=True) if it],
         delays={control: float(p[place]) for control, place in unknowns.delays.items()},
         confidence=confidence,
         noise=dict(zip(problem.channels, problem.deviations.tolist(), strict=True)),
-        time=measured.time_step * np.arange(len(measured))[rows],
+        time=(measured.time_step * np.arange(len(measured), dtype=float))[rows],
         measured=seen,
         fitted=fitted,
         covariance=covariance,

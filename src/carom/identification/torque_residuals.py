@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.algorithms.regressor import inertial_parameters, joint_torque_regressor
 from carom.checks import Array
@@ -125,11 +126,11 @@ class TorqueResiduals:
         self._used = np.isfinite(motion.torques) & ~left_out[:, None]
         if self._used.sum() <= len(unknowns.names):
             raise ValueError(
-                f"only {self._used.sum()} torques are left where no joint with friction turns round: the log is "
-                "too short, or `slow` or `window` too great"
+                f"only {self._used.sum()} torques are left where no joint with friction turns round: the log "
+                "is too short, or `slow` or `window` too great"
             )
-        self._factors = [
-            np.linalg.qr(np.column_stack([self._design[own, j], self._target[own, j]]), mode="r")
+        self._factors: list[Array] = [
+            np.asarray(np.linalg.qr(np.column_stack([self._design[own, j], self._target[own, j]]))[1])
             for j, own in enumerate(self._used.T)
         ]
         self.deviations: Array = np.ones(joints)
@@ -182,14 +183,15 @@ class TorqueResiduals:
         return self._motion.rows, self._motion.torques, predicted
 
 
-def _turning(rates: Array, slow: float, window: int) -> Array:
+def _turning(rates: Array, slow: float, window: int) -> NDArray[np.bool_]:
     """Rows near which some joint may stick or turns round, (m,).
 
     Friction jumps there, and so do accelerations, which smoothing spreads over its window, for all joints.
     """
-    near = (np.abs(rates) < slow).any(axis=1)
-    near[1:] |= (rates[1:] * rates[:-1] <= 0.0).any(axis=1)
-    return np.convolve(near, np.ones(2 * window + 1), mode="same") > 0.5
+    near = np.asarray(np.any(np.abs(rates) < slow, axis=1))
+    near[1:] |= np.any(rates[1:] * rates[:-1] <= 0.0, axis=1)
+    wide = np.convolve(near.astype(float), np.ones(2 * window + 1))
+    return wide[window : window + len(near)] > 0.5
 
 
 def _spring_rest(world: World, body: Body) -> Array:
