@@ -119,3 +119,13 @@ def test_what_torques_do_not_depend_on_is_refused():
     robot.change_dynamics(-1, linear_damping=0.04)
     with pytest.raises(ValueError, match="air damps"):
         identify(log, world, ["damping"])
+
+
+def test_a_plot_shows_joints_and_parameters(tmp_path):
+    pytest.importorskip("matplotlib", reason="draws the plot")
+    log, _ = _noisy_log(4, 2.0)
+    world, robot = panda()
+    result = identify(log, world, [f"{robot.name}.{joint}.damping" for joint in JOINTS])
+    result.plot(tmp_path / "plot.svg")
+    text = (tmp_path / "plot.svg").read_text(encoding="utf-8")
+    assert text.count('<g id="axes_') >= 2 * ARM + 1
