@@ -9,9 +9,9 @@ import numpy as np
 import pybullet_data
 from carom import Body, World
 from carom.algorithms import inertial_parameters, inverse_dynamics
+from carom.identification.link_inertia import set_link_inertia
 from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inertia
 from carom.linearization.inputs import INERTIAL_NUMBERS
-from carom.scene.link_inertia import set_link_inertia
 
 ASSETS = pybullet_data.getDataPath()
 STEP = 1 / 240

@@ -8,9 +8,9 @@ from tests.identification.robots import STEP, disturb, load, panda
 
 from carom import Gyro
 from carom.algorithms import inertial_parameters, inverse_dynamics, joint_torque_regressor
+from carom.identification.link_inertia import set_link_inertia
 from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inertia
 from carom.identification.smoothing import smoothed
-from carom.scene.link_inertia import set_link_inertia
 
 
 def _parameters(rng):

@@ -7,7 +7,7 @@ import pytest
 from tests.identification.robots import STEP, errors, load, truth
 
 from carom import PositionActuator, identify
-from carom.scene.link_inertia import set_link_inertia
+from carom.identification.link_inertia import set_link_inertia
 
 _FORCE = "physics.slider_to_cart.torque"
 _NOISE = 5e-4

@@ -128,12 +128,12 @@ def _solve(
 
     x = unknowns.origin
     for _ in range(_REWEIGHTINGS):
-        x, normal = minimise(model, unknowns, x)
+        x, normal = minimise(model, unknowns, x, drifts=bool(np.isinf(prior)))
         before = problem.deviations.copy()
         problem.reweight(unknowns.values(x))
         if (np.abs(problem.deviations - before) <= _SAME * before).all():
             return x, normal
-    return minimise(model, unknowns, x)
+    return minimise(model, unknowns, x, drifts=bool(np.isinf(prior)))
 
 
 def _chosen(world: World, body: Body | str | None) -> Body:

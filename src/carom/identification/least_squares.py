@@ -41,7 +41,9 @@ class Normal(NamedTuple):
     follow: Callable[[Array], None]
 
 
-def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> tuple[Array, Normal]:
+def minimise(
+    model: Callable[[Array], Normal], unknowns: Unknowns, x: Array, *, drifts: bool
+) -> tuple[Array, Normal]:
     """Minimise a cost.
 
     Args:
@@ -49,13 +51,14 @@ def minimise(model: Callable[[Array], Normal], unknowns: Unknowns, x: Array) -> 
             `follow` of the latter is called again with a smaller change.
         unknowns: Names, scales and bounds.
         x: Coordinates at which to start.
+        drifts: Whether some directions may have no effect, so that inertia has to be kept in place there.
 
     Returns:
         The coordinates at the minimum, and the model there.
     """
     # Where data say nothing, inertia stays as it was: else it would drift towards bodies that are degenerate.
     pull = np.zeros(len(x))
-    pull[: unknowns.relative] = _PULL
+    pull[: unknowns.relative] = _PULL if drifts else 0.0
     p = unknowns.values(x)
     now = model(p)
     damping = 1e-8

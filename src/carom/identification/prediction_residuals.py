@@ -11,7 +11,6 @@ from carom.identification.least_squares import Normal
 from carom.identification.measurements import Measurements
 from carom.identification.smoothing import smoothed
 from carom.identification.unknowns import Unknowns
-from carom.layouts.codes import JointCode
 from carom.linearization.exact import step_derivatives
 from carom.linearization.inputs import CONTROLS, Input, chosen_inputs
 from carom.linearization.stepping import copy_of
@@ -217,8 +216,7 @@ def _delayed(values: Array, row: int, delay: float, time_step: float) -> tuple[f
 
 
 def _check(world: World, body: Body, measured: Measurements, unknowns: Unknowns) -> None:
-    usual = (JointCode.REVOLUTE, JointCode.PRISMATIC, JointCode.FIXED)
-    if not body.fixed_base or any(kind not in usual for kind in body.joint_types):
+    if not body.fixed_base or any(count > 1 for count in body.velocity_count):
         raise ValueError(
             f"{body.name!r} has a free base, spherical or planar joints: predictions identify fixed robots"
         )

@@ -14,7 +14,6 @@ from carom.identification.measurements import Measurements
 from carom.identification.smoothing import smoothed
 from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
-from carom.layouts.codes import JointCode
 from carom.linearization.inputs import INERTIAL, PARAMETERS, chosen_inputs
 from carom.record import record
 
@@ -200,8 +199,7 @@ def _spring_rest(world: World, body: Body) -> Array:
 
 
 def _check(world: World, body: Body, unknowns: Unknowns) -> None:
-    usual = (JointCode.REVOLUTE, JointCode.PRISMATIC, JointCode.FIXED)
-    if not body.fixed_base or any(kind not in usual for kind in body.joint_types):
+    if not body.fixed_base or any(count > 1 for count in body.velocity_count):
         raise ValueError(
             f"{body.name!r} has a free base, spherical or planar joints: torques identify fixed arms"
         )

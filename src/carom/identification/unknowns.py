@@ -9,11 +9,11 @@ import numpy as np
 
 from carom.algorithms.regressor import inertial_parameters
 from carom.checks import Array
+from carom.identification.link_inertia import set_link_inertia
 from carom.identification.pseudo_inertia import COORDINATES, PseudoInertia, centre_and_inertia
 from carom.identification.writing import read_value, with_friction, write_value
 from carom.linearization.inputs import INERTIAL, PARAMETERS, Input, chosen_inputs
 from carom.linearization.tangent import TangentSpace, body_label
-from carom.scene.link_inertia import set_link_inertia
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
