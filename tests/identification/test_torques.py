@@ -66,22 +66,6 @@ def test_torques_of_the_world_are_those_measured_after_the_values_are_applied():
     assert joint.friction_loss == pytest.approx(true_joint.friction_loss, abs=0.1)
 
 
-def test_without_noise_the_motion_is_explained_completely():
-    rng = np.random.default_rng(5)
-    world, robot = panda()
-    disturb(robot, rng)
-    true = truth(robot)
-    log = excited_panda(world, robot, rng, 3.0)
-    log["accelerations"] = np.diff(log["velocities"], axis=0, append=np.nan) / world.parameters.time_step
-    log = {name: value[:-1] for name, value in log.items()}
-    other, model = panda()
-    result = identify(log, other, panda_parameters(model))
-    known = [it for it in result.combinations if it.bound < 1e-3]
-    assert len(known) > 55
-    for it in known:
-        assert it.value == pytest.approx(sum(f * true[name] for name, f in it.factors.items()), abs=2e-4)
-
-
 def test_what_cannot_be_told_apart_is_named():
     log, _ = _noisy_log(4, 4.0)
     world, robot = panda()
