@@ -60,6 +60,8 @@ if TYPE_CHECKING:
         Touch,
         Velocimeter,
     )
+    from carom.identification.identify import identify
+    from carom.identification.result import IdentificationResult
     from carom.recording.recorder import Recorder
     from carom.scene.body import Body
     from carom.scene.joint import Joint
@@ -96,6 +98,7 @@ __all__ = [
     "FrameZAxis",
     "GeneralActuator",
     "Gyro",
+    "IdentificationResult",
     "IntegratedVelocityActuator",
     "Joint",
     "JointActuatorForce",
@@ -124,11 +127,13 @@ __all__ = [
     "Worlds",
     "__version__",
     "control",
+    "identify",
 ]
 
 _HOME = {
     "Body": "carom.scene.body",
     "Camera": "carom.camera",
+    "IdentificationResult": "carom.identification.result",
     "Joint": "carom.scene.joint",
     "JointCoupling": "carom.scene.named_constraints.joint_coupling",
     "Link": "carom.scene.link",
@@ -136,6 +141,7 @@ _HOME = {
     "Scene": "carom.world.scene",
     "World": "carom.world.world",
     "Worlds": "carom.worlds.worlds",
+    "identify": "carom.identification.identify",
 }
 _HOME |= dict.fromkeys(
     (

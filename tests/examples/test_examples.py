@@ -93,6 +93,21 @@ def test_the_cart_balances_the_pole(example):
     assert gains == pytest.approx(np.linalg.solve(control_cost + pushed @ step.B, pushed @ step.A), rel=1e-6)
 
 
+def test_the_tool_and_the_friction_of_the_arm_are_found(example, capsys):
+    record = example("identify_arm").main(duration=8.0)
+    result, robot = record["result"], record["robot"]
+    for number, joint in enumerate(robot.joints.movable[:7]):
+        for name, value, true in (
+            ("damping", joint.damping, 1.0 - 0.1 * number),
+            ("joint_friction", joint.friction_loss, 0.8 - 0.08 * number),
+        ):
+            assert value == result.values[f"panda.{joint.name}.{name}"]
+            assert abs(value - true) < result.bounds[f"panda.{joint.name}.{name}"] < 0.25
+    # The arm feels the mass beyond the wrist as a whole.
+    assert sum(robot.dynamics(robot.links[name].index).mass for name in ("panda_link7", "panda_hand")) > 1.2
+    assert "Cannot be told apart" in capsys.readouterr().out
+
+
 def test_the_modern_api_example_reaches_its_goal(example):
     record = example("modern_api").main(duration=2.0)
     assert record["shoulder"][-1] == pytest.approx(record["path"][-1], abs=0.01)

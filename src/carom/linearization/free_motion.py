@@ -11,6 +11,7 @@ from carom.algorithms.dynamics_derivatives import inverse_dynamics_derivatives
 from carom.algorithms.inverse_dynamics import inverse_dynamics
 from carom.algorithms.regressor import joint_torque_regressor
 from carom.layouts.codes import BASE_POSITIONS, PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
+from carom.linearization.inputs import INERTIAL
 from carom.linearization.spatial import Spatial, link_forces
 from carom.linearization.turns import cross_matrix, matrix_of
 
@@ -128,7 +129,7 @@ class FreeMotion:
             elif given.kind == "damping":
                 explicit = given.field == "dof_damping"
                 found[row, column] = -(taken.velocity if explicit else after)[row]
-            elif given.kind in ("masses", "inertias"):
+            elif given.kind in ("masses", "inertias", INERTIAL):
                 place = next(
                     k for k, body in enumerate(space.bodies) if 0 <= row - body.first_link <= body.joint_count
                 )
@@ -163,6 +164,8 @@ class FreeMotion:
         """Generalized forces (dofs,) by a mass or a moment of inertia."""
         taken, link = self._taken, given.row - body.first_link
         parts = regressor[:, _PARTS * link : _PARTS * (link + 1)]
+        if given.kind == INERTIAL:
+            return -parts[:, given.place[1]]
         frame = body.link_inertial_frame(link - 1)
         masses = np.zeros(1 + body.joint_count)
         inertias = np.zeros((1 + body.joint_count, 3))

@@ -23,6 +23,12 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _AXES = "xyz"
+INERTIAL = "inertial_parameters"
+# In the order of `carom.algorithms.inertial_parameters`.
+INERTIAL_NUMBERS = (
+    *("mass", "moment.x", "moment.y", "moment.z"),
+    *("inertia.xx", "inertia.xy", "inertia.yy", "inertia.xz", "inertia.yz", "inertia.zz"),
+)
 _DRIVEN = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 
 
@@ -96,6 +102,18 @@ def _of_links(table: str, field: str, count: int = 0) -> Finder:
     return find
 
 
+def _inertial(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+    for body in space.bodies:
+        for link in range(BASE, body.joint_count):
+            if link < 0 and body.fixed_base:
+                continue
+            row = body.first_link + 1 + link
+            part = "base" if link < 0 else body.spec.links[link].name
+            for place, number in enumerate(INERTIAL_NUMBERS):
+                name = f"{body_label(world, body)}.{part}.{ENDS[kind]}.{number}"
+                yield Input(kind, name, "model", "link_mass", (row, place), 1.0, row)
+
+
 def _of_actuators(table: str, field: str, count: int = 0) -> Finder:
     def find(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
         for body in space.bodies:
@@ -127,6 +145,7 @@ CONTROLS: dict[str, Finder] = {
 PARAMETERS: dict[str, Finder] = {
     "masses": _of_links("model", "link_mass"),
     "inertias": _of_links("model", "link_inertia", 3),
+    INERTIAL: _inertial,
     "friction": _of_links("shapes", "link_lateral_friction"),
     "joint_friction": _joint_friction,
     "stiffness": _of_dofs("dof_stiffness"),
@@ -145,6 +164,7 @@ ENDS = {
     "actuators": "control",
     "masses": "mass",
     "inertias": "inertia",
+    INERTIAL: "inertial",
     "friction": "friction",
     "joint_friction": "joint_friction",
     "stiffness": "stiffness",

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array
 from carom.linearization.exact import step_derivatives
-from carom.linearization.inputs import CONTROLS, PARAMETERS, Input, chosen_inputs
+from carom.linearization.inputs import CONTROLS, INERTIAL, PARAMETERS, Input, chosen_inputs
 from carom.linearization.stepping import copy_of, differences
 from carom.linearization.tangent import TangentSpace
 
@@ -79,6 +79,7 @@ def linearize(
     control_count = len(given)
     given += chosen_inputs(world, space, PARAMETERS, parameters, "parameter")
     rows: tuple[tuple[str, str], ...] = ()
+    _refuse_inertial(world, space, given, method)
     if method == "differences":
         by_state, by_input = differences(world, space, given, steps, _SIZE)
     else:
@@ -95,6 +96,23 @@ def linearize(
         parameters=tuple(it.name for it in given[control_count:]),
         rows=rows,
     )
+
+
+def _refuse_inertial(world: World, space: TangentSpace, given: list[Input], method: str) -> None:
+    """Refuse inertial parameters where they have no derivatives."""
+    if all(it.kind != INERTIAL for it in given):
+        return
+    if method != "exact":
+        raise NotImplementedError("inertial parameters have exact derivatives only")
+    model = world.arrays.model.numpy
+    for body in space.bodies:
+        tree, links = body.rows.tree, slice(body.first_link, body.first_link + 1 + body.joint_count)
+        drags = model["tree_linear_damping"][0, tree], model["tree_angular_damping"][0, tree]
+        if any(drags) or model["link_gravity_compensation"][0, links].any():
+            raise NotImplementedError(
+                f"inertial parameters of {body.name!r} have no derivatives with air damping or gravity "
+                "compensation"
+            )
 
 
 def _state_names(space: TangentSpace) -> tuple[str, ...]:

@@ -300,6 +300,12 @@ class WorldArrays:
         self.model.numpy["link_mass"][:, row] = mass
         self.model.numpy["link_inertia"][:, row] = inertia
 
+    def write_joints(self, rows: TreeRows, spec: BodySpec) -> None:
+        """Write the frames and axes of a body's joints again after inertial frames have changed."""
+        for j, link in enumerate(spec.links):
+            row = rows.first["link"] + 1 + j
+            self._write_joint(row, link, spec.link(link.parent), JOINT_CODE[link.joint_type])
+
     def _write_joint(self, row: int, link: LinkSpec, parent: LinkSpec, code: JointCode) -> None:
         model = self.model.numpy
         to_parent_inertial = conjugate(parent.inertial_frame.orientation)

@@ -1,0 +1,152 @@
+"""Fitting parameters of a world to a log."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array
+from carom.identification.least_squares import Normal, minimise
+from carom.identification.prediction_residuals import PredictionResiduals
+from carom.identification.reading import measurements_of
+from carom.identification.result import IdentificationResult, result_of
+from carom.identification.torque_residuals import TorqueResiduals, motion_of
+from carom.identification.unknowns import Unknowns
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+    from carom.world.world import World
+
+_REWEIGHTINGS = 3
+_SAME = 0.02
+
+
+def identify(
+    log: Any,
+    world: World,
+    parameters: Sequence[str],
+    *,
+    body: Body | str | None = None,
+    controls: Mapping[str, ArrayLike] | None = None,
+    residuals: str = "auto",
+    window: int = 12,
+    degree: int = 4,
+    slow: float = 0.02,
+    horizon: int = 120,
+    starts: str = "fitted",
+    prior: float = np.inf,
+    confidence: float = 0.99,
+) -> IdentificationResult:
+    """Fit parameters of a robot to a log of its motion, by Gauss-Newton steps (Levenberg-Marquardt).
+
+    The world does not change; `result.apply(world)` gives it the values. Derivatives are exact: of torques
+    those of `joint_torque_regressor`, of predictions those of `World.linearize`, step by step.
+
+    Inertial parameters remain those of some body of positive density. All ten of each link are fitted, though
+    data never determine all; `result.combinations` are what they determine. The rest stays near the values
+    of the world.
+
+    Residuals are weighted by their noise, which is estimated from them for each joint. Bounds allow for what
+    smoothing makes of it, and assume that it is small in positions that are smoothed.
+
+    Args:
+        log: What was measured: a path (a log of `STATE_LOGGING_GENERIC_ROBOT`, a `.csv` file with columns
+            `time`, `JOINT.position`, `JOINT.velocity`, `JOINT.torque`, or `.npz`), arrays by name (`time`,
+            `positions`, `velocities`, `accelerations`, `torques`, `controls`; see `Measurements.of`),
+            `Measurements`, or `World.log("position", "velocity")`.
+        world: The world with the robot, whose base is fixed and whose joints are hinges and sliders.
+        parameters: Kinds, or full names: "inertial_parameters", or "ROBOT.LINK.inertial" of a link;
+            "damping", "armature", "joint_friction", "stiffness"; for predictions also all others of
+            `World.linearize`, and "delays" of controls [s], or "CONTROL.delay".
+        body: The robot, or its name; by default the only body that can move.
+        controls: Commands in each step, by the names of `World.linearize`, in addition to those of the log.
+        residuals: "torque" for measured torques less those of the equations of motion, "prediction" for
+            measured positions and velocities less those of the simulator; "auto" is "torque" if the
+            log has torques and no controls.
+        window: Rows on each side over which positions are smoothed, for "torque". If noise of accelerations
+            is no longer small, inertias come out wrong; the longer the window, the less there is of it.
+        degree: Degree of the polynomials that smooth them.
+        slow: Rate below which a joint with friction may stick [rad/s or m/s]; torques near there are left
+            out, for accelerations jump.
+        horizon: Rows that are predicted from one state, for "prediction".
+        starts: "fitted" if these states are to be fitted, too, or "measured": then a horizon of 2 is that of
+            predictions of one step.
+        prior: Standard deviations of the parameters about the world's values, relative to their sizes; with
+            one, all parameters are determined.
+        confidence: Probability that all bounds together hold.
+
+    Returns:
+        Values, bounds, what cannot be told apart, and what fits how well.
+
+    Raises:
+        ValueError: An argument has a value that it cannot have, the log does not fit the robot, there is no
+            such parameter, or data do not determine anything.
+        NotImplementedError: Steps of this world have no exact derivatives, or centres of links cannot move.
+        OSError: The file cannot be read.
+    """
+    if residuals not in ("auto", "torque", "prediction"):
+        raise ValueError(f"residuals must be 'auto', 'torque' or 'prediction', not {residuals!r}")
+    if starts not in ("fitted", "measured"):
+        raise ValueError(f"starts must be 'fitted' or 'measured', not {starts!r}")
+    if not (prior > 0.0 and 0.0 < confidence < 1.0):
+        raise ValueError("prior must be positive, and confidence between 0 and 1")
+    work = world.copy()
+    own = work.bodies[_chosen(world, body).id]
+    measured = measurements_of(log, own, controls)
+    unknowns = Unknowns(work, own, parameters, list(measured.controls))
+    by_torques = residuals == "torque" or (
+        residuals == "auto" and measured.torques is not None and not measured.controls
+    )
+    problem: TorqueResiduals | PredictionResiduals
+    if by_torques:
+        problem = TorqueResiduals(work, own, motion_of(measured, window, degree), unknowns, slow)
+    else:
+        problem = PredictionResiduals(work, own, measured, unknowns, horizon, starts)
+    x, normal = _solve(problem, unknowns, prior)
+    p = unknowns.values(x)
+    at_bound = (x <= unknowns.lower) & (normal.gradient * unknowns.scale > 0.0)
+    return result_of(unknowns, p, at_bound, normal.matrix, problem, measured, confidence)
+
+
+def _solve(
+    problem: TorqueResiduals | PredictionResiduals, unknowns: Unknowns, prior: float
+) -> tuple[Array, Normal]:
+    information = 0.0 if np.isinf(prior) else 1.0 / (prior * unknowns.scale) ** 2
+
+    def model(p: Array) -> Normal:
+        found = problem.model(p)
+        away = p - unknowns.start
+        return Normal(
+            float(found.cost + 0.5 * np.sum(information * away**2)),
+            found.gradient + information * away,
+            found.matrix + np.diag(np.broadcast_to(information, len(p))),
+            found.follow,
+        )
+
+    x = unknowns.origin
+    for _ in range(_REWEIGHTINGS):
+        x, normal = minimise(model, unknowns, x, drifts=bool(np.isinf(prior)))
+        before = problem.deviations.copy()
+        problem.reweight(unknowns.values(x))
+        if (np.abs(problem.deviations - before) <= _SAME * before).all():
+            return x, normal
+    return minimise(model, unknowns, x, drifts=bool(np.isinf(prior)))
+
+
+def _chosen(world: World, body: Body | str | None) -> Body:
+    moving = [it for it in world.bodies.values() if sum(it.velocity_count) or not it.fixed_base]
+    if body is None:
+        if len(moving) != 1:
+            raise ValueError(f"the world has {len(moving)} bodies that can move: say which by `body`")
+        return moving[0]
+    if isinstance(body, str):
+        named = [it for it in moving if it.name == body]
+        if len(named) != 1:
+            raise ValueError(f"{len(named)} bodies that can move have the name {body!r}")
+        return named[0]
+    if world.bodies.get(body.id) is not body:
+        raise ValueError(f"{body.name!r} is a body of another world")
+    return body

@@ -1,0 +1,117 @@
+"""Changing mass, centre of mass and inertia of a link at once: where its inertial frame is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import finite, vector
+from carom.description.pose import Pose
+from carom.description.transform import rotation_matrix
+from carom.layouts.codes import UserConstraintKind
+from carom.layouts.flags import LoadFlags
+from carom.native.products import product
+from carom.scene.changes import part
+
+if TYPE_CHECKING:
+    from carom.scene.body import Body
+
+# Constraints between joints, which do not depend on where links are.
+_OF_JOINTS = (UserConstraintKind.GEAR, UserConstraintKind.COUPLING)
+
+
+def set_link_inertia(body: Body, link: int, mass: float, centre: ArrayLike, inertia: ArrayLike) -> None:
+    """Set mass, centre of mass and inertia of a link; its shapes stay where they are.
+
+    The inertial frame of the link turns to the principal axes. Velocities of joints stay as they are.
+
+    Args:
+        body: The body.
+        link: Index of the link; not a base.
+        mass: [kg].
+        centre: Centre of mass in the link frame [m], (3,).
+        inertia: About the centre of mass, along the axes of the link frame [kg m²], (3, 3).
+
+    Raises:
+        ValueError: A number is not finite, or the mass or a principal moment is not positive.
+        NotImplementedError: It is a base; or something is fixed to the inertial frame of a link of the body,
+            such as a sensor, a site, a tendon, an actuator of one of these, or a constraint.
+    """
+    _check(body, link)
+    middle = vector(centre, 3, "centre")
+    matrix = finite(inertia, "inertia")
+    if matrix.shape != (3, 3):
+        raise ValueError(f"inertia must have shape (3, 3), not {matrix.shape}")
+    moments, axes = _principal(matrix, np.array(rotation_matrix(body.link_inertial_frame(link).orientation)))
+    if not (0.0 < mass < np.inf and moments.min() > 0.0):
+        raise ValueError(f"mass and moments of inertia must be positive, not {mass} and {moments}")
+    world, spec = body.world, body.link_spec(link)
+    x, y, z = middle.tolist()
+    frame = Pose((x, y, z), _quaternion(axes))
+    a, b, c = moments.tolist()
+    changed = replace(spec, mass=float(mass), inertia=(a, b, c), inertial_frame=frame)
+    links = list(body.spec.links)
+    links[link] = changed
+    implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
+    row = body.first_link + 1 + link
+    world.contact_arrays.shapes.replace_pieces(row, changed, implicit_cylinder=implicit)
+    body.spec = replace(body.spec, links=links)
+    dynamics = body.dynamics(link)
+    dynamics.mass, dynamics.inertia = changed.mass, changed.inertia
+    world.arrays.write_inertia(row, changed.mass, changed.inertia)
+    world.arrays.write_joints(body.rows, body.spec)
+    body.derived.clear()
+    world.scene_changed()
+    part(world, [row])
+    body.update_link_poses()
+
+
+def _check(body: Body, link: int) -> None:
+    if not 0 <= link < body.joint_count:
+        raise NotImplementedError(f"{body.name!r} has no link {link} whose inertial frame can change")
+    spec = body.spec
+    tied = any(
+        it.kind not in _OF_JOINTS and (body, link) in ((it.parent, it.parent_link), (it.child, it.child_link))
+        for it in body.world.user_constraints.all
+    )
+    fixed_to_it = {
+        "sensors": bool(spec.sensors),
+        "tendons": bool(list(body.tendons)),
+        "a site": any(site.link == link for site in spec.sites),
+        "a constraint": tied,
+    }
+    for what, is_there in fixed_to_it.items():
+        if is_there:
+            raise NotImplementedError(
+                f"{body.name!r} has {what}, so the centre of {spec.links[link].name!r} cannot be moved"
+            )
+
+
+def _principal(inertia: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Principal moments, and the axes as columns, a rotation: the present axes if they are principal."""
+    along = product(product(axes.T, inertia), axes)
+    off = along - np.diag(np.diag(along))
+    if np.abs(off).max() <= 1e-12 * np.abs(along).max():
+        return np.diag(along).copy(), axes
+    moments, found = np.linalg.eigh(0.5 * (inertia + inertia.T))
+    if np.linalg.det(found) < 0.0:
+        found[:, 0] *= -1.0
+    return moments, found
+
+
+def _quaternion(turn: np.ndarray) -> tuple[float, float, float, float]:
+    """The unit quaternion (x, y, z, w) of a rotation, by the eigenvector of Bar-Itzhack's matrix."""
+    (a, b, c), (d, e, f), (g, h, i) = turn.tolist()
+    matrix = np.array(
+        [
+            [a - e - i, d + b, g + c, h - f],
+            [d + b, e - a - i, h + f, c - g],
+            [g + c, h + f, i - a - e, d - b],
+            [h - f, c - g, d - b, a + e + i],
+        ]
+    )
+    x, y, z, w = np.linalg.eigh(matrix)[1][:, 3].tolist()
+    return (x, y, z, w) if w >= 0.0 else (-x, -y, -z, -w)
