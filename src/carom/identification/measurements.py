@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite
-from carom.record import record
 
 _UNEVEN = 0.02
 _LEAST = 4
 _PER_JOINT = ("velocities", "accelerations", "torques")
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Measurements:
     """What was measured of n joints that can move, at N times; make one with `of`.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
 from typing import TYPE_CHECKING, Protocol
@@ -13,7 +14,6 @@ from carom.checks import Array
 from carom.identification.least_squares import combinations
 from carom.identification.measurements import Measurements
 from carom.identification.unknowns import Unknowns
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -31,7 +31,7 @@ class _Problem(Protocol):
     def spread(self, p: Array) -> Array | None: ...
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Combination:
     """A sum of parameters that data determine.
 
@@ -55,7 +55,7 @@ class Combination:
         return " ".join(terms[:_LISTED]) + more
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class IdentificationResult:
     """What `carom.identify` found.
 

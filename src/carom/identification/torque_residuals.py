@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,6 @@ from carom.identification.smoothing import smoothed
 from carom.identification.unknowns import SMALL_FRICTION, Unknowns
 from carom.identification.writing import read_value
 from carom.linearization.inputs import INERTIAL, PARAMETERS, chosen_inputs
-from carom.record import record
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _TERMS = ("armature", "damping", "stiffness", "joint_friction")
 
 
-@record(eq=False)
+@dataclass(frozen=True, eq=False, slots=True)
 class Motion:
     """A motion as steps relate it: positions, velocities, accelerations, torques, (m, n) each.
 
