@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
     from carom.world.world import World
 
+_ORIGIN = (0.0, 0.0, 0.0)
+
 
 class Configuration:
     """Positions of a body that can be changed without moving it, in a copy of its world.
@@ -91,10 +93,8 @@ class Configuration:
 
     def link_pose(self, link: int) -> tuple[Array, Array]:
         """Rotation matrix (3, 3) of a link frame, and the position of its origin [m], (3,), in the world."""
-        row = self.world.link_pose[self.body.first_link + 1 + link].tolist()
-        turn, offset = self._to_link[link + 1]
-        rotation = np.array(rotation_matrix((row[3], row[4], row[5], row[6]))) @ turn
-        return rotation, np.array(row[:3]) - rotation @ offset
+        rotation, origin = self._pose(link)
+        return rotation.copy(), origin.copy()
 
     def jacobian(self, link: int, point: np.ndarray | None = None) -> Array:
         """The Jacobian (6, n) of a point that moves with a link, linear before angular, in world axes.
@@ -103,22 +103,15 @@ class Configuration:
             link: Index of the link, -1 for the base.
             point: The point in world axes [m], (3,); the origin of the link frame by default.
         """
-        rotation = self._base_rotation
-        if link < 0:
-            at = np.zeros(3)
-        else:
-            at = self._origin_in_inertial_axes(link, point)
-        own = self._mechanism.jacobian_matrix(link, at.tolist(), self._joint_positions)
-        found = (rotation @ own.reshape(2, 3, self.dofs)).reshape(6, self.dofs)
-        if self.base_dofs:
-            found[:, :3] = found[:, :3] @ rotation.T
-            found[:, 3:6] = found[:, 3:6] @ rotation.T
-        if link < 0:
-            center = self.world.link_pose[self.body.first_link, :3]
-            goal = self.link_pose(link)[1] if point is None else point
-            x, y, z = (goal - center).tolist()
-            found[:3] += np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]) @ found[3:]
+        found = self._at_origin(link).copy()
+        if point is not None:
+            found[:3] += _arm(point - self._pose(link)[1]) @ found[3:]
         return found
+
+    def approach(self, link: int, point: np.ndarray, direction: np.ndarray) -> Array:
+        """The velocity of a point on a link in a direction per velocity, (n,); both in world axes, (3,)."""
+        at_origin = self._at_origin(link)
+        return direction @ at_origin[:3] + (direction @ _arm(point - self._pose(link)[1])) @ at_origin[3:]
 
     def center_of_mass(self) -> tuple[Array, Array]:
         """The centre of mass [m], (3,), and its Jacobian (3, n), in world axes."""
@@ -138,15 +131,43 @@ class Configuration:
         places = [self.body.position_index[joint] - self._own.start for joint in joints]
         return np.array(dofs, dtype=np.int64), np.array(places, dtype=np.int64), joints
 
-    def _origin_in_inertial_axes(self, link: int, point: np.ndarray | None) -> np.ndarray:
-        """A point as an offset from the link frame's origin along the axes of the inertial frame."""
-        if point is None:
-            return np.zeros(3)
-        rotation, origin = self.link_pose(link)
-        return self._to_link[link + 1][0] @ (rotation.T @ (point - origin))
+    def _pose(self, link: int) -> tuple[np.ndarray, np.ndarray]:
+        """As `link_pose`, the same arrays until positions change."""
+        found = self._poses.get(link)
+        if found is None:
+            row = self.world.link_pose[self.body.first_link + 1 + link].tolist()
+            turn, offset = self._to_link[link + 1]
+            rotation = np.array(rotation_matrix((row[3], row[4], row[5], row[6]))) @ turn
+            found = self._poses[link] = rotation, np.array(row[:3]) - rotation @ offset
+        return found
+
+    def _at_origin(self, link: int) -> np.ndarray:
+        """The Jacobian of the origin of a link frame, the same array until positions change."""
+        found = self._jacobians.get(link)
+        if found is None:
+            rotation = self._base_rotation
+            own = self._mechanism.jacobian_matrix(link, _ORIGIN, self._joint_positions)
+            found = (rotation @ own.reshape(2, 3, self.dofs)).reshape(6, self.dofs)
+            if self.base_dofs:
+                found[:, :3] = found[:, :3] @ rotation.T
+                found[:, 3:6] = found[:, 3:6] @ rotation.T
+            if link < 0:
+                # The point on the base is its centre of mass.
+                center = self.world.link_pose[self.body.first_link, :3]
+                found[:3] += _arm(self._pose(link)[1] - center) @ found[3:]
+            self._jacobians[link] = found
+        return found
 
     def _changed(self) -> None:
         self.body.update_link_poses()
+        self._poses: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+        self._jacobians: dict[int, np.ndarray] = {}
         self._joint_positions: list[float] = self.world.position[self._joints].tolist()
         x, y, z, w = self.world.position[self.body.first_position + 3 : self.body.first_position + 7].tolist()
         self._base_rotation: Array = np.array(rotation_matrix((x, y, z, w)))
+
+
+def _arm(offset: np.ndarray) -> np.ndarray:
+    """The matrix of the velocity of a point at an offset (3,), by the angular velocity."""
+    x, y, z = offset.tolist()
+    return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])

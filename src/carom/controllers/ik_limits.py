@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, not_negative, positive
 from carom.controllers.configuration import Configuration
+from carom.queries.pair_search import NearestPoints
 
 
 class Bounds(NamedTuple):
@@ -135,12 +136,11 @@ class CollisionAvoidanceLimit(Limit):
         for row, (link, other, point, other_point, normal, distance) in enumerate(near):
             for which, at, sign in ((link, point, -1.0), (other, other_point, 1.0)):
                 if -1 <= which - first < count:
-                    jacobian = configuration.jacobian(which - first, np.array(at))
-                    g[row] += sign * (np.array(normal) @ jacobian[:3])
+                    g[row] += sign * configuration.approach(which - first, np.array(at), np.array(normal))
             h[row] = self._gain * (distance - self._minimum)
         return Inequalities(g, h)
 
-    def _nearest(self, configuration: Configuration) -> list:
+    def _nearest(self, configuration: Configuration) -> list[NearestPoints]:
         queries = configuration.world.queries()
         return [
             found for pair in self._pairs for found in queries.nearest(pair[0], pair[1], self._detection)

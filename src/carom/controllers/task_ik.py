@@ -15,7 +15,7 @@ from carom.errors import CaromError
 
 # What DAQP calls an inequality that may be violated at a cost.
 _SOFT = 8
-# DAQP's numbers of variables and rows are unbounded beyond this.
+# For DAQP, no bound.
 _ENDLESS = 1e30
 
 
@@ -79,14 +79,9 @@ class TaskIK:
         h, f = self._damping.copy(), np.zeros(count)
         for task in self.tasks:
             error, jacobian = task.rows(self.configuration)
-            weighted = (task.cost * task.cost * jacobian.T) @ jacobian if task.cost.ndim == 0 else None
-            if weighted is None:
-                scaled = jacobian * (task.cost * task.cost)[:, None]
-                h += scaled.T @ jacobian
-                f -= task.gain * (scaled.T @ error)
-            else:
-                h += weighted
-                f -= (task.gain * task.cost * task.cost) * (jacobian.T @ error)
+            weighted = jacobian.T * (task.cost * task.cost)
+            h += weighted @ jacobian
+            f -= task.gain * (weighted @ error)
         lower, upper, g, rows = self._constraints(time_step)
         low = np.concatenate([lower, np.full(len(rows), -_ENDLESS)])
         high = np.concatenate([upper, rows])
@@ -97,7 +92,8 @@ class TaskIK:
             change, _, flag, _ = self._solver(h, f, g, high, low, sense)
         if flag < 0:
             raise NoSolutionError(f"the quadratic program of inverse kinematics has no solution ({flag})")
-        return np.array(change) / time_step
+        # Not even by rounding beyond the bounds.
+        return np.clip(change, lower, upper) / time_step
 
     def tick(self, time_step: float) -> Array:
         """Solve, move the configuration with the velocities for `time_step` [s], and return them, (n,)."""

@@ -55,7 +55,7 @@ class TaskSpaceControl:
         point: ArrayLike = _ORIGIN,
         orientation: bool = True,
         posture: ArrayLike | None = None,
-        posture_frequency: float = 5.0,
+        posture_frequency: ArrayLike = 5.0,
     ) -> None:
         """Choose the point, and what joints do that the task leaves free.
 
@@ -65,7 +65,8 @@ class TaskSpaceControl:
             point: The point in the link frame [m], (3,).
             orientation: Whether the orientation is controlled, too.
             posture: Positions of joints that the null space is pulled to; the present ones by default.
-            posture_frequency: Natural frequency of this pull, which is critically damped [rad/s].
+            posture_frequency: Natural frequency of this pull, which is critically damped [rad/s], a
+                number or (n,).
 
         Raises:
             ValueError: The base is free, or an argument has a value that it cannot have.
@@ -78,7 +79,7 @@ class TaskSpaceControl:
         self.posture: Array = (
             present if posture is None else vector(posture, self._state.coordinates, "posture")
         )
-        self._frequency = float(not_negative(posture_frequency, "posture_frequency"))
+        self._frequency = not_negative(posture_frequency, "posture_frequency")
 
     @property
     def pose(self) -> tuple[Array, Array]:
@@ -151,7 +152,7 @@ class OperationalSpaceControl(TaskSpaceControl):
         point: ArrayLike = _ORIGIN,
         orientation: bool = True,
         posture: ArrayLike | None = None,
-        posture_frequency: float = 5.0,
+        posture_frequency: ArrayLike = 5.0,
     ) -> None:
         """Make a controller.
 
@@ -163,7 +164,8 @@ class OperationalSpaceControl(TaskSpaceControl):
             point: As in `TaskSpaceControl`, also the arguments after it.
             orientation: Whether the orientation is controlled, too.
             posture: Positions of joints that the null space is pulled to; the present ones by default.
-            posture_frequency: Natural frequency of this pull, which is critically damped [rad/s].
+            posture_frequency: Natural frequency of this pull, which is critically damped [rad/s], a
+                number or (n,).
 
         Raises:
             ValueError: The base is free, or an argument has a value that it cannot have.
@@ -216,7 +218,7 @@ class ImpedanceControl(TaskSpaceControl):
         point: ArrayLike = _ORIGIN,
         orientation: bool = True,
         posture: ArrayLike | None = None,
-        posture_frequency: float = 5.0,
+        posture_frequency: ArrayLike = 5.0,
     ) -> None:
         """Make a controller.
 
@@ -229,7 +231,8 @@ class ImpedanceControl(TaskSpaceControl):
             point: As in `TaskSpaceControl`, also the arguments after it.
             orientation: Whether the orientation is controlled, too.
             posture: Positions of joints that the null space is pulled to; the present ones by default.
-            posture_frequency: Natural frequency of this pull, which is critically damped [rad/s].
+            posture_frequency: Natural frequency of this pull, which is critically damped [rad/s], a
+                number or (n,).
 
         Raises:
             ValueError: The base is free, or an argument has a value that it cannot have.
