@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from carom.algorithms import centroidal_dynamics
 from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array, vector
+from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.linearization.tangent import TangentSpace
@@ -108,10 +110,16 @@ class Configuration:
             found[:3] += _arm(point - self._pose(link)[1]) @ found[3:]
         return found
 
-    def approach(self, link: int, point: np.ndarray, direction: np.ndarray) -> Array:
-        """The velocity of a point on a link in a direction per velocity, (n,); both in world axes, (3,)."""
-        at_origin = self._at_origin(link)
-        return direction @ at_origin[:3] + (direction @ _arm(point - self._pose(link)[1])) @ at_origin[3:]
+    def approaches(
+        self, link: int, points: Sequence[Vector3], directions: Sequence[Vector3]
+    ) -> np.ndarray:
+        """Velocities of k points on a link, each in its direction, per velocity, (k, n); in world axes."""
+        ox, oy, oz = self._pose(link)[1].tolist()
+        wrenches = []
+        for (px, py, pz), (x, y, z) in zip(points, directions, strict=True):
+            rx, ry, rz = px - ox, py - oy, pz - oz
+            wrenches.append((x, y, z, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x))
+        return np.array(wrenches) @ self._at_origin(link)
 
     def center_of_mass(self) -> tuple[Array, Array]:
         """The centre of mass [m], (3,), and its Jacobian (3, n), in world axes."""

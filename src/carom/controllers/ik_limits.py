@@ -130,14 +130,18 @@ class CollisionAvoidanceLimit(Limit):
         near = self._nearest(configuration)
         if not near:
             return None
-        first = configuration.body.first_link + 1
-        count = configuration.body.joint_count
-        g, h = np.zeros((len(near), configuration.dofs)), np.zeros(len(near))
-        for row, (link, other, point, other_point, normal, distance) in enumerate(near):
-            for which, at, sign in ((link, point, -1.0), (other, other_point, 1.0)):
-                if -1 <= which - first < count:
-                    g[row] += sign * configuration.approach(which - first, np.array(at), np.array(normal))
-            h[row] = self._gain * (distance - self._minimum)
+        first, count = configuration.body.first_link + 1, configuration.body.joint_count
+        g = np.zeros((len(near), configuration.dofs))
+        # A point on the first link gains distance along the normal, one on the second against it.
+        for which, at, sign in ((0, 2, -1.0), (1, 3, 1.0)):
+            rows_of: dict[int, list[int]] = {}
+            for row, found in enumerate(near):
+                if -1 <= found[which] - first < count:
+                    rows_of.setdefault(found[which] - first, []).append(row)
+            for link, rows in rows_of.items():
+                points, normals = [near[row][at] for row in rows], [near[row][4] for row in rows]
+                g[rows] += sign * configuration.approaches(link, points, normals)
+        h = self._gain * (np.array([found[5] for found in near]) - self._minimum)
         return Inequalities(g, h)
 
     def _nearest(self, configuration: Configuration) -> list[NearestPoints]:
