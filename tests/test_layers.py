@@ -39,7 +39,7 @@ FLOORS = (
     {"carom.algorithms", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries", "carom.scene"},
     {"carom.linearization", "carom.world_files"},
-    {"carom.render"},
+    {"carom.controllers", "carom.render"},
     {"carom.camera_image", "carom.viewer"},
     {"carom.camera"},
     {"carom.recording", "carom.world"},

@@ -1,10 +1,15 @@
 """LQR: the Riccati equation, a cart-pole, a body that floats, a robot that stands."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from tests.controllers.robots import swinging_pole
 
+from carom import World
 from carom.controllers import LQR, lqr_gains, solve_discrete_are
+from carom.description.pose import Pose
+from carom.layouts.codes import UserConstraintKind
 
 
 def test_the_riccati_equation_holds():
@@ -65,3 +70,28 @@ def test_arguments_are_checked(argument):
     world, _ = swinging_pole(1 / 240, np.pi)
     with pytest.raises(ValueError, match=r"must|shape"):
         LQR(world, **{"state_cost": 1.0, "control_cost": 1.0, **argument})
+
+
+def test_a_free_body_stands_on_its_foot_by_reaction_wheels():
+    world = World(1 / 240)
+    world.gravity = (0.0, 0.0, -9.81)
+    post = world.load_urdf(Path(__file__).with_name("wheels.urdf"), (0.0, 0.0, 0.3))
+    post.joints.disable_motors()
+    foot = Pose((0.0, 0.0, -0.3))
+    world.tie(UserConstraintKind.POINT_TO_POINT, post, -1, None, -1, parent_frame=foot)
+    # Turns of the base, and all velocities: where wheels are does not matter.
+    costs = np.concatenate([[100.0, 100.0, 1.0], np.zeros(6), [10.0, 10.0, 10.0], np.zeros(3), [0.01] * 3])
+    regulator = LQR(world, ["torques"], state_cost=costs, control_cost=1.0, discount=0.9999)
+    assert "post.base.turn.x.position" in regulator.step.states
+
+    def tilt(scene: World, wants_control: bool) -> float:
+        body = scene.bodies[post.id]
+        body.set_base_velocity((0.03, -0.015, 0.0), (0.05, 0.1, 0.02))
+        for _ in range(1920):
+            if wants_control:
+                regulator.apply(scene)
+            scene.step()
+        return float(np.abs(body.links.base.pose.orientation[:2]).max())
+
+    assert tilt(world.copy(), False) > 0.5
+    assert tilt(world.copy(), True) < 1e-3

@@ -26,9 +26,7 @@ TURNED = np.array([0.9, 0.3, 0.1, -0.2]) / np.linalg.norm([0.9, 0.3, 0.1, -0.2])
 def floating() -> Configuration:
     """A tree with all kinds of joints and a free base."""
     world = World()
-    quadruped = world.load_urdf(
-        DATA / "laikago" / "laikago_toes.urdf", (0.1, 0.2, 0.6), (0.1, 0.2, 0.3, 0.9)
-    )
+    quadruped = world.load_urdf(DATA / "laikago" / "laikago_toes.urdf", (0.1, 0.2, 0.6), (0.1, 0.2, 0.3, 0.9))
     quadruped.joints.reset(np.linspace(-0.5, 0.5, len(quadruped.joints.movable)))
     return Configuration(quadruped)
 

@@ -34,8 +34,8 @@ from carom.controllers.tasks import (
 __all__ = [
     "ILQR",
     "LQR",
-    "BoxQP",
     "Bounds",
+    "BoxQP",
     "CenterOfMassTask",
     "CollisionAvoidanceLimit",
     "ComputedTorque",

@@ -110,9 +110,7 @@ class Configuration:
             found[:3] += _arm(point - self._pose(link)[1]) @ found[3:]
         return found
 
-    def approaches(
-        self, link: int, points: Sequence[Vector3], directions: Sequence[Vector3]
-    ) -> np.ndarray:
+    def approaches(self, link: int, points: Sequence[Vector3], directions: Sequence[Vector3]) -> np.ndarray:
         """Velocities of k points on a link, each in its direction, per velocity, (k, n); in world axes."""
         ox, oy, oz = self._pose(link)[1].tolist()
         wrenches = []
@@ -132,9 +130,7 @@ class Configuration:
 
     def scalar_joints(self) -> tuple[np.ndarray, np.ndarray, list[int]]:
         """Dofs and places in `positions` of revolute and prismatic joints, and these joints."""
-        joints = [
-            joint for joint, count in enumerate(self.body.velocity_count) if count == 1
-        ]
+        joints = [joint for joint, count in enumerate(self.body.velocity_count) if count == 1]
         dofs = [self.body.velocity_index[joint] - self._dofs.start for joint in joints]
         places = [self.body.position_index[joint] - self._own.start for joint in joints]
         return np.array(dofs, dtype=np.int64), np.array(places, dtype=np.int64), joints

@@ -146,6 +146,4 @@ class CollisionAvoidanceLimit(Limit):
 
     def _nearest(self, configuration: Configuration) -> list[NearestPoints]:
         queries = configuration.world.queries()
-        return [
-            found for pair in self._pairs for found in queries.nearest(pair[0], pair[1], self._detection)
-        ]
+        return [found for pair in self._pairs for found in queries.nearest(pair[0], pair[1], self._detection)]

@@ -122,7 +122,9 @@ class ILQR:
             raise ValueError(f"controls must have shape (T, {len(self._ports.names)}), not {guess.shape}")
         guess = np.clip(guess, self._lower, self._upper)
         used, states, cost = self._rollouts(guess, None, None, None)
-        plan = Plan(used[:, 0], [_at(it, 0) for it in states], self._no_gains(guess), float(cost[0]), [], False)
+        plan = Plan(
+            used[:, 0], [_at(it, 0) for it in states], self._no_gains(guess), float(cost[0]), [], False
+        )
         costs, converged = [plan.cost], False
         regularisation, model = _LEAST, self._linearized(plan.controls)
         for _ in range(iterations):

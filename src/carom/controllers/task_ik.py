@@ -110,8 +110,10 @@ class TaskIK:
             box = limit.bounds(self.configuration, time_step)
             if box is not None:
                 # A bound beyond the opposite one, as of a joint that is outside of its limits, is moved there.
-                lower, upper = (np.minimum(np.maximum(lower, box.lower), upper),
-                                np.maximum(np.minimum(upper, box.upper), lower))
+                lower, upper = (
+                    np.minimum(np.maximum(lower, box.lower), upper),
+                    np.maximum(np.minimum(upper, box.upper), lower),
+                )
             rows = limit.inequalities(self.configuration, time_step)
             if rows is not None:
                 matrices.append(rows.g)
