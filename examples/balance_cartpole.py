@@ -32,9 +32,8 @@ def regulator_of(world, robot):
     regulator = LQR(world, [f"{robot.name}.{FORCE}"], state_cost=(1.0, 10.0, 0.1, 0.1), control_cost=0.001)
     print("the state is", ", ".join(regulator.step.states))
     print("the gains are", regulator.K.round(1))
-    print(
-        "without control a deviation grows by", np.abs(np.linalg.eigvals(regulator.step.A)).max(), "in a step"
-    )
+    growth = np.abs(np.linalg.eigvals(regulator.step.A)).max()
+    print("without control a deviation grows by", growth, "in each step")
     print("with control it shrinks, by", regulator.eigenvalues[0])
     return regulator
 

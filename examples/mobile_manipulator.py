@@ -1,7 +1,7 @@
 """A Panda on a base that drives in the plane: tasks say what the hand does, a QP finds how.
 
-The hand moves on a circle that the arm alone cannot reach, and keeps its orientation; the robot avoids a ball.
-Needs a QP solver: `pip install carom[control]`.
+The hand moves on a circle that the arm alone cannot reach, and keeps its orientation; the robot avoids a
+ball. Needs a QP solver: `pip install 'carom[control]'`.
 """
 
 import tempfile
@@ -95,7 +95,7 @@ def main(duration=12.0, window=False):
         viewer.open_browser()
     while world.time < duration and (viewer is None or viewer.is_open):
         angle = 0.6 * max(world.time - 1.0, 0.0)
-        goal = np.array((1.0 - 0.35 * np.cos(angle), 0.35 * np.sin(angle), 0.5))
+        goal = np.array((1.0 - 0.2 * np.cos(angle), 0.2 * np.sin(angle), 0.5))
         hand.move(goal, DOWN)
         ik.configuration.follow(keep=True)
         ik.tick(TIME_STEP)

@@ -72,14 +72,12 @@ def test_operational_space_control_has_the_designed_dynamics(point):
     rates = np.linspace(-0.4, 0.6, 9)
     robot.joints.reset(READY, rates)
     control = OperationalSpaceControl(robot, HAND, frequency=(10, 11, 12, 13, 14, 15), point=point)
-    position, orientation = control.pose
+    goal = control.pose[0] + np.array([0.05, -0.1, 0.02])
     turned = np.array([0.1, 0.0, 0.0, 1.0])
-    torques = control.compute(
-        position + (0.05, -0.1, 0.02), turned, velocity=(0.1,) * 6, acceleration=(0.3,) * 6
-    )
+    torques = control.compute(goal, turned, velocity=(0.1,) * 6, acceleration=(0.3,) * 6)
     task = control.dynamics()
     joints = forward_dynamics(robot, robot.joints.positions, rates, torques)
-    error = control.error(position + (0.05, -0.1, 0.02), turned)
+    error = control.error(goal, turned)
     omega = np.arange(10.0, 16.0)
     wanted = 0.3 + 2 * omega * (0.1 - task.velocity) + omega**2 * error
     assert task.jacobian @ joints + task.bias == pytest.approx(wanted, abs=1e-7)
@@ -150,7 +148,7 @@ def test_impedance_has_the_inertia_of_the_robot_and_critical_damping():
     robot.joints.reset(READY, rates)
     control = ImpedanceControl(robot, HAND)
     position, orientation = control.pose
-    goal = position + (0.02, 0.01, -0.03)
+    goal = position + np.array([0.02, 0.01, -0.03])
     task = control.dynamics()
     torques = control.compute(goal, orientation)
     joints = forward_dynamics(robot, robot.joints.positions, rates, torques)

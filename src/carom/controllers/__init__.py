@@ -1,4 +1,4 @@
-"""Controllers that know the dynamics and kinematics of a robot: LQR, iLQR, task space control, IK by tasks."""
+"""Controllers that use dynamics and kinematics: LQR, iLQR, control in task space, IK by tasks."""
 
 from carom.controllers.box_qp import BoxQP, solve_box_qp
 from carom.controllers.configuration import Configuration

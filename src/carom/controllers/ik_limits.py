@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
@@ -33,7 +32,7 @@ class Inequalities(NamedTuple):
     h: Array
 
 
-class Limit(ABC):
+class Limit:
     """A limit, with bounds or with rows."""
 
     def bounds(self, configuration: Configuration, time_step: float) -> Bounds | None:
@@ -63,6 +62,7 @@ class ConfigurationLimit(Limit):
         self._upper = np.array([high for _, high in limits]) - margin
 
     def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
+        """The way to the limits."""
         at = configuration.positions[self._places]
         lower, upper = np.full(configuration.dofs, -np.inf), np.full(configuration.dofs, np.inf)
         lower[self._dofs] = self._gain * (self._lower - at)
@@ -78,6 +78,7 @@ class VelocityLimit(Limit):
         self._velocities = not_negative(velocities, "velocities")
 
     def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
+        """The limits times the time."""
         upper = np.broadcast_to(self._velocities * time_step, (configuration.dofs,))
         return Bounds(-upper, upper)
 
@@ -127,6 +128,7 @@ class CollisionAvoidanceLimit(Limit):
         return [found[5] for found in self._nearest(configuration)]
 
     def inequalities(self, configuration: Configuration, time_step: float) -> Inequalities | None:
+        """One row for each pair of shapes that are near."""
         near = self._nearest(configuration)
         if not near:
             return None

@@ -53,8 +53,8 @@ class ILQR:
     The cost is the sum of (eᵀ Q e + uᵀ R u) / 2 at the start of T intervals, and eᵀ Qf e / 2 after them. The
     error e is the difference of the state from the goal in the tangent space of `World.linearize`, which
     gives the derivatives; `Q` is `state_cost` and so on. The world itself does not move: rollouts are steps
-    of copies, those of a line search at once. For receding-horizon control, `solve` is called in each interval
-    with the controls of the last plan, shifted by one.
+    of copies, those of a line search at once. For receding-horizon control, call `solve` at each interval,
+    with the controls of the last plan shifted by one.
 
     Example:
         >>> planner = ILQR(world, ["torques"], goal=goal, state_cost=0.01, control_cost=0.01,
@@ -122,9 +122,8 @@ class ILQR:
             raise ValueError(f"controls must have shape (T, {len(self._ports.names)}), not {guess.shape}")
         guess = np.clip(guess, self._lower, self._upper)
         used, states, cost = self._rollouts(guess, None, None, None)
-        plan = Plan(
-            used[:, 0], [_at(it, 0) for it in states], self._no_gains(guess), float(cost[0]), [], False
-        )
+        first = [_at(it, 0) for it in states]
+        plan = Plan(used[:, 0], first, self._no_gains(guess), float(cost[0]), [], False)
         costs, converged = [plan.cost], False
         regularisation, model = _LEAST, self._linearized(plan.controls)
         for _ in range(iterations):

@@ -35,10 +35,8 @@ class JointState:
 
     def read(self) -> tuple[Array, Array]:
         """Copies of the present positions (coordinates,) and velocities (n,)."""
-        first, first_rate = (
-            self.body.first_position + BASE_POSITIONS,
-            self.body.first_velocity + BASE_VELOCITIES,
-        )
+        first = self.body.first_position + BASE_POSITIONS
+        first_rate = self.body.first_velocity + BASE_VELOCITIES
         positions = self.body.world.position[first : first + self.coordinates]
         return positions.copy(), self.body.world.velocity[first_rate : first_rate + self.dofs].copy()
 

@@ -56,13 +56,13 @@ class TaskIK:
             damping: Cost of the square of all changes; makes the solution unique.
 
         Raises:
-            ImportError: The solver is not installed: `pip install carom[control]`.
+            ImportError: The solver is not installed: `pip install 'carom[control]'`.
             ValueError: The damping is not positive.
         """
         try:
             import daqp
         except ImportError as problem:
-            raise ImportError("task IK needs a QP solver: pip install carom[control]") from problem
+            raise ImportError("task IK needs a QP solver: pip install 'carom[control]'") from problem
         self._solver: Any = daqp.solve
         self.configuration: Configuration = configuration
         self.tasks: list[Task] = list(tasks)
@@ -109,11 +109,10 @@ class TaskIK:
         for limit in self.limits:
             box = limit.bounds(self.configuration, time_step)
             if box is not None:
-                # A bound beyond the opposite one, as of a joint that is outside of its limits, is moved there.
-                lower, upper = (
-                    np.minimum(np.maximum(lower, box.lower), upper),
-                    np.maximum(np.minimum(upper, box.upper), lower),
-                )
+                # A bound beyond the opposite one, as of a joint outside of its limits, is moved there.
+                tight = np.clip(box.lower, lower, upper)
+                upper = np.clip(box.upper, lower, upper)
+                lower = np.minimum(tight, upper)
             rows = limit.inequalities(self.configuration, time_step)
             if rows is not None:
                 matrices.append(rows.g)

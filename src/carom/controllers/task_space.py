@@ -202,7 +202,7 @@ class OperationalSpaceControl(TaskSpaceControl):
 
 
 class ImpedanceControl(TaskSpaceControl):
-    """Impedance control (Hogan 1985): a point on a link reacts to forces like a mass on a spring with a damper.
+    """Impedance control (Hogan 1985): a point on a link reacts to forces like a damped mass on a spring.
 
     With an external force F the error obeys Λ ë + D ė + K e = -F, where Λ is the inertia that the robot has
     there, so no measurement of forces is needed.

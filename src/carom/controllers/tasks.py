@@ -93,6 +93,7 @@ class FrameTask(Task):
             self._wanted = np.array(rotation_matrix((x, y, z, w)))
 
     def rows(self, configuration: Configuration) -> TaskRows:
+        """Displacement and rotation vector to the target, (6,)."""
         rotation, origin = configuration.link_pose(self._link)
         point = origin + rotation @ self._offset
         jacobian = configuration.jacobian(self._link, point if self._offset.any() else None)
@@ -116,6 +117,7 @@ class PostureTask(Task):
         self.target: Array = np.asarray(target, dtype=float).copy()
 
     def rows(self, configuration: Configuration) -> TaskRows:
+        """The changes of joints that lead to the target."""
         first = configuration.base_dofs
         return TaskRows(configuration.difference(self.target)[first:], np.eye(configuration.dofs)[first:])
 
@@ -133,6 +135,7 @@ class CenterOfMassTask(Task):
         self.target: Array = vector(target, 3, "target")
 
     def rows(self, configuration: Configuration) -> TaskRows:
+        """The displacement to the target, (3,)."""
         center, jacobian = configuration.center_of_mass()
         return TaskRows(self.target - center, jacobian)
 
@@ -171,6 +174,7 @@ class LookAtTask(Task):
         self.target: Array = vector(target, 3, "target")
 
     def rows(self, configuration: Configuration) -> TaskRows:
+        """The rotation vector from the axis to the line of sight, (3,)."""
         rotation, origin = configuration.link_pose(self._link)
         axis, sight = rotation @ self._axis, self.target - origin
         distance = max(float(np.linalg.norm(sight)), _SMALL)
