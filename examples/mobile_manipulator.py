@@ -63,7 +63,7 @@ def make_world():
         write_robot(path)
         robot = world.load_urdf(path, fixed_base=True)
     robot.joints.reset(READY[-len(robot.joints.movable) :])
-    ball = world.add_sphere(0.15, (1.0, 0.0, 0.5))
+    ball = world.add_sphere(0.15, (1.0, 0.0, 0.5), mass=0.0)
     return world, robot, ball
 
 
@@ -95,7 +95,7 @@ def main(duration=12.0, window=False):
         viewer.open_browser()
     while world.time < duration and (viewer is None or viewer.is_open):
         angle = 0.6 * max(world.time - 1.0, 0.0)
-        goal = np.array((1.0 - 0.2 * np.cos(angle), 0.2 * np.sin(angle), 0.5))
+        goal = np.array((1.0 - 0.3 * np.cos(angle), 0.3 * np.sin(angle), 0.5))
         hand.move(goal, DOWN)
         ik.configuration.follow(keep=True)
         ik.tick(TIME_STEP)

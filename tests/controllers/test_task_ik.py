@@ -145,7 +145,7 @@ def test_the_hand_stays_away_from_an_obstacle(avoids):
 
 def test_a_body_that_overlaps_an_obstacle_moves_out_of_it():
     world, robot = panda()
-    obstacle = world.add_sphere(0.1, robot.links[HAND].pose.position)
+    obstacle = world.add_sphere(0.1, robot.links[HAND].pose.position.tolist())
     configuration = Configuration(robot)
     group = [(robot.id, link) for link in range(7, 11)]
     avoid = CollisionAvoidanceLimit(configuration, [(group, [(obstacle.id, -1)])])

@@ -49,7 +49,7 @@ def solve_box_qp(h: np.ndarray, g: np.ndarray, lower: np.ndarray, upper: np.ndar
         direction = np.zeros_like(x)
         direction[free] = -np.linalg.solve(h[np.ix_(free, free)], gradient[free])
         slope, before = float(gradient @ direction), _value(h, g, x)
-        length = 1.0
+        length, trial = 1.0, x
         while length > _SHORTEST:
             trial = np.clip(x + length * direction, lower, upper)
             if _value(h, g, trial) <= before + _SHARE * length * slope or (trial == x).all():

@@ -135,13 +135,17 @@ class CollisionAvoidanceLimit(Limit):
         first, count = configuration.body.first_link + 1, configuration.body.joint_count
         g = np.zeros((len(near), configuration.dofs))
         # A point on the first link gains distance along the normal, one on the second against it.
-        for which, at, sign in ((0, 2, -1.0), (1, 3, 1.0)):
+        sides = (
+            (-1.0, [(found[0], found[2], found[4]) for found in near]),
+            (1.0, [(found[1], found[3], found[4]) for found in near]),
+        )
+        for sign, side in sides:
             rows_of: dict[int, list[int]] = {}
-            for row, found in enumerate(near):
-                if -1 <= found[which] - first < count:
-                    rows_of.setdefault(found[which] - first, []).append(row)
+            for row, (link_row, _, _) in enumerate(side):
+                if -1 <= link_row - first < count:
+                    rows_of.setdefault(link_row - first, []).append(row)
             for link, rows in rows_of.items():
-                points, normals = [near[row][at] for row in rows], [near[row][4] for row in rows]
+                points, normals = [side[row][1] for row in rows], [side[row][2] for row in rows]
                 g[rows] += sign * configuration.approaches(link, points, normals)
         h = self._gain * (np.array([found[5] for found in near]) - self._minimum)
         return Inequalities(g, h)
