@@ -63,7 +63,7 @@ def make_world():
         write_robot(path)
         robot = world.load_urdf(path, fixed_base=True)
     robot.joints.reset(READY[-len(robot.joints.movable) :])
-    ball = world.add_sphere(0.15, (1.0, 0.0, 0.5), mass=0.0)
+    ball = world.add_sphere(0.15, (1.0, 0.0, 0.4), mass=0.0)
     return world, robot, ball
 
 

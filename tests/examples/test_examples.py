@@ -95,7 +95,8 @@ def test_the_mobile_manipulator_follows_the_circle_and_avoids_the_ball(example):
     pytest.importorskip("daqp")
     record = example("mobile_manipulator").main()
     assert max(record["error"][120:]) < 0.02
-    assert 0.029 < min(record["distance"]) < 0.15
+    # Without the limit the hand would touch the ball.
+    assert 0.0299 < min(record["distance"]) < 0.05
     assert np.ptp(np.array(record["base"]), axis=0).max() > 0.05
 
 
