@@ -1,4 +1,4 @@
-"""A cart balances a pole by LQR: `World.linearize` gives the model, a Riccati equation the gains.
+"""A cart balances a pole by LQR, whose model is a step linearised.
 
 The pole starts leaning, and gets a push after four seconds.
 """
@@ -11,21 +11,11 @@ from _window import wants_window
 
 import pybullet_data
 from carom import World
+from carom.controllers import LQR
 from carom.viewer import Viewer
 
 CARTPOLE = Path(pybullet_data.getDataPath()) / "cartpole.urdf"
 FORCE = "slider_to_cart.torque"
-
-
-def lqr(a, b, state_cost, control_cost):
-    """Gains k: u = -k x has the least sum of xᵀ Q x + uᵀ R u. Iterates the discrete Riccati equation."""
-    value = state_cost
-    for _ in range(100000):
-        gains = np.linalg.solve(control_cost + b.T @ value @ b, b.T @ value @ a)
-        before, value = value, state_cost + a.T @ value @ (a - b @ gains)
-        if np.abs(value - before).max() < 1e-10 * np.abs(value).max():
-            break
-    return gains
 
 
 def upright():
@@ -37,20 +27,21 @@ def upright():
     return world, robot
 
 
-def gains_of(world, robot):
+def regulator_of(world, robot):
     """The feedback of positions and velocities to the force on the cart."""
-    step = world.linearize([f"{robot.name}.{FORCE}"])
-    print("the state is", ", ".join(step.states))
-    print("without control a deviation grows by", np.abs(np.linalg.eigvals(step.A)).max(), "in each step")
-    gains = lqr(step.A, step.B, np.diag([1.0, 10.0, 0.1, 0.1]), np.array([[0.001]]))
-    print("with control it shrinks, by", np.abs(np.linalg.eigvals(step.A - step.B @ gains)).max())
-    return gains
+    regulator = LQR(world, [f"{robot.name}.{FORCE}"], state_cost=(1.0, 10.0, 0.1, 0.1), control_cost=0.001)
+    print("the state is", ", ".join(regulator.step.states))
+    print("the gains are", regulator.K.round(1))
+    growth = np.abs(np.linalg.eigvals(regulator.step.A)).max()
+    print("without control a deviation grows by", growth, "in each step")
+    print("with control it shrinks, by", regulator.eigenvalues[0])
+    return regulator
 
 
 def main(duration=12.0, window=False):
     record = {"time": [], "cart": [], "pole": [], "force": []}
     world, robot = upright()
-    gains = gains_of(world, robot)
+    regulator = regulator_of(world, robot)
     cart, pole = robot.joints.movable
     viewer = Viewer(world, title="LQR") if window else None
     if viewer is not None:
@@ -58,11 +49,9 @@ def main(duration=12.0, window=False):
         viewer.open_browser()
     pole.reset(0.1)
     while world.time < duration and (viewer is None or viewer.is_open):
-        state = np.concatenate([robot.joints.positions, robot.joints.velocities])
-        (force,) = -gains @ state
-        cart.set_torque(force)
         if len(record["time"]) == 960:
             pole.reset(pole.position, pole.velocity + 0.1)
+        (force,) = regulator.apply()
         world.step()
         if viewer is not None:
             viewer.plot("pole [rad]", pole.position)

@@ -38,7 +38,7 @@ FLOORS = (
     {"carom.algorithms", "carom.engine", "carom.soft"},
     {"carom.gpu", "carom.queries", "carom.scene"},
     {"carom.linearization", "carom.world_files"},
-    {"carom.identification", "carom.render"},
+    {"carom.controllers", "carom.identification", "carom.render"},
     {"carom.camera_image", "carom.viewer"},
     {"carom.camera"},
     {"carom.recording", "carom.world"},

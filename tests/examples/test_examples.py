@@ -80,17 +80,24 @@ def test_the_cart_balances_the_pole(example):
     assert max(map(abs, record["pole"])) < 0.2
     assert abs(record["pole"][-1]) < 0.01
     assert abs(record["cart"][-1]) < 0.1
-    # The gains are those of the infinite horizon: a step of them costs what the state is worth.
-    world, robot = balance.upright()
-    step = world.linearize([f"{robot.name}.{balance.FORCE}"])
-    cost, control_cost = np.eye(4), np.eye(1)
-    closed = step.A - step.B @ (gains := balance.lqr(step.A, step.B, cost, control_cost))
-    value, power = np.zeros((4, 4)), np.eye(4)
-    for _ in range(20000):
-        value += power.T @ (cost + gains.T @ control_cost @ gains) @ power
-        power = closed @ power
-    pushed = step.B.T @ value
-    assert gains == pytest.approx(np.linalg.solve(control_cost + pushed @ step.B, pushed @ step.A), rel=1e-6)
+
+
+def test_the_cart_swings_up_the_pole_and_balances_it(example):
+    record = example("swing_up").main(duration=10.0)
+    assert max(map(abs, record["force"][:100])) == 8.0
+    pole = np.abs(np.array(record["pole"]) - np.pi)
+    assert pole[0] > 3.0
+    assert pole[150:].max() < 0.1
+    assert pole[-1] < 1e-3
+
+
+def test_the_mobile_manipulator_follows_the_circle_and_avoids_the_ball(example):
+    pytest.importorskip("daqp")
+    record = example("mobile_manipulator").main()
+    assert max(record["error"][120:]) < 0.02
+    # Without the limit the hand would touch the ball.
+    assert 0.0299 < min(record["distance"]) < 0.05
+    assert np.ptp(np.array(record["base"]), axis=0).max() > 0.05
 
 
 def test_the_tool_and_the_friction_of_the_arm_are_found(example, capsys):

@@ -143,6 +143,7 @@ FIGURE_OF = {
     "gravity_torque": draw_one({"angle": "-", "balance": "k:"}),
     "one_joint_pid": draw_one({"target": "k:", "PD": "-", "PID": "-"}),
     "panda_control": draw_panda,
+    "swing_up": draw_one({"cart": "-", "pole": "-"}),
     "modern_api": draw_one({"path": "k:", "shoulder": "-"}),
     "camera": draw_camera,
     "dropping": draw_dropping,

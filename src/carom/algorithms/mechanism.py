@@ -134,6 +134,20 @@ class Mechanism:
         axes of the inertial frame [m]; joint positions are (`coordinates`,). Raises `ValueError` if there is
         no such link, or the entries overflow.
         """
+        self._find_jacobian(link, point, positions)
+        rows = _finite(self._rows(self._output), "Jacobian")
+        return rows[:3], rows[3:]
+
+    def jacobian_matrix(self, link: int, point: Numbers, positions: Numbers) -> np.ndarray:
+        """Both Jacobians in one array, the linear one first, (6, `dofs`); as `jacobian`."""
+        self._find_jacobian(link, point, positions)
+        count = _JACOBIAN_ROWS * self.dofs
+        matrix = self.arrays["output"][:count].reshape(_JACOBIAN_ROWS, self.dofs).copy()
+        if self.dofs and matrix[0, 0] != matrix[0, 0]:
+            raise ValueError("the Jacobian is not finite")
+        return matrix
+
+    def _find_jacobian(self, link: int, point: Numbers, positions: Numbers) -> None:
         find = self._jacobians.get(link)
         if find is None:
             end = self._links.index(link)
@@ -141,8 +155,6 @@ class Mechanism:
         self._put_point(*point)
         self._put_positions(*positions)
         find()
-        rows = _finite(self._rows(self._output), "Jacobian")
-        return rows[:3], rows[3:]
 
     @made_once
     def forces_of_motion(self) -> Ask:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,7 +42,8 @@ class TangentSpace:
         activations: Their rows in the arrays of actuators, (a,).
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, bodies: Iterable[Body] | None = None) -> None:
+        """Set up the tangent space of a world, or the part of some bodies."""
         self.bodies: list[Body] = []
         self.places: list[tuple[int, int]] = []
         rows: list[int] = []
@@ -53,7 +55,7 @@ class TangentSpace:
         self._planes: list[tuple[int, int, float]] = []
         self.actuators: list[str] = []
         active: list[int] = []
-        for body in world.bodies.values():
+        for body in world.bodies.values() if bodies is None else bodies:
             label, first = body_label(world, body), len(rows)
             if not body.fixed_base:
                 self._bases.append((body.first_position, len(rows)))

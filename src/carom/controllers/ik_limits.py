@@ -1,0 +1,155 @@
+"""Limits of inverse kinematics: bounds of small changes of positions, and inequality rows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, not_negative, positive
+from carom.controllers.configuration import Configuration
+from carom.queries.pair_search import NearestPoints
+
+
+class Bounds(NamedTuple):
+    """Bounds of small changes dq: lower ≤ dq ≤ upper, each (n,)."""
+
+    lower: Array
+    upper: Array
+
+
+class Inequalities(NamedTuple):
+    """Rows G dq ≤ h.
+
+    Attributes:
+        g: G, (k, n).
+        h: (k,).
+    """
+
+    g: Array
+    h: Array
+
+
+class Limit:
+    """A limit, with bounds or with rows."""
+
+    def bounds(self, configuration: Configuration, time_step: float) -> Bounds | None:
+        """Bounds of the changes in a tick of `time_step` [s]; None if there are none."""
+        return None
+
+    def inequalities(self, configuration: Configuration, time_step: float) -> Inequalities | None:
+        """Rows for the changes in a tick of `time_step` [s]; None if there are none."""
+        return None
+
+
+class ConfigurationLimit(Limit):
+    """Revolute and prismatic joints stay between their limits."""
+
+    def __init__(self, configuration: Configuration, *, gain: float = 1.0, margin: float = 0.0) -> None:
+        """Read the limits of the joints.
+
+        Args:
+            configuration: A configuration of the body.
+            gain: Share of the way to a limit that may be gone in a tick, above 0 and at most 1.
+            margin: Distance to keep from limits [rad or m].
+        """
+        self._gain = float(positive(gain, "gain"))
+        self._dofs, self._places, joints = configuration.scalar_joints()
+        limits = [configuration.body.joints[joint].limits for joint in joints]
+        self._lower = np.array([low for low, _ in limits]) + margin
+        self._upper = np.array([high for _, high in limits]) - margin
+
+    def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
+        """The way to the limits."""
+        at = configuration.positions[self._places]
+        lower, upper = np.full(configuration.dofs, -np.inf), np.full(configuration.dofs, np.inf)
+        lower[self._dofs] = self._gain * (self._lower - at)
+        upper[self._dofs] = self._gain * (self._upper - at)
+        return Bounds(lower, upper)
+
+
+class VelocityLimit(Limit):
+    """Speeds stay below limits."""
+
+    def __init__(self, velocities: ArrayLike) -> None:
+        """Set the limits [rad/s or m/s]: a number, or one for each velocity; infinity for none."""
+        self._velocities = not_negative(velocities, "velocities")
+
+    def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
+        """The limits times the time."""
+        upper = np.broadcast_to(self._velocities * time_step, (configuration.dofs,))
+        return Bounds(-upper, upper)
+
+
+class CollisionAvoidanceLimit(Limit):
+    """Links keep a distance from other links and from other bodies.
+
+    Where shapes are nearer than `detection_distance`, they may approach in a tick by no more than a share of
+    what is left above the minimum distance. Distances are those of the nearest points of collision shapes.
+    """
+
+    def __init__(
+        self,
+        configuration: Configuration,
+        pairs: Iterable[tuple[Sequence[tuple[int, int]], Sequence[tuple[int, int]]]],
+        *,
+        minimum_distance: float = 0.01,
+        detection_distance: float = 0.1,
+        gain: float = 0.85,
+    ) -> None:
+        """Choose links.
+
+        Args:
+            configuration: A configuration of the body.
+            pairs: Pairs of groups of links, each link as number of the body and index (-1 is the base): each
+                link of the first group avoids each of the second.
+            minimum_distance: [m].
+            detection_distance: Distance from which approaching is limited [m].
+            gain: Share of the distance left that may be gone in a tick, above 0 and at most 1.
+
+        Raises:
+            KeyError: There is no such body.
+        """
+        self._gain = float(positive(gain, "gain"))
+        self._minimum, self._detection = minimum_distance, float(positive(detection_distance, "distance"))
+        if self._minimum >= self._detection:
+            raise ValueError("minimum_distance must be below detection_distance")
+        bodies = configuration.world.bodies
+
+        def rows(group: Sequence[tuple[int, int]]) -> tuple[int, ...]:
+            return tuple(bodies[body].first_link + 1 + link for body, link in group)
+
+        self._pairs = [(rows(first), rows(second)) for first, second in pairs]
+
+    def distances(self, configuration: Configuration) -> list[float]:
+        """Distances of pairs of shapes that are nearer than the detection distance [m]."""
+        return [found[5] for found in self._nearest(configuration)]
+
+    def inequalities(self, configuration: Configuration, time_step: float) -> Inequalities | None:
+        """One row for each pair of shapes that are near."""
+        near = self._nearest(configuration)
+        if not near:
+            return None
+        first, count = configuration.body.first_link + 1, configuration.body.joint_count
+        g = np.zeros((len(near), configuration.dofs))
+        # A point on the first link gains distance along the normal, one on the second against it.
+        sides = (
+            (-1.0, [(found[0], found[2], found[4]) for found in near]),
+            (1.0, [(found[1], found[3], found[4]) for found in near]),
+        )
+        for sign, side in sides:
+            rows_of: dict[int, list[int]] = {}
+            for row, (link_row, _, _) in enumerate(side):
+                if -1 <= link_row - first < count:
+                    rows_of.setdefault(link_row - first, []).append(row)
+            for link, rows in rows_of.items():
+                points, normals = [side[row][1] for row in rows], [side[row][2] for row in rows]
+                g[rows] += sign * configuration.approaches(link, points, normals)
+        h = self._gain * (np.array([found[5] for found in near]) - self._minimum)
+        return Inequalities(g, h)
+
+    def _nearest(self, configuration: Configuration) -> list[NearestPoints]:
+        queries = configuration.world.queries()
+        return [found for pair in self._pairs for found in queries.nearest(pair[0], pair[1], self._detection)]
