@@ -10,7 +10,7 @@ import pybullet_data
 from carom import Body, World
 from carom.algorithms import inertial_parameters, inverse_dynamics
 from carom.identification.link_inertia import set_link_inertia
-from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inertia
+from carom.identification.pseudo_inertia import centre_and_inertia
 from carom.linearization.inputs import INERTIAL_NUMBERS
 
 ASSETS = pybullet_data.getDataPath()
@@ -48,13 +48,28 @@ def panda_parameters(robot: Body) -> list[str]:
     ]
 
 
+def disturbed(parameters: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
+    """Other physical inertial parameters of a link, by log-Cholesky coordinates of its pseudo-inertia."""
+    mass, (xx, xy, yy, xz, yz, zz) = parameters[0], parameters[4:]
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    pseudo = np.diag([0.0, 0.0, 0.0, mass])
+    pseudo[:3, :3] = 0.5 * np.trace(inertia) * np.eye(3) - inertia
+    pseudo[:3, 3] = pseudo[3, :3] = parameters[1:4]
+    triangle = np.diag(np.exp(coordinates[:4]))
+    triangle[(1, 2, 2, 3, 3, 3), (0, 0, 1, 0, 1, 2)] = coordinates[4:]
+    factor = np.linalg.cholesky(pseudo) @ triangle
+    pseudo = factor @ factor.T
+    inertia = np.trace(pseudo[:3, :3]) * np.eye(3) - pseudo[:3, :3]
+    return np.array([pseudo[3, 3], *pseudo[:3, 3], *inertia[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]])
+
+
 def disturb(robot: Body, rng: np.random.Generator) -> None:
     """Give the Panda other inertias, friction, damping and armature."""
     before = inertial_parameters(robot)
     for name in LINKS:
         link = robot.links[name].index
         if robot.dynamics(link).mass > 0.0:
-            other = PseudoInertia(before[1 + link]).parameters(rng.normal(0.0, 0.1, 10))
+            other = disturbed(before[1 + link], rng.normal(0.0, 0.1, 10))
             set_link_inertia(robot, link, *centre_and_inertia(other))
     for joint in robot.joints.movable[:ARM]:
         joint.damping = rng.uniform(0.2, 1.5)

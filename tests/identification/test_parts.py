@@ -23,25 +23,36 @@ def _parameters(rng):
     return np.array([masses.sum(), *(masses @ arm), *six])
 
 
-def test_coordinates_start_at_the_parameters_and_all_of_them_are_physical():
+def test_distances_of_inertia_are_convex_and_grow_without_bound():
     rng = np.random.default_rng(1)
-    start = _parameters(rng)
+    start, other = _parameters(rng), _parameters(rng)
     link = PseudoInertia(start)
-    assert link.parameters(np.zeros(10)) == pytest.approx(start, rel=1e-12)
-    for _ in range(20):
-        mass, _, inertia = centre_and_inertia(link.parameters(rng.normal(0.0, 2.0, 10)))
-        a, b, c = np.linalg.eigvalsh(inertia)
-        assert mass > 0.0 and a > 0.0 and a + b >= c * (1.0 - 1e-9)
+    value, gradient, matrix = link.distance(start)
+    assert value == pytest.approx(0.0, abs=1e-9)
+    assert np.abs(gradient * link.scale).max() < 1e-9
+    assert np.linalg.eigvalsh(matrix * np.outer(link.scale, link.scale))[0] > 0.0
+    room = link.room(start, start - other)
+    far = [link.distance(start + share * room * (start - other))[0] for share in (0.5, 0.9, 0.999, 0.999999)]
+    assert 0.0 < far[0] < far[1] < far[2] < far[3] - 5.0
+    mass, _, inertia = centre_and_inertia(start + 0.999999 * room * (start - other))
+    a, b, c = np.linalg.eigvalsh(inertia)
+    assert mass > 0.0 and a > 0.0 and a + b >= c * (1.0 - 1e-9)
+    assert link.room(start, other) == np.inf
 
 
-def test_derivatives_by_the_coordinates_are_central_differences():
+def test_derivatives_of_distances_are_central_differences():
     rng = np.random.default_rng(2)
-    link, at = PseudoInertia(_parameters(rng)), rng.normal(0.0, 0.5, 10)
-    near = np.array([(link.parameters(at + d) - link.parameters(at - d)) / 2e-6 for d in 1e-6 * np.eye(10)]).T
-    assert np.abs(link.jacobian(at) - near).max() < 1e-8
+    link, at = PseudoInertia(_parameters(rng)), _parameters(rng)
+    _, gradient, matrix = link.distance(at)
+    steps = 1e-6 * np.diag(link.scale)
+    near = [(link.distance(at + d)[0] - link.distance(at - d)[0]) / 2e-6 for d in steps]
+    assert gradient * link.scale == pytest.approx(near, rel=1e-6, abs=1e-6)
+    rows = np.array([(link.distance(at + d)[1] - link.distance(at - d)[1]) / 2e-6 for d in steps])
+    scaled = matrix * link.scale[:, None]
+    assert np.abs(rows - scaled).max() < 1e-5 * np.abs(scaled).max()
 
 
-def test_no_coordinates_exist_for_what_is_not_physical():
+def test_what_is_not_physical_is_no_start():
     with pytest.raises(ValueError, match="density"):
         PseudoInertia(np.array([1.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.1, 0.0, 0.0, 0.3]))
 

@@ -105,9 +105,8 @@ def identify(
         problem = TorqueResiduals(work, own, motion_of(measured, window, degree), unknowns, slow)
     else:
         problem = PredictionResiduals(work, own, measured, unknowns, horizon, starts)
-    x, normal = _solve(problem, unknowns, prior)
-    p = unknowns.values(x)
-    at_bound = (x <= unknowns.lower) & (normal.gradient * unknowns.scale > 0.0)
+    p, normal = _solve(problem, unknowns, prior)
+    at_bound = (p <= unknowns.lower) & (normal.gradient > 0.0)
     return result_of(unknowns, p, at_bound, normal.matrix, problem, measured, confidence)
 
 
@@ -126,14 +125,14 @@ def _solve(
             found.follow,
         )
 
-    x = unknowns.origin
+    p = np.maximum(unknowns.start, unknowns.lower)
     for _ in range(_REWEIGHTINGS):
-        x, normal = minimise(model, unknowns, x, drifts=bool(np.isinf(prior)))
+        p, normal = minimise(model, unknowns, p, drifts=bool(np.isinf(prior)))
         before = problem.deviations.copy()
-        problem.reweight(unknowns.values(x))
+        problem.reweight(p)
         if (np.abs(problem.deviations - before) <= _SAME * before).all():
-            return x, normal
-    return minimise(model, unknowns, x, drifts=bool(np.isinf(prior)))
+            return p, normal
+    return minimise(model, unknowns, p, drifts=bool(np.isinf(prior)))
 
 
 def _chosen(world: World, body: Body | str | None) -> Body:

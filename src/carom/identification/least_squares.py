@@ -12,14 +12,17 @@ from carom.identification.unknowns import Unknowns
 
 _ITERATIONS = 100
 # Gain of a step, in squares of standard deviations, that is not worth another.
-_ENOUGH = 1e-4
-_MOST_DAMPING = 1e4
+_ENOUGH = 1e-8
+_MOST_DAMPING = 1e6
 _REDUNDANT = 1e-9
-_LONGEST = 1.0
-# Information about each coordinate of inertia, as if it were known to within a factor of e: next to none.
-_PULL = 1.0
+# How far towards the bodies that cannot be a step may go.
+_SHARE_OF_ROOM = 0.9
+# Weight of the distance of inertia from the start, as if it were known to within a factor of e: next to none.
+_PULL = 0.5
+# Its weight where all directions have an effect anyway: it only keeps inertia physical.
+_GUARD = 1e-6
 # Eigenvalues of JᵀJ below this share of the greatest are rounding errors.
-_NOISE = 1e-14
+_NOISE = 1e-13
 # Effects of parameters below this share of the greatest do not count.
 _FAINT = 1e-7
 
@@ -42,45 +45,39 @@ class Normal(NamedTuple):
 
 
 def minimise(
-    model: Callable[[Array], Normal], unknowns: Unknowns, x: Array, *, drifts: bool
+    model: Callable[[Array], Normal], unknowns: Unknowns, p: Array, *, drifts: bool
 ) -> tuple[Array, Normal]:
-    """Minimise a cost.
+    """Minimise a cost, and with it a little of the distance of inertia from the start.
+
+    For torques the cost is quadratic, and the distance is convex: there is one minimum.
 
     Args:
         model: The cost at some values p, and its derivatives. If a model was worse than the one before,
             `follow` of the latter is called again with a smaller change.
         unknowns: Names, scales and bounds.
-        x: Coordinates at which to start.
+        p: Values at which to start.
         drifts: Whether some directions may have no effect, so that inertia has to be kept in place there.
 
     Returns:
-        The coordinates at the minimum, and the model there.
+        The values at the minimum, and the model there.
     """
-    # Where data say nothing, inertia stays as it was: else it would drift towards bodies that are degenerate.
-    pull = np.zeros(len(x))
-    pull[: unknowns.relative] = _PULL if drifts else 0.0
-    p = unknowns.values(x)
-    now = model(p)
+    weight = _PULL if drifts else _GUARD
+    now, far = model(p), unknowns.distance(p)
     damping = 1e-8
     for _ in range(_ITERATIONS):
-        chain = unknowns.jacobian(x)
-        gradient = chain.T @ now.gradient + pull * x
-        matrix = chain.T @ now.matrix @ chain + np.diag(pull)
-        free = (x > unknowns.lower) | (gradient < 0.0)
-        step = np.zeros(len(x))
+        gradient, matrix = now.gradient + weight * far[1], now.matrix + weight * far[2]
+        free = (p > unknowns.lower) | (gradient < 0.0)
         of_free = gradient[free], matrix[np.ix_(free, free)]
+        step = np.zeros(len(p))
         step[free] = _step(*of_free, damping)
         # What could be gained without damping, if the cost were quadratic.
         left = -0.5 * of_free[0] @ _step(*of_free, 0.0)
-        # Coordinates of inertia are logarithms, or relative.
-        longest = np.abs(step[: unknowns.relative]).max(initial=0.0)
-        after = np.maximum(x + step * min(1.0, _LONGEST / max(longest, 1e-300)), unknowns.lower)
-        tried = unknowns.values(after)
+        tried = np.maximum(p + step * min(1.0, _SHARE_OF_ROOM * unknowns.room(p, step)), unknowns.lower)
         now.follow(tried - p)
-        other = model(tried)
-        gained = now.cost - other.cost + 0.5 * pull @ (x**2 - after**2)
+        other, farther = model(tried), unknowns.distance(tried)
+        gained = now.cost - other.cost + weight * (far[0] - farther[0])
         if gained >= 0.0:
-            x, p, now = after, tried, other
+            p, now, far = tried, other, farther
             damping = max(damping * 0.03, 1e-16)
             if max(gained, left) <= _ENOUGH:
                 break
@@ -89,20 +86,18 @@ def minimise(
             if left <= _ENOUGH or damping > _MOST_DAMPING:
                 now = model(p)
                 break
-            damping = max(damping * 30.0, 1e-14)
-    return x, now
+            damping = max(damping * 30.0, 1e-10)
+    return p, now
 
 
 def _step(gradient: Array, matrix: Array, damping: float) -> Array:
-    """The damped step, of the least size where directions have no effect.
-
-    Coordinates are relative to sizes of the parameters, so all count alike.
-    """
-    values, vectors = np.linalg.eigh(matrix)
-    whole = max(values.max(initial=0.0), 1e-300)
-    known = values > _NOISE * whole
-    along = vectors[:, known].T @ gradient
-    return -vectors[:, known] @ (along / (values[known] + damping * whole))
+    """The step of a quadratic model, damped as Marquardt did; 0 where nothing has an effect."""
+    diagonal = np.diag(matrix)
+    sizes = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
+    values, vectors = np.linalg.eigh(matrix * np.outer(sizes, sizes))
+    known = values > _NOISE * max(values.max(initial=0.0), 1e-300)
+    along = vectors[:, known].T @ (sizes * gradient)
+    return -sizes * (vectors[:, known] @ (along / (values[known] + damping)))
 
 
 class Combinations(NamedTuple):

@@ -1,4 +1,4 @@
-"""Inertial parameters that are physical for all values of their coordinates."""
+"""Inertial parameters that are physical, and how far apart they are."""
 
 from __future__ import annotations
 
@@ -6,19 +6,17 @@ import numpy as np
 
 from carom.checks import Array
 
-# Rows and columns of the lower triangle, the diagonal first.
-_ROWS, _COLUMNS = (0, 1, 2, 3, 1, 2, 2, 3, 3, 3), (0, 1, 2, 3, 0, 0, 1, 0, 1, 2)
-COORDINATES = len(_ROWS)
+PARAMETERS = 10
 
 
 class PseudoInertia:
-    """The ten inertial parameters of a link as functions of ten coordinates without bounds.
+    """How far the ten inertial parameters of a link are from their start, and from bodies that cannot be.
 
     Parameters are physical, those of some density that is nowhere negative, if and only if the pseudo-inertia
-    [[S, h], [hᵀ, m]] is positive definite (Wensing, Kim and Slotine, 2018), with the second moments
-    S = tr(I)/2 - I, the first moment h and the mass m. Here it is L T Tᵀ Lᵀ, where L Lᵀ is that at the start
-    and T a lower triangle with exponentials on its diagonal: the log-Cholesky coordinates of Rucker and
-    Wensing (2022), relative to the start. Coordinates 0 are the start, and all of them are without unit.
+    P = [[S, h], [hᵀ, m]] is positive definite (Wensing, Kim and Slotine, 2018), with the second moments
+    S = tr(I)/2 - I, the first moment h and the mass m. P is linear in the parameters. The distance is
+    Bregman's divergence of -log det P (Lee, Wensing and Park, 2020): convex, the same in all units and
+    frames, and infinite where bodies degenerate.
 
     Args:
         parameters: At the start, in the order of `carom.algorithms.inertial_parameters`, (10,).
@@ -28,11 +26,14 @@ class PseudoInertia:
     """
 
     def __init__(self, parameters: Array) -> None:
+        start = _matrix(parameters)
         try:
-            self._start = np.linalg.cholesky(_matrix(parameters))
+            np.linalg.cholesky(start)
         except np.linalg.LinAlgError:
             raise ValueError("the inertia is not that of any body of positive density") from None
-        self._radius = np.sqrt(np.trace(_matrix(parameters)[:3, :3]) / parameters[0])
+        self._inverse: Array = np.linalg.inv(start)
+        self._size = float(np.linalg.slogdet(start)[1])
+        self._radius = np.sqrt(np.trace(start[:3, :3]) / parameters[0])
         self._mass = float(parameters[0])
 
     @property
@@ -41,27 +42,20 @@ class PseudoInertia:
         sizes = self._mass * self._radius ** np.array([0, 1, 1, 1, 2, 2, 2, 2, 2, 2])
         return np.asarray(sizes, dtype=float)
 
-    def parameters(self, coordinates: Array) -> Array:
-        """The inertial parameters at some coordinates, (10,)."""
-        factor = self._start @ _triangle(coordinates)
-        return _parameters(factor @ factor.T)
+    def distance(self, parameters: Array) -> tuple[float, Array, Array]:
+        """The distance of some physical parameters, its gradient (10,) and second derivatives (10, 10)."""
+        found = _matrix(parameters)
+        value = np.trace(self._inverse @ found) - (np.linalg.slogdet(found)[1] - self._size) - len(found)
+        effects = np.linalg.solve(found, _BASIS)
+        gradient = np.einsum("ij,kji->k", self._inverse, _BASIS) - np.trace(effects, axis1=1, axis2=2)
+        return float(value), gradient, np.einsum("kij,lji->kl", effects, effects)
 
-    def jacobian(self, coordinates: Array) -> Array:
-        """Their derivatives by the coordinates, (10, 10)."""
-        factor = self._start @ _triangle(coordinates)
-        found = np.zeros((10, COORDINATES))
-        for number, (row, column) in enumerate(zip(_ROWS, _COLUMNS, strict=True)):
-            change = np.zeros((4, 4))
-            change[row, column] = np.exp(coordinates[number]) if row == column else 1.0
-            half = self._start @ change @ factor.T
-            found[:, number] = _parameters(half + half.T)
-        return found
-
-
-def _triangle(coordinates: Array) -> Array:
-    found = np.zeros((4, 4))
-    found[_ROWS, _COLUMNS] = np.concatenate([np.exp(coordinates[:4]), coordinates[4:]])
-    return found
+    @staticmethod
+    def room(parameters: Array, change: Array) -> float:
+        """The multiple of a change after which some physical parameters are not physical any more."""
+        half = np.linalg.inv(np.linalg.cholesky(_matrix(parameters)))
+        least = np.linalg.eigvalsh(half @ _matrix(change) @ half.T)[0]
+        return float(-1.0 / least) if least < 0.0 else np.inf
 
 
 def _matrix(parameters: Array) -> Array:
@@ -75,11 +69,7 @@ def _matrix(parameters: Array) -> Array:
     return found
 
 
-def _parameters(matrix: Array) -> Array:
-    second = matrix[:3, :3]
-    inertia = np.trace(second) * np.eye(3) - second
-    six = inertia[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
-    return np.concatenate([[matrix[3, 3]], matrix[:3, 3], six])
+_BASIS = np.array([_matrix(one) for one in np.eye(PARAMETERS)])
 
 
 def centre_and_inertia(parameters: Array) -> tuple[float, Array, Array]:

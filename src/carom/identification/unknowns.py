@@ -1,4 +1,4 @@
-"""What is fitted: parameters of a world by name, and coordinates in which their bounds do not matter."""
+"""What is fitted: parameters of a world by name, their bounds, and how far they are from the start."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ import numpy as np
 from carom.algorithms.regressor import inertial_parameters
 from carom.checks import Array
 from carom.identification.link_inertia import set_link_inertia
-from carom.identification.pseudo_inertia import COORDINATES, PseudoInertia, centre_and_inertia
+from carom.identification.pseudo_inertia import PARAMETERS as TEN
+from carom.identification.pseudo_inertia import PseudoInertia, centre_and_inertia
 from carom.identification.writing import read_value, with_friction, write_value
 from carom.linearization.inputs import INERTIAL, PARAMETERS, Input, chosen_inputs
 from carom.linearization.tangent import TangentSpace, body_label
@@ -36,8 +37,7 @@ class _Link(NamedTuple):
 class Unknowns:
     """The parameters that are fitted.
 
-    Their values are p; the solver moves coordinates x: those of `PseudoInertia` for inertial parameters of
-    links, values in units of their scales for others, which have lower bounds.
+    Their values are p. Inertial parameters of links have to stay physical; others have lower bounds.
 
     Args:
         world: A copy of the world, which changes: joints get the friction that is asked for.
@@ -51,8 +51,7 @@ class Unknowns:
         delays: Places in p of the delays, by control.
         start: Values at the start.
         scale: Sizes by which they are compared.
-        lower: Lower bounds of x.
-        relative: Number of the first coordinates, which are those of inertia.
+        lower: Lower bounds.
 
     Raises:
         ValueError: There is no such parameter, one is chosen twice, or an inertia is not physical.
@@ -85,7 +84,6 @@ class Unknowns:
             self.inputs += own
             start += values[1 + link].tolist()
             scale += pseudo.scale.tolist()
-        self.relative: int = len(start)
         self.lower: Array = np.full(len(start), -np.inf)
         for it in given:
             value = read_value(world, it)
@@ -151,28 +149,19 @@ class Unknowns:
             raise ValueError("a delay is chosen twice")
         return found
 
-    def values(self, x: Array) -> Array:
-        """The values p at coordinates x."""
-        p = self.scale * x
+    def distance(self, p: Array) -> tuple[float, Array, Array]:
+        """How far inertia is from the start, with the gradient (n,) and second derivatives (n, n)."""
+        value, gradient, matrix = 0.0, np.zeros(len(p)), np.zeros((len(p), len(p)))
         for link in self._links:
-            own = slice(link.place, link.place + COORDINATES)
-            p[own] = link.inertia.parameters(x[own])
-        return p
+            own = slice(link.place, link.place + TEN)
+            far, gradient[own], matrix[own, own] = link.inertia.distance(p[own])
+            value += far
+        return value, gradient, matrix
 
-    def jacobian(self, x: Array) -> Array:
-        """Derivatives of p by x."""
-        found = np.diag(self.scale)
-        for link in self._links:
-            own = slice(link.place, link.place + COORDINATES)
-            found[own, own] = link.inertia.jacobian(x[own])
-        return found
-
-    @property
-    def origin(self) -> Array:
-        """Coordinates x of the start."""
-        x = self.start / self.scale
-        x[: self.relative] = 0.0
-        return np.maximum(x, self.lower)
+    def room(self, p: Array, change: Array) -> float:
+        """The multiple of a change of p after which some inertia is not physical any more."""
+        parts = [slice(link.place, link.place + TEN) for link in self._links]
+        return min([np.inf, *(PseudoInertia.room(p[own], change[own]) for own in parts)])
 
     def write(self, world: World, body: Body, p: Array) -> None:
         """Set the parameters of a world, but delays, which a world does not have.
@@ -182,7 +171,7 @@ class Unknowns:
         """
         space = TangentSpace(world)
         for link in self._links:
-            own = p[link.place : link.place + COORDINATES]
+            own = p[link.place : link.place + TEN]
             set_link_inertia(body, link.link, *centre_and_inertia(own))
         for value, given in zip(p.tolist(), self.inputs, strict=True):
             if given is not None and given.kind == "joint_friction":
