@@ -31,7 +31,7 @@ class PseudoInertia:
             np.linalg.cholesky(start)
         except np.linalg.LinAlgError:
             raise ValueError("the inertia is not that of any body of positive density") from None
-        self._inverse: Array = np.linalg.inv(start)
+        self._inverse: Array = np.asarray(np.linalg.inv(start), dtype=float)
         self._size = float(np.linalg.slogdet(start)[1])
         self._radius = np.sqrt(np.trace(start[:3, :3]) / parameters[0])
         self._mass = float(parameters[0])
