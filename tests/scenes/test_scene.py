@@ -27,8 +27,9 @@ URDF = """<?xml version="1.0"?>
 </robot>"""
 SDF = """<sdf version="1.6"><model name="box"><plugin name="p" filename="f"/><link name="body">
   <inertial><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model></sdf>"""
+MJCF_OPTIONS = {"timestep": 0.01, "gravity": (0.0, 0.0, -9.81), "solver_residual_threshold": 1e-11}
 MJCF = """<mujoco model="m"><option timestep="0.01"/>
-  <default><geom friction="1"/><default class="used"><geom solref="0.1 1"/></default></default>
+  <default><geom friction="1"/><default class="used"><geom fluidshape="ellipsoid"/></default></default>
   <worldbody><body name="arm"><joint name="j" armature="0.1"/><geom class="used" size="0.1"/>
     <site name="tip"/></body></worldbody><actuator><motor joint="j"/></actuator></mujoco>"""
 
@@ -53,7 +54,7 @@ def test_the_content_of_a_file_is_its_format(write, text, kind):
         assert scene[scene[0].name] is scene[0]
         assert list(scene.actuators) == ([] if kind != "MJCF" else ["actuator0_0"])
         assert scene.sensors == scene.keyframes == scene.cameras == {}
-        assert scene.options == ({"timestep": 0.01, "gravity": (0.0, 0.0, -9.81)} if kind == "MJCF" else {})
+        assert scene.options == (MJCF_OPTIONS if kind == "MJCF" else {})
 
 
 def test_a_saved_world_is_a_scene_too(write, tmp_path):
@@ -134,8 +135,8 @@ def test_strict_refuses_what_would_be_ignored(write):
 def test_attributes_of_mjcf_are_followed_to_their_defaults(write):
     with World() as world:
         found = {(one.element, one.attributes) for one in world.load(write(MJCF)).ignored}
-    # The friction of the class above is used, though no geom states it; `solref` is not.
-    assert ("default/geom", ("solref",)) in found
+    # The friction of the class above is used, though no geom states it; `fluidshape` is not.
+    assert ("default/geom", ("fluidshape",)) in found
     assert ("default/geom", ("friction",)) not in found
     assert ("joint", ("armature",)) not in found
     assert not {"body/joint", "body/site", "mujoco/option"} & {element for element, _ in found}

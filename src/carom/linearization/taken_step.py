@@ -101,10 +101,20 @@ class TakenStep:
         None if the rows of other bodies have taken their place: bodies that do not touch are solved one after
         the other in the same memory.
         """
+        expected = tuple(self.contacts["contact_impulse"][contact])
+        # Contacts of rigid bodies have rows of fixed size, in two places that follow each other.
+        of_singles = self._pair_rows["single_impulse"][0]
+        for place in np.flatnonzero(self._pair_rows["single_contact"][0, :-1] == contact).tolist():
+            after = place + 1
+            if self._pair_rows["single_contact"][0, after] != contact:
+                continue
+            if tuple(of_singles[place, :3]) == expected:
+                spun, *rolled = of_singles[after, :3].tolist()
+                return [*rolled, spun]
         impulses = self._pair_rows["row_terms_impulse"][0]
         normal, lateral, rolling, spinning = self._pair_rows["contact_rows"][0, contact].tolist()
         known = impulses[normal], impulses[lateral], impulses[lateral + 1]
-        if known != tuple(self.contacts["contact_impulse"][contact]):
+        if known != expected:
             return None
         rolled = impulses[rolling : rolling + 2].tolist() if rolling >= 0 else [0.0, 0.0]
         return [*rolled, float(impulses[spinning]) if spinning >= 0 else 0.0]
