@@ -32,9 +32,12 @@ intptr_t client_of(const Guard& guard, PyObject* const* arguments, intptr_t coun
 
 Gate* gate_of(intptr_t number) { return number >= 0 && number < MOST_CLIENTS ? gates[number] : nullptr; }
 
-// The thread that was woken gets a chance to be first.
+constexpr int MAX_TURNS = 1000;
+
+// The thread that was woken gets a chance to be first. It needs some time to wake: without several turns, one that
+// steps in a loop would enter again before, each time.
 void let_others_in(const Gate& gate) {
-    if (gate.waiting && gate.is_woken)
+    for (int i = 0; i < MAX_TURNS && gate.waiting && gate.is_woken; ++i)
         python.PyEval_RestoreThread(python.PyEval_SaveThread());
 }
 
