@@ -2,7 +2,8 @@
 
 Needs Chromium. The questions: what many moving bodies cost the server for each frame, what they cost the
 page, apart from drawing, which a graphics card does, by how much stepping gets slower while a page is open,
-how long a slider takes to the script, and how smoothly a replay is scrubbed without a graphics card.
+how long a slider takes to the script, and how smoothly robots move and a replay is scrubbed without a
+graphics card.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from hands import move_a_slider, scrub_a_replay, window
+from hands import move_a_slider, scrub_a_replay, watch_robots, window
 from run import put_between_marks, readable
 from tests.viewer.browser import Page, chromium
 from websockets.sync.client import connect
@@ -236,7 +237,8 @@ def main() -> None:
     parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
     arguments = parser.parse_args()
     header = [["what", "cost", "wanted", ""], ["---", "---:", "---", "---"]]
-    rows = header + watch_a_crowd(arguments.bodies) + watch_the_panda() + move_a_slider() + scrub_a_replay()
+    rows = header + watch_a_crowd(arguments.bodies) + watch_the_panda()
+    rows += move_a_slider() + watch_robots() + scrub_a_replay()
     figures = "\n".join("| " + " | ".join(row) + " |" for row in rows)
     print(figures)
     if arguments.page:
