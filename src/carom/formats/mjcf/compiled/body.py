@@ -78,6 +78,9 @@ class BodyReader:
         child_class = attributes.get("childclass", scope.child_class)
         # Poses of its contents are given in the body's frame, or in the world frame if all poses are.
         into = inverse(local) if context.compiler.global_frames else IDENTITY
+        if not is_top:
+            # MuJoCo has the centre of a body of which nothing states mass there, and weights it so.
+            body.inertia.centre = np.array(local.position)
         self._read_content(element, replace(scope, child_class=child_class, into=into), body, is_top=is_top)
         return body
 
@@ -186,9 +189,7 @@ class BodyReader:
         first, last = compiler.group_range
         masses = [geom.mass for geom in geoms if geom.mass is not None and first <= geom.group <= last]
         if compiler.from_geoms == ALWAYS or (stated is None and compiler.from_geoms != NEVER):
-            body.inertia = inertia_of(masses)
-            if stated is not None and not masses:
-                body.inertia = BodyInertia.none()
+            body.inertia = inertia_of(masses, body.inertia)
         elif stated is not None:
             body.inertia = stated
         problem = bounded(body.inertia, compiler)
