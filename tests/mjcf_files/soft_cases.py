@@ -4,9 +4,12 @@ WEIGHED = """<mujoco><worldbody><body name="a" pos="0 0 1" euler="10 20 30"><joi
  damping=".1" armature=".2"/><geom size=".1" pos=".2 0 0"/><body name="b" pos=".4 .1 0"><joint name="ball"
  type="ball" pos="0 .1 0"/><geom type="box" size=".1 .2 .3" pos=".1 0 .3"/><body name="c" pos="0 0 .5"><joint
  name="slide" type="slide" axis="1 1 0"/><joint name="other" axis="0 1 1" armature=".1" ref="30"/><geom
- size=".05"/><body name="d" pos="0 .1 0"><geom size=".1"/></body></body><body name="massless" pos=".2 .3 .4" euler="0 40 0">
-<geom size=".1" mass="0" pos="0 0 1"/></body><frame pos="0 0 1"><body name="empty" pos=".1 0 .2"/></frame></body></body>
-<body name="free" pos="3 0 0"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 .2 0"/><body name="arm" pos=".3 0 0"><joint
+ size=".05"/><body name="d" pos="0 .1 0"><geom size=".1"/></body></body>
+<body name="massless" pos=".2 .3 .4" euler="0 40 0">
+<geom size=".1" mass="0" pos="0 0 1"/></body><frame pos="0 0 1"><body name="empty" pos=".1 0 .2"/>
+</frame></body></body>
+<body name="free" pos="3 0 0"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 .2 0"/>
+<body name="arm" pos=".3 0 0"><joint
  name="last" axis="1 0 0"/><geom size=".1" pos="0 .2 0"/></body></body><body name="still"><geom size=".1"/>
 </body></worldbody></mujoco>"""
 
