@@ -60,7 +60,9 @@ def test_bodies_move_as_in_mujoco(tmp_path, name):
 def test_saved_worlds_and_copies_yield_alike(tmp_path, name):
     (tmp_path / "file.xml").write_text(MOVED[name])
     with World() as world, World() as other:
-        body = world.load(tmp_path / "file.xml")["a"]
+        scene = world.load(tmp_path / "file.xml")
+        scene.apply_options()
+        body = scene["a"]
         world.save(tmp_path / "saved")
         saved = other.load(tmp_path / "saved")["a"]
         for each in (world, other):

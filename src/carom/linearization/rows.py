@@ -169,7 +169,9 @@ class JointRows:
         elif kind == ConstraintKind.LIMIT:
             self._add_limit(constraint, dof)
         elif kind == ConstraintKind.FRICTION:
-            self._add_friction(constraint, dof)
+            count = int(self._taken.model["link_dof_count"][self._taken.model["constraint_link"][constraint]])
+            for own in range(dof, dof + count):
+                self._add_friction(constraint, own)
         elif np.abs(self._left[dof : dof + 3]).max() > _NEAR * self._scale:
             raise NotImplementedError(
                 self._name("limit", dof) + ", a spherical joint, has no exact derivatives"

@@ -19,6 +19,7 @@ from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
 from carom.formats.mjcf.compiled.site import read_site
+from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import MissingFile, shown
@@ -230,10 +231,8 @@ def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None
     attributes: Attributes = scope.attributes(element)
     body.free_damping = first_number(scope, element, attributes, "damping")
     body.free_armature = first_number(scope, element, attributes, "armature")
-    unbuilt = [
-        name
-        for name in ("frictionloss", "stiffness")
-        if any(context.singles(element, name, attributes.get(name, "")))
-    ]
-    if unbuilt:
-        context.leave_out(element, "the body moves without them", "free bodies have no such terms", *unbuilt)
+    body.free_friction = first_number(scope, element, attributes, "frictionloss")
+    if body.free_friction:
+        body.free_compliance = read_compliance(scope, element, attributes, "friction")
+    if any(context.singles(element, "stiffness", attributes.get("stiffness", ""))):
+        context.leave_out(element, "the body moves without it", "free bodies have no such terms", "stiffness")
