@@ -81,6 +81,15 @@ MOVED: dict[str, str] = {
     "contact of one stiffness": _ball('solref="-500 -20"', 'solref=".02 .5"'),
     "contacts of two stiffnesses": _ball('solref="-500 -20"', 'solref="-300 -50"'),
     "contact of priority": _ball('solref=".1 1" priority="1"', 'solref=".03 .5"'),
+    "contacts that an option overrides": _ball(
+        'friction="2" priority="1" margin=".1"',
+        'solref="-300 -50"',
+        '<option o_margin=".03" o_solref=".05 .7" o_solimp=".6 .7 .01" o_friction=".3 .3 .02"><flag'
+        ' override="enable"/></option>',
+    ),
+    "options that override nothing": _ball(
+        "", "", '<option o_margin=".03" o_solref=".05 .7" o_friction="3"/>'
+    ),
     "contact off": _ball("", "", '<option><flag contact="disable"/></option>'),
     "arm on a smooth floor": _arm('condim="1"'),
     "arm on a floor": _arm(""),

@@ -115,3 +115,12 @@ def test_options_of_a_file_let_the_solver_go_further(tmp_path, name):
                 found = np.concatenate([body.joints[joint].coordinates for joint in ("j", "k")])
             errors.append(np.abs(np.array(found) - answer).max())
         assert max(errors) < 5e-5
+
+
+@pytest.mark.parametrize(("override", "lost"), [("enable", ["o_friction"]), ("disable", [])])
+def test_friction_with_directions_that_overrides_is_reported(tmp_path, override, lost):
+    option = f'<option o_friction="1 2"><flag override="{override}"/></option>'
+    (tmp_path / "file.xml").write_text(f"<mujoco>{option}</mujoco>")
+    with World() as world:
+        found = world.load(tmp_path / "file.xml").ignored.that_matter
+    assert [name for it in found for name in it.attributes] == lost

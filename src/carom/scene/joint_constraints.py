@@ -54,7 +54,7 @@ class JointConstraint:
     margin: float = 0.0
 
     def yield_as_described(self) -> None:
-        """Let a limit, or friction that the joint had from the start, yield as the body's description says."""
+        """Let a limit, or friction that the joint had from the start, yield as its description says."""
         if self.user is not None or self.kind not in (ConstraintKind.LIMIT, ConstraintKind.FRICTION):
             return
         link = self.body.spec.links[self.joint]
