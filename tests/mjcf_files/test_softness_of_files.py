@@ -124,3 +124,14 @@ def test_friction_with_directions_that_overrides_is_reported(tmp_path, override,
     with World() as world:
         found = world.load(tmp_path / "file.xml").ignored.that_matter
     assert [name for it in found for name in it.attributes] == lost
+
+
+@pytest.mark.parametrize(("name", "what"), [("soft friction", "friction"), ("soft limit", "limit")])
+def test_limits_and_friction_that_yield_have_no_exact_derivatives(tmp_path, name, what):
+    (tmp_path / "file.xml").write_text(MOVED[name])
+    with World() as world:
+        world.load(tmp_path / "file.xml").apply_options()
+        world.step(300)
+        with pytest.raises(NotImplementedError, match=f"{what} of .* yields"):
+            world.linearize()
+        world.linearize(method="differences")
