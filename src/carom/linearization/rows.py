@@ -169,11 +169,18 @@ class JointRows:
         elif kind == ConstraintKind.LIMIT:
             self._add_limit(constraint, dof)
         elif kind == ConstraintKind.FRICTION:
-            self._add_friction(constraint, dof)
+            count = int(self._taken.model["link_dof_count"][self._taken.model["constraint_link"][constraint]])
+            for own in range(dof, dof + count):
+                self._add_friction(constraint, own)
         elif np.abs(self._left[dof : dof + 3]).max() > _NEAR * self._scale:
             raise NotImplementedError(
                 self._name("limit", dof) + ", a spherical joint, has no exact derivatives"
             )
+
+    def _check_rigid(self, name: str, constraint: int) -> None:
+        """Raise `NotImplementedError` if a limit or friction that holds yields, as those of MJCF files do."""
+        if self._taken.model["constraint_impedance"][constraint][1] > 0.0:
+            raise NotImplementedError(f"{name} yields, so that it has no exact derivatives")
 
     def _name(self, what: str, dof: int) -> str:
         return f"{what} of {self._space.labels[dof][0]}"
@@ -246,6 +253,7 @@ class JointRows:
                 continue
             self._left[dof] = 0.0
             name = self._name("limit", dof)
+            self._check_rigid(name, constraint)
             bound = float(taken.model["constraint_max_impulse"][constraint])
             if side * impulse >= bound * (1.0 - _NEAR):
                 rows.add_of_dof(name, UPPER if side > 0.0 else LOWER, dof, impulse, 0.0, 1.0)
@@ -269,6 +277,7 @@ class JointRows:
         status = status_of(impulse, -bound * (1.0 - _NEAR), bound * (1.0 - _NEAR))
         name = self._name("friction", dof)
         if status == HOLDS:
+            self._check_rigid(name, constraint)
             rows.add_of_dof(name, HOLDS, dof, impulse, 1.0, 0.0)
             return
         index = rows.add_of_dof(name, status, dof, impulse, 0.0, 1.0)

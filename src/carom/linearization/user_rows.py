@@ -156,4 +156,5 @@ def _described(kind: UserConstraintKind) -> str:
         UserConstraintKind.TENDON: "tendons",
         UserConstraintKind.TENDON_COUPLING: "couplings of tendons",
         UserConstraintKind.TRANSMISSION: "actuators of tendons and sites",
+        UserConstraintKind.BASE_FRICTION: "frictions of free bodies",
     }.get(kind, f"{kind.name.lower().replace('_', ' ')} constraint")
