@@ -14,7 +14,7 @@ from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import MechanismBatch, SweepTable
 from carom.model.body_spec import BASE
-from carom.native.kernels import Kernel
+from carom.native.kernels import Kernel, step_derivatives_kernel
 from carom.native.launch import Launch
 from carom.native.products import dots, product
 from carom.native.tables import ArrayTable, put_zeros
@@ -109,7 +109,9 @@ class Sweeps:
         if size == 0:
             return np.zeros(0)
         known = self._launches.get((kernel, numbers))
-        question, answer, launch = known or self._launch(kernel, size, numbers)
+        if known is None:
+            known = self._launches[kernel, numbers] = self._launch(kernel, size, numbers)
+        question, answer, launch = known
         np.concatenate([body.world.parameters.gravity, placed, rates, changed], out=question)
         # Kernels do not write entries that are always 0.
         answer.fill(0.0)
@@ -118,16 +120,35 @@ class Sweeps:
             raise ValueError("the answer is not finite")
         return answer.copy()
 
-    def _launch(self, kernel: Kernel, size: int, numbers: tuple[int, ...]) -> Any:
+    def step_derivatives(self, questions: np.ndarray) -> np.ndarray:
+        """Answers (k, 3, dofs, dofs) of `step_derivatives_kernel` to questions (k, numbers), a new array.
+
+        Raises:
+            ValueError: An answer is not finite.
+        """
+        count, dofs = len(questions), self.dofs
+        key = step_derivatives_kernel, count
+        known = self._launches.get(key)
+        if known is None:
+            known = self._launch(step_derivatives_kernel, 3 * dofs * dofs, (0,), count)
+            self._launches[key] = known
+        question, answer, launch = known
+        question[:] = questions.ravel()
+        answer.fill(0.0)
+        launch()
+        found = answer.reshape(count, 3, dofs, dofs).copy()
+        if dofs and np.isnan(found[:, 0, 0, 0]).any():
+            raise ValueError("the answer is not finite")
+        return found
+
+    def _launch(self, kernel: Kernel, size: int, numbers: tuple[int, ...], count: int = 1) -> Any:
         batch: Any = MechanismBatch()
-        question = put_zeros(batch, "question", self._length)
-        answer = put_zeros(batch, "answer", size)
+        question = put_zeros(batch, "question", count * self._length)
+        answer = put_zeros(batch, "answer", count * size)
         for name in ("mass", "moment", "inertia", "armature"):
             put_zeros(batch, name, 0)
-        launch = Launch(kernel, 1, [*self._mechanism.structs, self._table, batch, *numbers, 0])
-        made = question, answer, launch.brief_function
-        self._launches[kernel, numbers] = made
-        return made
+        launch = Launch(kernel, count, [*self._mechanism.structs, self._table, batch, *numbers, 0])
+        return question, answer, launch.brief_function
 
 
 def sweeps_of(body: Body) -> Sweeps:

@@ -29,7 +29,6 @@ class UserRows:
         self._places = places
         self._rows = rows
         self._space = space
-        self._of_row = {int(row): dof for dof, row in enumerate(space.dofs)}
 
     def add_all(self, count: int) -> None:
         """Add those of the first `count` constraints of the engine."""
@@ -61,7 +60,7 @@ class UserRows:
         return row if holds else None
 
     def _dof(self, link: int) -> int:
-        return self._of_row[int(self._taken.model["link_first_dof"][link])]
+        return self._space.dof_of_row[int(self._taken.model["link_first_dof"][link])]
 
     def _add_gear(self, user: int) -> None:
         taken, users = self._taken, self._taken.users

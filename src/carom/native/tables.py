@@ -188,7 +188,11 @@ class ArrayTable:
 
     def is_per_world(self, name: str) -> bool:
         """Whether the array of that name in `numpy` has a world axis."""
-        field = self._fields.get(name) or self._fields[name.partition("_")[0]]
+        # That of an array of structs is named after the array and a field of the struct.
+        while (field := self._fields.get(name)) is None:
+            name, _, part = name.rpartition("_")
+            if not part:
+                raise KeyError(name)
         return field.per_world
 
     def bytes_of(self, name: str) -> memoryview[int]:

@@ -1,0 +1,55 @@
+"""Questions about the motion of a body in a step, to the kernel of its derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.algorithms.sweeps import sweeps_of
+from carom.layouts.codes import BASE_POSITIONS
+from carom.linearization.turns import matrix_of
+
+if TYPE_CHECKING:
+    from carom.linearization.taken_step import TakenStep
+    from carom.scene.body import Body
+
+# Answers (k, 3, n, n) to questions (k, numbers) about a body: derivatives of the forces that its motion takes
+# by positions, velocities and accelerations; those of a free base along axes of the world.
+Ask = Callable[["Body", np.ndarray], np.ndarray]
+
+_ANGULAR, _LINEAR = slice(0, 3), slice(3, 6)
+_GRAVITY = 3
+
+
+def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray) -> np.ndarray:
+    """Questions (k, numbers) about the motion of a body before a step with some accelerations.
+
+    Args:
+        body: The body.
+        taken: The step.
+        own: Its dofs in the tangent space.
+        accelerations: (k, dofs), those of a free base in world axes.
+    """
+    first, count = body.first_position, BASE_POSITIONS + sum(body.position_count)
+    size = own.stop - own.start
+    behind = _GRAVITY + count + size
+    found = np.empty((len(accelerations), behind + size))
+    found[:, :_GRAVITY] = taken.gravity
+    found[:, _GRAVITY : _GRAVITY + count] = taken.position[first : first + count]
+    found[:, _GRAVITY + count : behind] = taken.velocity[own]
+    found[:, behind:] = accelerations
+    if not body.fixed_base:
+        turn = matrix_of(taken.position[first + 3 : first + BASE_POSITIONS])
+        # Four vectors in each question: velocities and accelerations of the base.
+        for start in (_GRAVITY + count, behind):
+            for part in (_ANGULAR, _LINEAR):
+                vectors = found[:, start + part.start : start + part.stop]
+                vectors[:] = vectors @ turn
+    return found
+
+
+def ask_lone(body: Body, questions: np.ndarray) -> np.ndarray:
+    """The answers about a body of a lone world."""
+    return sweeps_of(body).step_derivatives(questions)
