@@ -14,7 +14,7 @@ from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS
 from carom.layouts.mechanism import MechanismBatch, SweepTable
 from carom.model.body_spec import BASE
-from carom.native.kernels import Kernel, step_derivatives_kernel
+from carom.native.kernels import Kernel
 from carom.native.launch import Launch
 from carom.native.products import dots, product
 from carom.native.tables import ArrayTable, put_zeros
@@ -120,24 +120,29 @@ class Sweeps:
             raise ValueError("the answer is not finite")
         return answer.copy()
 
-    def step_derivatives(self, questions: np.ndarray) -> np.ndarray:
-        """Answers (k, 3, dofs, dofs) of `step_derivatives_kernel` to questions (k, numbers), a new array.
+    def answers(self, kernel: Kernel, size: int, *numbers: int, questions: np.ndarray) -> np.ndarray:
+        """The answers (k, size) of a kernel to questions (k, numbers) as it reads them, a new array.
+
+        Args:
+            kernel: The kernel.
+            size: Length of an answer.
+            numbers: As in `ask`.
+            questions: Gravity, pose of the base, joint positions, velocities, accelerations or forces.
 
         Raises:
             ValueError: An answer is not finite.
         """
-        count, dofs = len(questions), self.dofs
-        key = step_derivatives_kernel, count
-        known = self._launches.get(key)
+        count = len(questions)
+        known = self._launches.get((kernel, numbers, count))
         if known is None:
-            known = self._launch(step_derivatives_kernel, 3 * dofs * dofs, (0,), count)
-            self._launches[key] = known
+            known = self._launch(kernel, size, numbers, count)
+            self._launches[kernel, numbers, count] = known
         question, answer, launch = known
         question[:] = questions.ravel()
         answer.fill(0.0)
         launch()
-        found = answer.reshape(count, 3, dofs, dofs).copy()
-        if dofs and np.isnan(found[:, 0, 0, 0]).any():
+        found = answer.reshape(count, size).copy()
+        if size and np.isnan(found[:, 0]).any():
             raise ValueError("the answer is not finite")
         return found
 

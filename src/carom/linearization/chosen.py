@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from carom.linearization.inputs import CONTROLS, INERTIAL, PARAMETERS, Input, chosen_inputs
 from carom.linearization.stepping import made_for
 from carom.linearization.tangent import TangentSpace
@@ -35,17 +37,16 @@ class Chosen:
     controls: tuple[str, ...]
     parameters: tuple[str, ...]
 
-    def refuse_inertial(self, world: World, method: str) -> None:
-        """Refuse inertial parameters where they have no derivatives."""
+    def refuse_inertial(self, model: dict[str, np.ndarray], method: str) -> None:
+        """Refuse inertial parameters where they have no derivatives, in any world of a model."""
         if all(it.kind != INERTIAL for it in self.inputs[self.control_count :]):
             return
         if method != "exact":
             raise NotImplementedError("inertial parameters have exact derivatives only")
-        model = world.arrays.model.numpy
         for body in self.space.bodies:
             tree, links = body.rows.tree, slice(body.first_link, body.first_link + 1 + body.joint_count)
-            drags = model["tree_linear_damping"][0, tree], model["tree_angular_damping"][0, tree]
-            if any(drags) or model["link_gravity_compensation"][0, links].any():
+            drags = (model[f"tree_{kind}_damping"][:, tree].any() for kind in ("linear", "angular"))
+            if any(drags) or model["link_gravity_compensation"][:, links].any():
                 raise NotImplementedError(
                     f"inertial parameters of {body.name!r} have no derivatives with air damping or gravity "
                     "compensation"

@@ -13,7 +13,7 @@ from carom.layouts.contacts import THERE
 from carom.linearization.contact_rows import ContactRows
 from carom.linearization.free_motion import FreeMotion
 from carom.linearization.joint_rows import JointRows, bounded_control
-from carom.linearization.motion_questions import ask_lone
+from carom.linearization.motion_questions import ask_lone, questions_of_step
 from carom.linearization.pair_rows import Places
 from carom.linearization.row_solver import RowSolver, row_solver
 from carom.linearization.rows import Rows
@@ -107,18 +107,12 @@ def _add_identity(velocities: np.ndarray, dofs: int) -> None:
 
 
 def step_factors(
-    world: World,
-    space: TangentSpace,
-    inputs: Sequence[Input],
-    taken: TakenStep,
-    motion: FreeMotion,
-    smoothing: float,
+    space: TangentSpace, inputs: Sequence[Input], taken: TakenStep, motion: FreeMotion, smoothing: float
 ) -> StepFactors:
     """Differentiate a step that has been performed.
 
     Args:
-        world: The world.
-        space: Its tangent space.
+        space: The tangent space of the world.
         inputs: Controls and parameters.
         taken: The step.
         motion: Its free motion.
@@ -128,7 +122,7 @@ def step_factors(
         NotImplementedError: Something in the step has no exact derivatives.
     """
     contacts, users = int(taken.contacts["count_contacts"][THERE]), taken.user_count
-    constraints = world.arrays.used["constraint"]
+    constraints = taken.constraint_count
     rows = Rows(space, inputs, _MOST_ROWS * (contacts + users) + _BALL_ROWS * constraints)
     if contacts or users:
         places = Places(space, motion)
@@ -177,8 +171,8 @@ def step_derivatives(
     before = StateBefore(space, copies)
     copies.step()
     taken = TakenStep(world.parameters, space, copies, before)
-    motion = FreeMotion(space, taken, ask_lone)
-    return step_factors(world, space, inputs, taken, motion, smoothing)
+    answers = [ask_lone(*it) for it in zip(space.bodies, questions_of_step(space, taken), strict=True)]
+    return step_factors(space, inputs, taken, FreeMotion(space, taken, answers, ask_lone), smoothing)
 
 
 def _activations(

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.regressor import joint_torque_regressor
-from carom.layouts.codes import BASE_POSITIONS, PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
+from carom.algorithms.sweeps import sweeps_of
+from carom.layouts.codes import PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
 from carom.linearization.inputs import INERTIAL
 from carom.linearization.motion_questions import Ask, motion_questions
 from carom.linearization.spatial import Spatial, link_forces
 from carom.linearization.turns import matrix_of
+from carom.native.kernels import regressor_kernel
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
@@ -32,7 +33,8 @@ class FreeMotion:
         inverse: Its inverse; zeros where nothing can move.
     """
 
-    def __init__(self, space: TangentSpace, taken: TakenStep, ask: Ask) -> None:
+    def __init__(self, space: TangentSpace, taken: TakenStep, answers: list[np.ndarray], ask: Ask) -> None:
+        """Take the answers to `questions_of_step`; `ask` answers further questions."""
         self._space = space
         self._taken = taken
         self._ask = ask
@@ -44,19 +46,15 @@ class FreeMotion:
         )
         self._yielding = self._damping + h * self._stiffness
         self._stretch, self._stretch_q = space.stretch(taken.position, taken.model["position_spring"])
-        # Velocities after free motion, and those of the solver.
-        self._ends = np.stack([taken.free_velocity, taken.solved])
-        accelerations = (self._ends - taken.velocity) / h
         self.effective: np.ndarray = np.zeros((count, count))
         self.inverse: np.ndarray = np.zeros((count, count))
         # Derivatives by positions and by velocities, with the accelerations of free motion and of the solver.
         self._by_state = np.zeros((2, count, 2 * count))
-        for body, (first, size) in zip(space.bodies, space.places, strict=True):
+        for found, (first, size) in zip(answers, space.places, strict=True):
             own, own_v = slice(first, first + size), slice(count + first, count + first + size)
-            found = ask(body, motion_questions(body, taken, own, accelerations[:, own]))
             self._by_state[:, own, own] = -found[:, 0]
             self._by_state[:, own, own_v] = -found[:, 1]
-            effective = found[0, 2]
+            effective = found[0, 2].copy()
             effective.ravel()[:: size + 1] += h * self._yielding[own]
             self.effective[own, own] = effective
             self.inverse[own, own] = _inverse(effective)
@@ -89,7 +87,7 @@ class FreeMotion:
         width = 2 * count + activations
         found = np.zeros((count, width + len(inputs)))
         found[:, : 2 * count] = self._by_state[end]
-        self._put_input_forces(found[:, width:], self._ends[end], inputs)
+        self._put_input_forces(found[:, width:], self._taken.ends[end], inputs)
         return found
 
     def _add_forces(self, by_q: np.ndarray, by_v: np.ndarray) -> None:
@@ -231,13 +229,11 @@ def _regressor(
     body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
 ) -> np.ndarray:
     """Forces per inertial parameter; those of a free base along axes of the world."""
-    count = sum(body.position_count)
-    (question,) = motion_questions(body, taken, own, accelerations[None])
-    dofs = own.stop - own.start
-    first = 3 if not body.fixed_base else 3 + BASE_POSITIONS
-    behind = 3 + BASE_POSITIONS + count
-    parts = question[first:behind], question[behind : behind + dofs], question[behind + dofs :]
-    found = joint_torque_regressor(body, *parts).copy()
+    question = motion_questions(body, taken, own, accelerations[None])
+    sweeps = sweeps_of(body)
+    width = _PARTS * sweeps.links
+    answers = sweeps.answers(regressor_kernel, sweeps.dofs * width, sweeps.links, questions=question)
+    found = answers.reshape(sweeps.dofs, width)
     if not body.fixed_base:
         turn = spatial.rotations[0]
         found[_ANGULAR], found[_LINEAR] = turn @ found[_ANGULAR], turn @ found[_LINEAR]

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array
+from carom.checks import Array, vector
 from carom.linearization.chosen import Chosen, chosen_parts
-from carom.linearization.exact import step_derivatives
+from carom.linearization.exact import StepFactors, step_derivatives
+from carom.linearization.given_state import GivenState, Start
 from carom.linearization.stepping import copy_of, differences
 
 if TYPE_CHECKING:
@@ -66,23 +67,25 @@ def linearize(
     method: str,
     smoothing: float,
     outputs: Callable[[World], ArrayLike] | None,
+    start: Start,
 ) -> LinearizedStep:
     """As `World.linearize`."""
-    if steps < 1:
-        raise ValueError(f"steps must be at least 1, not {steps}")
+    check_steps(steps)
     if method not in ("exact", "differences"):
         raise ValueError(f"method must be 'exact' or 'differences', not {method!r}")
     if not smoothing >= 0.0 or (smoothing and method != "exact"):
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
     chosen = chosen_parts(world, controls, parameters)
     rows: tuple[tuple[str, str], ...] = ()
-    chosen.refuse_inertial(world, method)
+    chosen.refuse_inertial(world.arrays.model.numpy, method)
     space, count = chosen.space, chosen.control_count
+    given = start.checked(space, chosen.inputs[:count])
     if method == "differences":
-        by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE)
+        by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE, given)
     else:
-        by_state, by_input, rows = _exact(world, chosen, steps, smoothing)
-    seen, fed = _outputs(world, space, chosen.inputs[:count], steps, outputs)
+        taken = performed(world, chosen, steps, smoothing, given)
+        by_state, by_input, rows = *_chained(taken), taken[-1].rows
+    seen, fed = _outputs(world, space, chosen.inputs[:count], steps, outputs, given)
     return LinearizedStep(
         A=by_state,
         B=by_input[:, :count],
@@ -96,6 +99,12 @@ def linearize(
     )
 
 
+def check_steps(steps: int) -> None:
+    """Raise `ValueError` unless there is at least one step."""
+    if steps < 1:
+        raise ValueError(f"steps must be at least 1, not {steps}")
+
+
 def refuse_substeps(world: World) -> None:
     """Refuse steps that have no exact derivatives."""
     if world.parameters.substep_count > 1:
@@ -104,20 +113,53 @@ def refuse_substeps(world: World) -> None:
         )
 
 
-def _exact(
-    world: World, chosen: Chosen, steps: int, smoothing: float
-) -> tuple[np.ndarray, np.ndarray, tuple[tuple[str, str], ...]]:
-    """The derivatives of steps, one after the other."""
+def performed(
+    world: World, chosen: Chosen, steps: int, smoothing: float, start: GivenState
+) -> list[StepFactors]:
+    """The factors of some steps, one after the other, from a given start."""
     refuse_substeps(world)
     copies = copy_of(world)
+    start.write(copies.engine.arrays.state.numpy)
     copies.keep_forces()
-    factors = step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing)
-    by_state, by_input = factors.matrices()
-    for _ in range(steps - 1):
-        factors = step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing)
+    return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
+
+
+def _chained(taken: list[StepFactors]) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives of the last state by the first and by inputs."""
+    by_state, by_input = taken[0].matrices()
+    for factors in taken[1:]:
         stepped, driven = factors.matrices()
         by_state, by_input = stepped @ by_state, stepped @ by_input + driven
-    return by_state, by_input, factors.rows
+    return by_state, by_input
+
+
+def step_vjp(
+    world: World,
+    cotangent: ArrayLike,
+    controls: Sequence[str],
+    parameters: Sequence[str],
+    steps: int,
+    smoothing: float,
+    start: Start,
+) -> tuple[Array, Array, Array]:
+    """As `World.step_vjp`."""
+    check_steps(steps)
+    chosen = chosen_parts(world, controls, parameters)
+    chosen.refuse_inertial(world.arrays.model.numpy, "exact")
+    count = chosen.control_count
+    given = start.checked(chosen.space, chosen.inputs[:count])
+    pulled = vector(cotangent, len(chosen.states), "cotangent")
+    found = pulled_back(performed(world, chosen, steps, smoothing, given), pulled)
+    return found[0], found[1][:count], found[1][count:]
+
+
+def pulled_back(taken: list[StepFactors], cotangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A cotangent of the last state of some steps, as one of the first (nx,), and one of inputs."""
+    by_input = np.zeros(taken[0].forces.shape[1] - len(cotangent))
+    for factors in reversed(taken):
+        cotangent, driven = factors.pulled_back(cotangent)
+        by_input += driven
+    return cotangent, by_input
 
 
 def _outputs(
@@ -126,12 +168,14 @@ def _outputs(
     controls: list[Input],
     steps: int,
     outputs: Callable[[World], ArrayLike] | None,
+    given_start: GivenState,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Central differences of outputs after the steps, by states and by controls."""
     width = 2 * len(space) + len(space.activations)
     if outputs is None:
         return np.zeros((0, width)), np.zeros((0, len(controls)))
     scene = world.copy()
+    given_start.write(scene.arrays.state.numpy)
     start = scene.snapshot()
     columns: list[np.ndarray] = []
     for number in range(width + len(controls)):

@@ -10,9 +10,11 @@ import numpy as np
 from carom.algorithms.sweeps import sweeps_of
 from carom.layouts.codes import BASE_POSITIONS
 from carom.linearization.turns import matrix_of
+from carom.native.kernels import step_derivatives_kernel
 
 if TYPE_CHECKING:
     from carom.linearization.taken_step import TakenStep
+    from carom.linearization.tangent import TangentSpace
     from carom.scene.body import Body
 
 # Answers (k, 3, n, n) to questions (k, numbers) about a body: derivatives of the forces that its motion takes
@@ -50,6 +52,17 @@ def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np
     return found
 
 
+def questions_of_step(space: TangentSpace, taken: TakenStep) -> list[np.ndarray]:
+    """Two questions (2, numbers) about each body: with accelerations of free motion, and of the solver."""
+    accelerations = (taken.ends - taken.velocity) / taken.time_step
+    return [
+        motion_questions(body, taken, slice(first, first + size), accelerations[:, first : first + size])
+        for body, (first, size) in zip(space.bodies, space.places, strict=True)
+    ]
+
+
 def ask_lone(body: Body, questions: np.ndarray) -> np.ndarray:
     """The answers about a body of a lone world."""
-    return sweeps_of(body).step_derivatives(questions)
+    sweeps = sweeps_of(body)
+    found = sweeps.answers(step_derivatives_kernel, 3 * sweeps.dofs**2, 0, questions=questions)
+    return found.reshape(-1, 3, sweeps.dofs, sweeps.dofs)

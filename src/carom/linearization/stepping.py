@@ -19,6 +19,7 @@ from carom.native.block_copies import BlockCopies
 
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
+    from carom.linearization.given_state import GivenState
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
     from carom.native.tables import ArrayTable
@@ -172,7 +173,12 @@ def copy_of(world: World) -> Copies:
 
 
 def differences(
-    world: World, space: TangentSpace, inputs: Sequence[Input], steps: int, size: float
+    world: World,
+    space: TangentSpace,
+    inputs: Sequence[Input],
+    steps: int,
+    size: float,
+    start: GivenState,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Central differences of the state after steps.
 
@@ -182,6 +188,7 @@ def differences(
         inputs: Controls and parameters.
         steps: Number of steps.
         size: Size of the changes; those of inputs are relative if the input is greater than 1.
+        start: What replaces the present state.
 
     Returns:
         Derivatives by the state (nx, nx), and by the inputs (nx, inputs).
@@ -191,6 +198,7 @@ def differences(
     total = width + len(inputs)
     copies = Copies(world, 2 * total)
     state = copies.state
+    start.write(state)
     sizes = np.full(total, size)
     signed = np.concatenate([np.eye(total), -np.eye(total)]) * size
     state["position"][:] = space.moved(state["position"], signed[:, :dofs])

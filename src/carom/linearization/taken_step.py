@@ -57,7 +57,9 @@ class TakenStep:
         activation: Activations of all actuators before it.
         control: Controls of all actuators.
         state: Fields of the state after it, without an axis of worlds.
+        ends: Velocities after free motion, and those of the solver, (2, n).
         user_count: Number of user constraints in the engine.
+        constraint_count: Number of joint constraints.
         users, shapes, contacts: Fields of these tables after it, likewise.
     """
 
@@ -79,6 +81,7 @@ class TakenStep:
         self.shapes = Fields(contact_arrays.shapes.table, world)
         self.contacts = Fields(contact_arrays.contacts, world)
         self.user_count: int = contact_arrays.user_count
+        self.constraint_count: int = arrays.used["constraint"]
         self.gravity: np.ndarray = self.model["gravity_vector"][0]
         self.position: np.ndarray = before.position[world]
         self.velocity: np.ndarray = before.velocity[world]
@@ -101,6 +104,7 @@ class TakenStep:
             or [np.zeros(0, dtype=np.int64)]
         )
         self.solved: np.ndarray = self.free_velocity + scratch["delta_velocity"].ravel()[deltas]
+        self.ends: np.ndarray = np.stack([self.free_velocity, self.solved])
         self.angular: np.ndarray = scratch["dof_angular"][space.dofs]
         self.linear: np.ndarray = scratch["dof_linear"][space.dofs]
         self.link_pose: np.ndarray = self.state["link_pose"]

@@ -40,6 +40,8 @@ class TangentSpace:
         labels: Names of the dofs in two parts: that of the joint or base, and which one of it, such as "x".
         actuators: Names of the actuators with activations.
         activations: Their rows in the arrays of actuators, (a,).
+        coordinates: Number of all coordinates, and length of `World.position`, which may have spare rows.
+        rates: Likewise of `World.velocity`.
         dof_of_row: The dofs by their rows of `World.velocity`.
         column_of_actuator: The columns of activations by rows of actuators.
     """
@@ -96,6 +98,9 @@ class TangentSpace:
         self.dofs: np.ndarray = np.array(rows, dtype=np.int64)
         self.labels: list[tuple[str, str]] = labels
         self.activations: np.ndarray = np.array(active, dtype=np.int64)
+        used = world.arrays.used
+        self.coordinates: tuple[int, int] = used["position"], len(world.position)
+        self.rates: tuple[int, int] = used["dof"], len(world.velocity)
         self.dof_of_row: dict[int, int] = {row: dof for dof, row in enumerate(rows)}
         self.column_of_actuator: dict[int, int] = {row: column for column, row in enumerate(active)}
         self._positions = np.array([row for row, _ in self._scalars], dtype=np.int64)
