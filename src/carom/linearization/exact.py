@@ -140,13 +140,7 @@ def step_factors(
             forces[:, :dofs] += rows.impulses[row] / taken.time_step * hessian
             of_after[row] = taken.solved @ hessian
         solver = row_solver(rows, motion.inverse, of_after, smoothing)
-    bound = np.concatenate(
-        [
-            np.full(size, taken.model["tree_max_velocity"][body.rows.tree])
-            for body, (_, size) in zip(space.bodies, space.places, strict=True)
-        ]
-        or [np.zeros(0)]
-    )
+    bound = taken.model["tree_max_velocity"][space.trees]
     return StepFactors(
         tuple(rows.names),
         2 * dofs + active,
@@ -154,7 +148,7 @@ def step_factors(
         forces,
         free_forces,
         solver,
-        np.where(np.abs(taken.solved) < bound, 1.0, 0.0),
+        (np.abs(taken.solved) < bound).astype(float),
         *space.integration(taken.after, taken.time_step),
         *_activations(space, taken, inputs),
     )

@@ -61,8 +61,10 @@ class JointRows:
             if kind in _ROUNDS:
                 rounds[_ROUNDS[kind]].append(constraint)
         dof_of = self._space.dof_of_row
-        for constraint in (it for chosen in rounds for it in chosen):
-            self._add(kinds[constraint], constraint, first[constraint], dof_of[first[constraint]])
+        for chosen in rounds:
+            for constraint in chosen:
+                row = first[constraint]
+                self._add(kinds[constraint], constraint, row, dof_of[row])
 
     def _add(self, kind: int, constraint: int, row: int, dof: int) -> None:
         if kind == ConstraintKind.MOTOR:

@@ -120,7 +120,8 @@ def performed(
     refuse_substeps(world)
     copies = copy_of(world)
     start.write(copies.engine.arrays.state.numpy)
-    copies.keep_forces()
+    if steps > 1:
+        copies.keep_forces()
     return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
 
 

@@ -96,13 +96,7 @@ class TakenStep:
         scratch = copies.scratch(world)
         self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
         self.free_velocity: np.ndarray = self.velocity + self.time_step * scratch["dof_force"][space.dofs]
-        deltas = np.concatenate(
-            [
-                4 * int(self.model["tree_first_delta"][body.rows.tree]) + np.arange(size)
-                for body, (_, size) in zip(space.bodies, space.places, strict=True)
-            ]
-            or [np.zeros(0, dtype=np.int64)]
-        )
+        deltas = 4 * self.model["tree_first_delta"][space.trees] + space.places_in_tree
         self.solved: np.ndarray = self.free_velocity + scratch["delta_velocity"].ravel()[deltas]
         self.ends: np.ndarray = np.stack([self.free_velocity, self.solved])
         self.angular: np.ndarray = scratch["dof_angular"][space.dofs]

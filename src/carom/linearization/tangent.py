@@ -40,6 +40,8 @@ class TangentSpace:
         labels: Names of the dofs in two parts: that of the joint or base, and which one of it, such as "x".
         actuators: Names of the actuators with activations.
         activations: Their rows in the arrays of actuators, (a,).
+        trees: The tree of each dof, (n,).
+        places_in_tree: Its place among the dofs of the tree, (n,).
         coordinates: Number of all coordinates, and length of `World.position`, which may have spare rows.
         rates: Likewise of `World.velocity`.
         dof_of_row: The dofs by their rows of `World.velocity`.
@@ -101,6 +103,13 @@ class TangentSpace:
         used = world.arrays.used
         self.coordinates: tuple[int, int] = used["position"], len(world.position)
         self.rates: tuple[int, int] = used["dof"], len(world.velocity)
+        sizes = [size for _, size in self.places]
+        self.trees: np.ndarray = np.repeat(
+            np.array([body.rows.tree for body in self.bodies], dtype=np.int64), sizes
+        )
+        self.places_in_tree: np.ndarray = np.concatenate(
+            [np.arange(size) for size in sizes] or [np.zeros(0, dtype=np.int64)]
+        )
         self.dof_of_row: dict[int, int] = {row: dof for dof, row in enumerate(rows)}
         self.column_of_actuator: dict[int, int] = {row: column for column, row in enumerate(active)}
         self._positions = np.array([row for row, _ in self._scalars], dtype=np.int64)

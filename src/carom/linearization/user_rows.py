@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.layouts.codes import Activity, UserConstraintKind
+from carom.layouts.codes import ABSENT, UserConstraintKind
 from carom.linearization.rows import HOLDS, Rows, status_of
 from carom.linearization.turns import cross, euler_rates, inverse, matrix_of, multiplied
 
@@ -32,12 +32,17 @@ class UserRows:
 
     def add_all(self, count: int) -> None:
         """Add those of the first `count` constraints of the engine."""
-        users, activity = self._taken.users, self._taken.state["tree_activity"]
+        if not count:
+            return
+        users = self._taken.users
+        absent: list[bool] = (self._taken.state["tree_activity"] == ABSENT).tolist()
+        enabled, first, second, kinds = (
+            users[f"user_{name}"][:count].tolist() for name in ("enabled", "tree_a", "tree_b", "kind")
+        )
         for user in range(count):
-            trees = [tree for tree in (users["user_tree_a"][user], users["user_tree_b"][user]) if tree >= 0]
-            if not users["user_enabled"][user] or any(activity[tree] == Activity.ABSENT for tree in trees):
+            if not enabled[user] or any(tree >= 0 and absent[tree] for tree in (first[user], second[user])):
                 continue
-            kind = UserConstraintKind(int(users["user_kind"][user]))
+            kind = UserConstraintKind(kinds[user])
             if kind >= UserConstraintKind.TENDON:
                 raise NotImplementedError(f"{_described(kind)} have no exact derivatives")
             if users["user_impedance"][user][1] > 0.0:
