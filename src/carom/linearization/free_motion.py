@@ -45,7 +45,6 @@ class FreeMotion:
             taken.model["dof_implicit_damping"][dofs],
         )
         self._yielding = self._damping + h * self._stiffness
-        self._stretch, self._stretch_q = space.stretch(taken.position, taken.model["position_spring"])
         self.effective: np.ndarray = np.zeros((count, count))
         self.inverse: np.ndarray = np.zeros((count, count))
         # Derivatives by positions and by velocities, with the accelerations of free motion and of the solver.
@@ -59,6 +58,11 @@ class FreeMotion:
             self.effective[own, own] = effective
             self.inverse[own, own] = _inverse(effective)
         self._add_forces(self._by_state[:, :, :count], self._by_state[:, :, count:])
+
+    def _stretched(self) -> tuple[np.ndarray, np.ndarray]:
+        """How far springs are stretched, and the derivatives by positions."""
+        taken = self._taken
+        return self._space.stretch(taken.position, taken.model["position_spring"])
 
     @property
     def spatial(self) -> list[Spatial]:
@@ -115,7 +119,7 @@ class FreeMotion:
             by_q[:, own, own] += pushed_q
             by_v[:, own, own] += pushed_v
         if self._stiffness.any():
-            by_q -= self._stiffness[:, None] * self._stretch_q
+            by_q -= self._stiffness[:, None] * self._stretched()[1]
         diagonal = np.arange(len(space))
         by_v[:, diagonal, diagonal] -= self._yielding + taken.model["dof_damping"][space.dofs]
         drive = taken.drive
@@ -137,6 +141,7 @@ class FreeMotion:
         space, taken, h = self._space, self._taken, self._taken.time_step
         accelerations = (after - taken.velocity) / h
         regressors: dict[int, np.ndarray] = {}
+        stretch: np.ndarray | None = None
         for column, given in enumerate(inputs):
             row = given.row
             if given.kind == "torques":
@@ -144,7 +149,8 @@ class FreeMotion:
             elif given.kind == "armature":
                 found[row, column] = -accelerations[row]
             elif given.kind == "stiffness":
-                found[row, column] = -(self._stretch[row] + h * after[row])
+                stretch = self._stretched()[0] if stretch is None else stretch
+                found[row, column] = -(stretch[row] + h * after[row])
             elif given.kind == "damping":
                 explicit = given.field == "dof_damping"
                 found[row, column] = -(taken.velocity if explicit else after)[row]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
-from carom.layouts.codes import BASE_POSITIONS
-from carom.linearization.turns import matrix_of
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.linearization.turns import rotation_of
 from carom.native.kernels import step_derivatives_kernel
 
 if TYPE_CHECKING:
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 # by positions, velocities and accelerations; those of a free base along axes of the world.
 Ask = Callable[["Body", np.ndarray], np.ndarray]
 
-_ANGULAR, _LINEAR = slice(0, 3), slice(3, 6)
 _GRAVITY = 3
 
 
@@ -43,12 +42,11 @@ def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np
     found[:, _GRAVITY + count : behind] = taken.velocity[own]
     found[:, behind:] = accelerations
     if not body.fixed_base:
-        turn = matrix_of(taken.position[first + 3 : first + BASE_POSITIONS])
-        # Four vectors in each question: velocities and accelerations of the base.
+        turn = rotation_of(taken.position[first + 3 : first + BASE_POSITIONS])
+        # Two vectors each, angular and linear, of velocity and acceleration.
         for start in (_GRAVITY + count, behind):
-            for part in (_ANGULAR, _LINEAR):
-                vectors = found[:, start + part.start : start + part.stop]
-                vectors[:] = vectors @ turn
+            both = found[:, start : start + BASE_VELOCITIES]
+            both[:] = (both.reshape(-1, 2, 3) @ turn).reshape(-1, BASE_VELOCITIES)
     return found
 
 

@@ -12,9 +12,9 @@ from carom.linearization.turns import (
     cross,
     inverse,
     left_derivative,
-    matrix_of,
     multiplied,
     quaternion_of,
+    turned_by,
     vector_of,
 )
 
@@ -180,13 +180,13 @@ class TangentSpace:
         for _, dof in self._bases:
             own = slice(dof, dof + 3)
             turn = time_step * velocity[own]
-            by_position[own, own] = matrix_of(quaternion_of(turn))
-            by_velocity[own, own] = time_step * left_derivative(turn)
+            by_position[own, own], derivative = turned_by(turn)
+            by_velocity[own, own] = time_step * derivative
         for _, dof in self._balls:
             own = slice(dof, dof + 3)
             turn = -time_step * velocity[own]
-            by_position[own, own] = matrix_of(quaternion_of(turn))
-            by_velocity[own, own] = time_step * left_derivative(turn)
+            by_position[own, own], derivative = turned_by(turn)
+            by_velocity[own, own] = time_step * derivative
         for _, dof, hand in self._planes:
             own = slice(dof + 1, dof + 3)
             by_position[own, own] = _plane_turn(-hand * time_step * velocity[dof])
