@@ -144,10 +144,12 @@ def of_images(theirs: Any, ours: Any) -> Place | None:
         return Place("shape", count, len(b))
     if set(b) == {-1}:
         # Segments that were not asked for, or nothing in sight: PyBullet leaves what was there.
-        a = b
+        a, b = ([-1 if depth == 1 else 0 for depth in depths] for depths in (da, db))
     wrong = [pixel for pixel in range(count) if a[pixel] != b[pixel]]
     if len(wrong) > _SHARE_OF_SEGMENTS * count:
-        return Place("segments", f"{len(wrong)} of {count} differ: {a[wrong[0]]}", b[wrong[0]])
+        nearer = sum(db[pixel] < da[pixel] for pixel in wrong)
+        said = f"{len(wrong)} of {count} differ, {nearer} are nearer: {a[wrong[0]]}"
+        return Place("segments", said, b[wrong[0]])
     same = [pixel for pixel in range(count) if a[pixel] == b[pixel]]
     deep = [pixel for pixel in same if abs(da[pixel] - db[pixel]) > _DEPTH]
     if len(deep) > _SHARE_OF_DEPTHS * count:
