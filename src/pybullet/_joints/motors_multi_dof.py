@@ -231,7 +231,7 @@ def _gain(value: float | Vector, name: str) -> tuple[float, ...]:
 
 
 def _rotation(position: Sequence[float]) -> Sequence[float]:
-    """The rotation that a quaternion stands for, of whatever length; as it is if that is 1 but for rounding."""
+    """The rotation that a quaternion of any length stands for; as it is if that is 1 but for rounding."""
     x, y, z, w = position
     return position if abs(x * x + y * y + z * z + w * w - 1.0) < _ROUNDED else unit((x, y, z, w))
 
