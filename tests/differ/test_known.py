@@ -261,3 +261,17 @@ def test_joints_are_numbered_with_children_after_their_parent():
     aims = [call(1, "setJointMotorControl2", BODY, link, 2, targetPosition=1) for link in range(4)]
     known = [is_known([body, aim, PROBE], "positions.0.0", 0.0, 0.1) for aim in aims]
     assert known == [True, False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("ours", "expected"), [([-0.5, 0.5, -0.5, -0.5], True), ([-0.5, 0.5, 0.5, -0.5], False)]
+)
+def test_a_rotation_has_two_quaternions(ours: list[float], expected: bool):
+    assert is_known([BOX, call(1, "getLinkState", BODY, 0)], ".1", [0.5, -0.5, 0.5, 0.5], ours) == expected
+
+
+@pytest.mark.parametrize(("other", "sign", "expected"), [(0, -1, True), (0, 1, False), (1, -1, False)])
+def test_normals_of_one_body_may_be_opposite(other: int, sign: int, expected: bool):
+    theirs = [0, 0, other, -1, 0, [0.0] * 3, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 0.1]
+    ours = [*theirs[:5], [0.0, 0.2, 0.0], [0.1, 0.2, 0.0], [sign * 1.0, 0.0, 0.0], 0.1]
+    assert is_known([call(0, "getClosestPoints", BODY, BODY, 1.0)], "normal", theirs, ours) == expected

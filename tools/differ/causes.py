@@ -70,6 +70,7 @@ _TOO_FAR, _ROUNDED = 2e-4, 1e-9
 _OF_SIMPLIFIED_HULLS = 2e-3
 _SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.25, 0.7
 _MAINTAIN_LINK_ORDER = 131072
+_QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
@@ -244,11 +245,15 @@ def holds_half_a_turn(seen: Seen) -> bool:
 
 
 def exchanges_points(seen: Seen) -> bool:
-    """Whether the points of two links of one body are exchanged."""
+    """Whether the points of two links of one body are exchanged, or others of the same two faces are."""
     theirs, ours = seen.difference.place[1:3]
-    return theirs[1] == theirs[2] and all(
+    exchanged = all(
         abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
     )
+    opposite = abs(theirs[8] - ours[8]) < _ROUNDED and all(
+        abs(a + b) < _ROUNDED for a, b in zip(theirs[7], ours[7], strict=True)
+    )
+    return theirs[1] == theirs[2] and (exchanged or opposite)
 
 
 def names_another_face(seen: Seen) -> bool:
@@ -289,6 +294,14 @@ def hits_another_at_the_same_place(seen: Seen) -> bool:
     """Whether a ray hits another body than PyBullet's, as far away."""
     theirs, ours = seen.difference.place[1:3]
     return min(theirs[0], ours[0]) >= 0 and abs(theirs[2] - ours[2]) < _ROUNDED
+
+
+def is_the_same_rotation(seen: Seen) -> bool:
+    """Whether a pose's quaternion is that of PyBullet with the other sign."""
+    theirs, ours = seen.difference.place[1:3]
+    if not (isinstance(theirs, list) and isinstance(ours, list) and len(theirs) == len(ours) == _QUATERNION):
+        return False
+    return all(abs(a + b) < _NO_ROTATION for a, b in zip(theirs, ours, strict=True))
 
 
 def forgets_forces(seen: Seen) -> bool:

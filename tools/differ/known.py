@@ -30,6 +30,7 @@ from tools.differ.causes import (
     holds_what_cannot_move,
     is_a_little_nearer,
     is_farther_from_a_fine_hull,
+    is_the_same_rotation,
     limits_what_has_none,
     makes,
     moved_since_the_last_step,
@@ -170,6 +171,10 @@ KNOWN: tuple[Known, ...] = (
         "places links as if the base were larger by the square of that length",
         # What is reported of the start of a step is so after it, too.
         lambda seen: seen.differs("getLinkState", "getAABB") and turns_by_no_rotation(seen, 1),
+    ),
+    Known(
+        "the same rotation with the other sign",
+        lambda seen: seen.differs("getLinkState") and is_the_same_rotation(seen),
     ),
     Known(
         "constraints to hold them there",
