@@ -275,3 +275,14 @@ def test_normals_of_one_body_may_be_opposite(other: int, sign: int, expected: bo
     theirs = [0, 0, other, -1, 0, [0.0] * 3, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 0.1]
     ours = [*theirs[:5], [0.0, 0.2, 0.0], [0.1, 0.2, 0.0], [sign * 1.0, 0.0, 0.0], 0.1]
     assert is_known([call(0, "getClosestPoints", BODY, BODY, 1.0)], "normal", theirs, ours) == expected
+
+
+@pytest.mark.parametrize(
+    ("kind", "label", "expected"),
+    [(4, 0, True), (7, 1 << 24, True), (3, 0, False), (2, 0, False), (4, -1, False)],
+)
+def test_long_round_shapes_are_shaded_as_balls(kind: int, label: int, expected: bool):
+    shape, body = call(3, "createCollisionShape", kind), call(4, "createMultiBody", 1, {"$": 3})
+    calls = [shape, body, call(5, "getCameraImage", shadow=0)]
+    said = f"9 of 16 differ: [90, 90, 90, 255] of {label}"
+    assert is_known(calls, "colour", said, [70, 70, 70, 255]) == expected

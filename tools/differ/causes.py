@@ -61,6 +61,8 @@ SHAPE_OF_HEIGHTS = 9
 _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
 # Balls, cylinders and capsules.
 _ROUND = frozenset({2, 4, 7})
+_LONG_AND_ROUND = frozenset({4, 7})
+_LABELS_OF_A_LINK = 1 << 24
 _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
@@ -347,6 +349,28 @@ def stands_out_round(seen: Seen) -> bool:
     assert said
     wrong, count, nearer = map(int, said.groups())
     return wrong < _SHARE_OF_ROUND_EDGES * count and nearer > _SHARE_OF_NEARER * wrong
+
+
+def shades_as_a_ball(seen: Seen) -> bool:
+    """Whether a pixel whose colour differs shows a body made of cylinders or capsules, or from a file."""
+    label = int(str(seen.difference.place.theirs).rsplit(" of ", 1)[1])
+    made = [call for call in seen.before if call["f"].startswith(("load", "createMultiBody"))]
+    number = label % _LABELS_OF_A_LINK
+    if label < 0 or not made:
+        return False
+    # A file may hold several bodies, so that those after it have higher numbers.
+    body = made[min(number, len(made) - 1)]
+    if any(not call["f"].startswith(("loadURDF", "createMultiBody")) for call in made[: number + 1]):
+        return True
+    said = str([body["a"], body["k"]])
+    return body["f"] == "loadURDF" or any(
+        f"{{'$': {call['id']}}}" in said and _is_long_and_round(call) for call in seen.before
+    )
+
+
+def _is_long_and_round(call: Call) -> bool:
+    kinds = call["k"].get("shapeTypes", call["a"][:1]) if "Shape" in call["f"] else ()
+    return not _LONG_AND_ROUND.isdisjoint(kinds)
 
 
 def _is_round(call: Call) -> bool:

@@ -40,6 +40,7 @@ from tools.differ.causes import (
     pybullet_raises,
     reaches_from_positions,
     rounder,
+    shades_as_a_ball,
     stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
@@ -146,6 +147,10 @@ KNOWN: tuple[Known, ...] = (
             (seen.differs("getCameraImage depth") and rounder(seen))
             or (seen.differs("getCameraImage segments") and stands_out_round(seen))
         ),
+    ),
+    Known(
+        "shades cylinders and capsules with the normals of a ball",
+        lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
     ),
     Known(
         "With `currentPositions` the target is in the inertial frame of the base",
