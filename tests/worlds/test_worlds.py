@@ -272,6 +272,25 @@ def test_when_all_worlds_are_halted_nothing_happens(balls: tuple[World, Body, Bo
     assert worlds.times.tolist() == [0.0] * 10
 
 
+def test_a_world_that_halts_within_several_steps_has_the_time_of_its_last_good_one(
+    balls: tuple[World, Body, Body],
+) -> None:
+    world, _, ball = balls
+    ball.change_dynamics(-1, max_joint_velocity=1e308)
+    times = []
+    for steps in ([500], [1] * 500):
+        worlds = Worlds(world, 2)
+        # Its position is no finite number after some 400 steps.
+        worlds._engine.arrays.state.numpy["dof_velocity"][1, ball.first_velocity + 3] = 1e308
+        with pytest.warns(SimulationWarning, match="world 1 is halted"):
+            for count in steps:
+                worlds.step(count)
+        assert worlds.halted.tolist() == [False, True]
+        times.append(worlds.times)
+    assert 1.0 < times[0][1] < 500 / 240 - 0.1
+    assert times[0] == pytest.approx(times[1])
+
+
 def test_many_steps_at_once_are_steps_one_by_one(balls: tuple[World, Body, Body]) -> None:
     world, *_ = balls
     at_once, one_by_one = Worlds(world, 2), Worlds(world, 2)
