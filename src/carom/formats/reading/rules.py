@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
+
+# Number of places whose rules are kept once they are found.
+_MAX_PLACES = 4096
 
 
 class Rule(NamedTuple):
@@ -33,11 +37,15 @@ class Rules:
 
     def __init__(self, format_name: str, rules: Iterable[Rule]) -> None:
         self.format_name = format_name
-        self._by_length = sorted(
+        by_length = sorted(
             [(_parts(rule.place), rule) for rule in rules],
             key=lambda it: (len(it[0][0]), -it[0][0].count("*") - (it[0][1] == "*")),
             reverse=True,
         )
+        self._by_length = [(names, attribute, rule) for (names, attribute), rule in by_length]
+        self._longest = max((len(names) for names, _, _ in self._by_length), default=1)
+        # Files name the same places again and again.
+        self._first = lru_cache(_MAX_PLACES)(self._first_that_fits)
 
     def of(self, path: tuple[str, ...], attribute: str | None, *, taken: bool) -> tuple[str, str] | None:
         """Consequence and reason for an element at a path of names, or an attribute of it.
@@ -57,7 +65,10 @@ class Rules:
         return self._find(path, None) is not None
 
     def _find(self, path: tuple[str, ...], attribute: str | None) -> Rule | None:
-        for (names, of_attribute), rule in self._by_length:
+        return self._first(path[-self._longest :], attribute)
+
+    def _first_that_fits(self, path: tuple[str, ...], attribute: str | None) -> Rule | None:
+        for names, of_attribute, rule in self._by_length:
             if (of_attribute == attribute or (of_attribute == "*" and attribute)) and len(names) <= len(path):
                 ending = path[len(path) - len(names) :]
                 if all(name in ("*", other) for name, other in zip(names, ending, strict=True)):
