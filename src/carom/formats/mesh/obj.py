@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
-from itertools import chain
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -13,23 +13,33 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 
+# Lines that belong together: vertices, faces, others, or the one that begins an object or group. A block has a
+# bound, because the matcher remembers each line.
+_BLOCKS = re.compile(
+    rb"(?P<vertices>(?:[ \t\v\f]*v[ \t].*\n){1,20000})"
+    rb"|(?P<faces>(?:[ \t\v\f]*f[ \t].*\n){1,20000})"
+    rb"|[ \t\v\f]*(?P<group>[og](?:[ \t].*)?)\n"
+    rb"|(?:(?![ \t\v\f]*(?:[vfog][ \t]|[og]\n)).*\n){1,20000}"
+)
 _AFTER_SLASH = re.compile(rb"/\S*")
+# What a number has that is not whole.
+_BROKEN = re.compile(rb"[.eE]")
 
 
 @dataclass(slots=True)
 class _Group:
-    """Face lines between two `o` or `g` lines.
+    """What stands between two `o` or `g` lines.
 
     Attributes:
-        faces: Text after the `f` of each line.
-        lines: Line number of each face.
-        vertex_counts: Number of vertices known at each face: negative indices count back from there.
+        corners: Indices of vertices from 0, of all polygons of each block of faces.
+        sizes: Number of corners of each polygon, for each block.
+        lines: Line number of the first polygon of each block.
     """
 
     name: str = ""
-    faces: list[bytes] = field(default_factory=list)
+    corners: list[NDArray[np.int64]] = field(default_factory=list)
+    sizes: list[NDArray[np.int64]] = field(default_factory=list)
     lines: list[int] = field(default_factory=list)
-    vertex_counts: list[int] = field(default_factory=list)
 
 
 def read_obj(data: bytes, file: Path) -> list[MeshPart]:
@@ -43,72 +53,86 @@ def read_obj(data: bytes, file: Path) -> list[MeshPart]:
     Raises:
         DescriptionError: A number is missing or broken, or a face names a vertex that does not exist.
     """
-    vertex_lines: list[tuple[int, bytes]] = []
+    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n") + b"\n"
+    blocks: list[NDArray[np.float64]] = [np.empty((0, 3))]
+    known = line = at = 0
     groups = [_Group()]
-    for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
-        line = line.lstrip()
-        head = line[:2]
-        if head in (b"v ", b"v\t"):
-            vertex_lines.append((number, line[2:]))
-        elif head in (b"f ", b"f\t"):
-            group = groups[-1]
-            group.faces.append(line[2:])
-            group.lines.append(number)
-            group.vertex_counts.append(len(vertex_lines))
-        elif head in (b"o ", b"o\t", b"g ", b"g\t") or line in (b"o", b"g"):
-            words = line.split()
+    for block in _BLOCKS.finditer(data):
+        line += data.count(b"\n", at, block.start())
+        at = block.start()
+        text = block.group()
+        if block.lastgroup == "vertices":
+            blocks.append(_read_positions(text, line + 1, file))
+            known += len(blocks[-1])
+        elif block.lastgroup == "faces":
+            corners, sizes = _read_corners(text, line + 1, file)
+            # Negative indices count back from the vertices known at the face.
+            groups[-1].corners.append(np.where(corners < 0, corners + known, corners - 1))
+            groups[-1].sizes.append(sizes)
+            groups[-1].lines.append(line + 1)
+        elif block.lastgroup == "group":
+            words = text.split()
             name = words[1].decode("utf-8", errors="backslashreplace") if len(words) > 1 else ""
             groups.append(_Group(name))
-    positions = _read_positions(vertex_lines, file)
+    positions = np.concatenate(blocks)
     parts = []
     for group in groups:
-        corners = _read_corners(group, len(positions), file)
-        if len(corners):
-            parts.append(make_part(file, positions, corners, group.name))
+        triangles = _triangles(group, len(positions), file)
+        if len(triangles):
+            parts.append(make_part(file, positions, triangles, group.name))
     return parts
 
 
-def _read_positions(lines: list[tuple[int, bytes]], file: Path) -> NDArray[np.float64]:
-    words = [line.split() for _, line in lines]
-    if all(len(line) == 3 for line in words):
-        try:
-            return np.array([*map(float, chain.from_iterable(words))], dtype=np.float64).reshape(-1, 3)
-        except ValueError:
-            pass  # the loop below finds the line
-    positions = np.empty((len(lines), 3))
-    for index, (number, _) in enumerate(lines):
-        try:
-            # Colours or a weight may follow.
-            x, y, z = words[index][:3]
-            positions[index] = float(x), float(y), float(z)
-        except ValueError:
-            raise DescriptionError("a vertex needs three numbers", file=file, line=number) from None
+def _read_positions(text: bytes, first_line: int, file: Path) -> NDArray[np.float64]:
+    """Positions (n, 3) of a block of vertices; colours or a weight may follow each."""
+    lines = text.splitlines()
+    try:
+        positions = np.loadtxt(BytesIO(text), usecols=(1, 2, 3), comments=None, ndmin=2)
+    except ValueError:
+        positions = np.empty((len(lines), 3))
+        for index, line in enumerate(lines):
+            try:
+                x, y, z = line.split()[1:4]
+                positions[index] = float(x), float(y), float(z)
+            except ValueError:
+                raise DescriptionError(
+                    "a vertex needs three numbers", file=file, line=first_line + index
+                ) from None
     return positions
 
 
-def _read_corners(group: _Group, vertex_count: int, file: Path) -> NDArray[np.int64]:
-    """Triangles as (m, 3) vertex indices from 0."""
-    if not group.faces:
+def _read_corners(text: bytes, first_line: int, file: Path) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Corners of all polygons of a block of faces, as in the file, and how many each polygon has."""
+    if b"/" in text:
+        text = _AFTER_SLASH.sub(b"", text)
+    text = text.replace(b"f", b" ")
+    lines = text.splitlines()
+    if not _BROKEN.search(text):
+        try:
+            corners = np.loadtxt(BytesIO(text), dtype=np.int64, comments=None, ndmin=2)
+        except (ValueError, OverflowError):
+            pass  # a broken number, or polygons of different sizes
+        else:
+            # Lines without corners are skipped there.
+            if len(corners) == len(lines):
+                return corners.ravel(), np.full(len(lines), corners.shape[1], dtype=np.int64)
+    words = [line.split() for line in lines]
+    read: list[NDArray[np.int64]] = [np.empty(0, dtype=np.int64)]
+    for index, face in enumerate(words):
+        try:
+            read.append(np.array(list(map(int, face)), dtype=np.int64))
+        except (ValueError, OverflowError):
+            raise DescriptionError("a face needs whole numbers", file=file, line=first_line + index) from None
+    return np.concatenate(read), np.array(list(map(len, words)), dtype=np.int64)
+
+
+def _triangles(group: _Group, vertex_count: int, file: Path) -> NDArray[np.int64]:
+    """The triangles (m, 3) of a group, as indices of vertices from 0."""
+    if not group.corners:
         return np.empty((0, 3), dtype=np.int64)
-    faces = _AFTER_SLASH.sub(b"", b"\n".join(group.faces)).split(b"\n")
-    sizes = np.array([len(face.split()) for face in faces])
-    try:
-        indices = np.array(list(map(int, b" ".join(faces).split())), dtype=np.int64)
-    except (ValueError, OverflowError):
-        line = next(line for face, line in zip(faces, group.lines, strict=True) if not _is_integers(face))
-        raise DescriptionError("a face needs whole numbers", file=file, line=line) from None
-    # Negative indices count back from the vertices known at the face.
-    indices = np.where(indices < 0, indices + np.repeat(group.vertex_counts, sizes), indices - 1)
-    outside = (indices < 0) | (indices >= vertex_count)
-    if outside.any():
-        line = int(np.repeat(group.lines, sizes)[outside.argmax()])
-        raise DescriptionError(f"a face names a vertex outside 1..{vertex_count}", file=file, line=line)
-    return cut_into_fans(indices, sizes)
-
-
-def _is_integers(face: bytes) -> bool:
-    try:
-        np.array(list(map(int, face.split())), dtype=np.int64)
-    except (ValueError, OverflowError):
-        return False
-    return True
+    for corners, sizes, line in zip(group.corners, group.sizes, group.lines, strict=True):
+        outside = (corners < 0) | (corners >= vertex_count)
+        if outside.any():
+            line += int(np.repeat(np.arange(len(sizes)), sizes)[outside.argmax()])
+            raise DescriptionError(f"a face names a vertex outside 1..{vertex_count}", file=file, line=line)
+    return cut_into_fans(np.concatenate(group.corners), np.concatenate(group.sizes))
