@@ -25,9 +25,13 @@ def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
             start = model.starts.get(link.joint_name)
             if start is not None:
                 body.set_joint_state(index, [start], None)
-    for pairs, enabled in ((model.excluded, False), (model.paired, True)):
-        for a, b in sorted(set(_rows_of(bodies, pairs))):
-            bodies[0].world.contact_arrays.shapes.filters.set(a, b, enabled=enabled)
+    if not bodies:
+        return
+    filters = bodies[0].world.contact_arrays.shapes.filters
+    for a, b in sorted({rows for rows, _ in _rows_of(bodies, model.excluded)}):
+        filters.set(a, b, enabled=False)
+    for (a, b), names in _rows_of(bodies, list(model.paired)):
+        filters.set(a, b, enabled=True, contact=model.paired[names])
 
 
 def describe(scene: Scene, model: CompiledModel) -> None:
@@ -79,8 +83,10 @@ def _give_sensors(
         put_sensor(body, spec)
 
 
-def _rows_of(bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]) -> Iterator[tuple[int, int]]:
-    """Rows of pairs of links with shapes, by the names of bodies."""
+def _rows_of(
+    bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]
+) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
+    """Rows of pairs of links with shapes, in order, by the names of bodies, and these names."""
     rows: dict[str, int] = {}
     for body in bodies:
         for index in range(BASE, len(body.spec.links)):
@@ -90,4 +96,4 @@ def _rows_of(bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]) -> Iterat
     for first, second in pairs:
         if first in rows and second in rows and first != second:
             a, b = rows[first], rows[second]
-            yield (min(a, b), max(a, b))
+            yield (min(a, b), max(a, b)), (first, second)

@@ -26,7 +26,7 @@ def switch_off(model: CompiledModel) -> None:
         return
     model.robots = [_robot(placed, off) for placed in model.robots]
     if "contact" in off:
-        model.paired = []
+        model.paired = {}
     if "frictionloss" in off:
         model.frictions = []
     if "equality" in off:

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Joint, Pose, Visual
-from carom.description.compliance import Compliance
+from carom.description.compliance import Compliance, PairContact
 from carom.description.link import ContactParameters
 from carom.description.pose import IDENTITY, Vector3
 from carom.formats.mjcf.compiled.inertia import BodyInertia
@@ -323,7 +323,7 @@ class CompiledModel:
         joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
         starts: Positions of joints whose reference is not 0, by name.
         excluded: Pairs of bodies that don't collide with each other.
-        paired: Pairs of bodies that collide with each other whatever their groups say.
+        paired: Pairs of bodies that collide with each other whatever their groups say, and how.
         options: Gravity, time step and other numbers and words of `<option>`, by name.
         sites: By name.
         cameras: By name.
@@ -347,7 +347,7 @@ class CompiledModel:
     joints: list[tuple[str, str, str]] = field(default_factory=list)
     starts: dict[str, float] = field(default_factory=dict)
     excluded: list[tuple[str, str]] = field(default_factory=list)
-    paired: list[tuple[str, str]] = field(default_factory=list)
+    paired: dict[tuple[str, str], PairContact] = field(default_factory=dict)
     options: dict[str, Any] = field(default_factory=dict)
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)
