@@ -135,6 +135,10 @@ class ActuatorModel:
 
     dynamics: Int32  # see `codes.ActivationDynamics`
     is_muscle: Int32  # 1: its force is that of a muscle, not affine
+    # Of actuators of one joint whose sum has bounds: 1 if one before it has the row of all, and how many rows
+    # after it the next one is, 0 for none.
+    follows: Int32
+    to_next: Int32
 
 
 @struct
@@ -181,6 +185,8 @@ class Model:
     actuator_control_upper: RealRows
     actuator_force_lower: RealRows
     actuator_force_upper: RealRows
+    actuator_joint_lower: RealRows  # of the force of all actuators of its joint on it, see `ActuatorModel`
+    actuator_joint_upper: RealRows
     actuator_activation_lower: RealRows
     actuator_activation_upper: RealRows
     actuator_time_constant: RealRows  # of a filter, or of a muscle's activation [s]

@@ -28,7 +28,7 @@ from carom.layouts.codes import (
 )
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
-from carom.model.actuator_rows import write_actuator
+from carom.model.actuator_rows import check_joint_ranges, join_actuators, write_actuator
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
@@ -169,12 +169,14 @@ class WorldArrays:
             "actuator": len(spec.actuators),
             "sensor": sum(sensor.memory for sensor in spec.sensors),
         }
+        check_joint_ranges(spec.actuators)
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
         self._write_tree(rows, spec)
         self._write_links(rows, spec, codes)
         for row, actuator in enumerate(spec.actuators, start=rows.first["actuator"]):
             write_actuator(self.model.numpy, row, actuator)
+        join_actuators(self.model.numpy, rows.first["actuator"], spec.actuators)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
         if spec.soft is not None:
