@@ -44,6 +44,10 @@ class FreeMotion:
             links = slice(body.first_link, body.first_link + 1 + body.joint_count)
             columns = taken.angular[own], taken.linear[own]
             self.spatial.append(Spatial(body, taken.link_pose[links], columns))
+            if taken.model["dof_stiffness"][body.rows.first["dof"]] != 0.0:
+                raise NotImplementedError(
+                    f"body {body.name!r} has a spring at its free base, which has no exact derivatives"
+                )
         dofs = space.dofs
         self._stiffness, self._damping = (
             taken.model["dof_stiffness"][dofs],

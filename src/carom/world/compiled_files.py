@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.sensor import SensorObject
 from carom.model.body_spec import BASE
+from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import put_sensor
 from carom.world.file_keyframes import give_keyframes
 from carom.world.file_muscles import find_forces
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
     """Put joints where the file has them, and let links collide or not as in MuJoCo."""
     for body in bodies:
+        if body.spec.base.stiffness:
+            rest_base_spring(body)
         for index, link in enumerate(body.spec.links):
             start = model.starts.get(link.joint_name)
             if start is not None:

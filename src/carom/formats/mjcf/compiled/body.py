@@ -233,12 +233,10 @@ def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None
     """Read the terms of a free joint that its class of defaults or itself states; report others."""
     if element.tag == "freejoint":
         return
-    context = scope.context
     attributes: Attributes = scope.attributes(element)
     body.free_damping = first_number(scope, element, attributes, "damping")
     body.free_armature = first_number(scope, element, attributes, "armature")
     body.free_friction = first_number(scope, element, attributes, "frictionloss")
     if body.free_friction:
         body.free_compliance = read_compliance(scope, element, attributes, "friction")
-    if any(context.singles(element, "stiffness", attributes.get("stiffness", ""))):
-        context.leave_out(element, "the body moves without it", "free bodies have no such terms", "stiffness")
+    body.free_stiffness = first_number(scope, element, attributes, "stiffness")

@@ -74,6 +74,7 @@ class CompiledBody:
         is_free: It has a free joint.
         free_damping: Damping of its free joint, along and about all axes [N s/m, N m s/rad].
         free_armature: Armature of its free joint [kg, kg m²].
+        free_stiffness: Of the spring of its free joint, along and about all axes [N/m, N m/rad].
         free_friction: Greatest force and torque of dry friction along and about each of its axes [N, N m].
         free_compliance: How that friction yields.
         is_mocap: It is moved by users only.
@@ -92,6 +93,7 @@ class CompiledBody:
     is_free: bool = False
     free_damping: float = 0.0
     free_armature: float = 0.0
+    free_stiffness: float = 0.0
     free_friction: float = 0.0
     free_compliance: Compliance | None = None
     is_mocap: bool = False
