@@ -8,9 +8,9 @@ _CLASSES = """<default><position kp="20"/><default class="geared"><general force
 </default></default>"""
 
 
-def arm(actuators: str, before: str = "") -> str:
+def arm(actuators: str, before: str = "", *, bounded: bool = False) -> str:
     head = '<option timestep=".0005"><flag contact="disable" limit="disable"/></option>'
-    body = _ARM if actuators.count('"j"') < 2 else _ARM.replace('actuatorfrcrange="-8 8"', "")
+    body = _ARM if bounded or actuators.count('"j"') < 2 else _ARM.replace('actuatorfrcrange="-8 8"', "")
     return f"<mujoco>{head}{before}<worldbody>{body}</worldbody><actuator>{actuators}</actuator></mujoco>"
 
 
@@ -35,6 +35,17 @@ ACTUATED: dict[str, str] = {
     "general with an integrator": arm('<general jointinparent="k" dyntype="integrator" gainprm="7"/>'),
     "defaults of other shortcuts": arm(
         '<general joint="j"/><motor joint="k" class="geared"/><velocity joint="j"/>', _CLASSES
+    ),
+    "sum of motors": arm('<motor joint="j" gear="90"/><motor joint="j" gear="-3"/>', bounded=True),
+    "sum of servos": arm(
+        '<position joint="j" kp="60" kv="2"/><velocity joint="j" kv="5" forcerange="-1 1"/>'
+        '<motor joint="k"/>',
+        bounded=True,
+    ),
+    "sum of servos that is within": arm(
+        '<position joint="j" kp=".9" kv="1" gear="-2"/><velocity joint="j" kv=".5"/>'
+        '<intvelocity joint="j" kp="3" actrange="-1 1"/>',
+        bounded=True,
     ),
     "switched off": arm(
         '<motor joint="k" group="2"/><motor joint="j"/>', '<option actuatorgroupdisable="2"/>'

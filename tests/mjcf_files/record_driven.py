@@ -21,6 +21,7 @@ def actuated(text: str) -> dict:
     d.qpos[:], d.qvel[:], d.ctrl[:], d.act[:] = q, v, control, activation
     mujoco.mj_forward(m, d)
     result = {"joints": names(m), "q": q.tolist(), "v": v.tolist(), "control": control.tolist()}
+    result["own"] = d.actuator_force.tolist()
     result |= {"activation": activation.tolist(), "force": d.qfrc_actuator.tolist()}
     result["with_activation"] = [m.actuator(i).name for i in range(m.nu) if m.actuator_dyntype[i]]
     for _ in range(400):

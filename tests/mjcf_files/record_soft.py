@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
-from soft_cases import MOVED, STEPS, WEIGHED
+from soft_cases import MOVED, PAIRS, STEPS, WEIGHED
 
 
 def weighed(text: str) -> dict:
@@ -29,5 +29,5 @@ def moved(text: str) -> list:
 
 
 if __name__ == "__main__":
-    answers = {"weights": weighed(WEIGHED), **{name: moved(text) for name, text in MOVED.items()}}
+    answers = {"weights": weighed(WEIGHED), **{name: moved(text) for name, text in (MOVED | PAIRS).items()}}
     Path(__file__).with_name("soft_answers.json").write_text(json.dumps(answers, indent=0) + "\n")

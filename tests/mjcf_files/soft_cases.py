@@ -26,6 +26,16 @@ def _ball(plane: str, ball: str, option: str = "") -> str:
  pos="0 0 .1999"><freejoint/><geom size=".2" {ball}/></body></worldbody></mujoco>"""
 
 
+def pair_of(stated: str, geom: str = "", option: str = "") -> str:
+    """A ball that a sloping force rolls on a plane whose contacts only a pair describes."""
+    return f"""<mujoco><option timestep=".001" gravity="2 0 -9.81" {option}/><worldbody><geom name="p"
+ type="plane" size="5 5 .1" friction=".7" {geom}/><body name="f" pos="0 0 .1999">
+<freejoint/><geom name="s" size=".2"
+ solref=".07 .4" priority="1" {geom}/></body></worldbody><contact><pair
+ geom1="p" geom2="s" {stated}/></contact>
+<default><pair solimp=".8 .9 .002"/></default></mujoco>"""
+
+
 def _arm(geom: str, option: str = "") -> str:
     ball = f'<geom size=".05" pos=".3 0 0" {geom}'
     return f"""<mujoco>{option}<worldbody><geom type="plane" size="5 5 .1" {geom}/><body name="a"
@@ -104,3 +114,15 @@ MOVED: dict[str, str] = {
     "hull on a hull": _hull('type="mesh" mesh="m"'),
 }
 STEPS = (40, 120, 400)
+PAIRS: dict[str, str] = {
+    "pair": pair_of(""),
+    "pair without bits": pair_of('solref=".05 .8"', 'contype="0" conaffinity="0" condim="1"'),
+    "pair with a margin": pair_of(
+        'margin=".03" gap=".02" solref=".03 .6" solimp=".5 .8 .02"', 'margin=".05"'
+    ),
+    "pair without friction": pair_of('condim="1"'),
+    "pair of friction": pair_of('friction=".12 .12"'),
+    "pair that spins": pair_of('condim="4" friction="1 1 .1"'),
+    "pair of soft friction": pair_of('solreffriction=".2 1"', option='cone="elliptic"'),
+    "pair of soft friction on pyramids": pair_of('solreffriction=".2 1"'),
+}

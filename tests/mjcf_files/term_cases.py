@@ -42,6 +42,10 @@ MOVED: dict[str, str] = {
     "free with damping": _free('damping="3"'),
     "free with armature": _free('armature="5"', gravity="1 2 -3"),
     "free with both by a default": _free("", '<joint damping="2" armature=".7"/>'),
+    "free with a spring": _free('stiffness="60" armature=".5"'),
+    "free with a spring and a damper": _free('stiffness="40" damping="5"', gravity="1 2 -3"),
+    "free with a spring off": _free('stiffness="90"', option='<flag spring="disable"/>'),
+    "free with a damper off": _free('damping="50"', option='<flag damper="disable"/>'),
     "free with friction": _free('frictionloss="3"', damping=""),
     "free with friction that holds": _free('frictionloss="900" solreffriction=".1 1"', damping=""),
     "free with soft friction": _free(

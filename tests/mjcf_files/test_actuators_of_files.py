@@ -7,7 +7,8 @@ import pytest
 from driven_cases import ACTUATED, arm
 from numpy.testing import assert_allclose
 
-from carom import World
+from carom import World, Worlds
+from carom.description.actuator import Motor
 from carom.errors import DescriptionError
 
 ANSWERS = json.loads(Path(__file__).with_name("driven_answers.json").read_text())
@@ -42,7 +43,9 @@ def free_joints(scene):
 def test_forces_are_those_of_mujoco(tmp_path, name):
     answer = ANSWERS[name]
     with World() as world:
-        scene = load(world, tmp_path, ACTUATED[name])
+        sensors = "".join(f'<jointactuatorfrc name="{it}" joint="{it}"/>' for it in answer["joints"])
+        text = ACTUATED[name].replace("</mujoco>", f"<sensor>{sensors}</sensor></mujoco>")
+        scene = load(world, tmp_path, text)
         assert not scene.ignored.that_matter or "flag" in str(scene.ignored)
         free_joints(scene)
         start(scene, answer)
@@ -50,10 +53,10 @@ def test_forces_are_those_of_mujoco(tmp_path, name):
         world.parameters.time_step = 1e-9
         world.apply_parameters()
         world.step()
-        forces = dict.fromkeys(answer["joints"], 0.0)
-        for actuator in scene.actuators.values():
-            forces[actuator.joint.name] += actuator.force * actuator.gear
-        assert_allclose([forces[joint] for joint in answer["joints"]], answer["force"], rtol=1e-6, atol=1e-6)
+        forces = [scene.sensors[joint].read()[0] for joint in answer["joints"]]
+        assert_allclose(forces, answer["force"], rtol=1e-6, atol=1e-6)
+        own = [actuator.force for actuator in scene.actuators.values()]
+        assert_allclose(own, answer["own"], rtol=1e-6, atol=1e-6)
 
 
 @pytest.mark.parametrize("name", [name for name in ACTUATED if name != "copies"])
@@ -70,6 +73,34 @@ def test_motion_is_that_of_mujoco(tmp_path, name):
         assert_allclose(ends, answer["end"], atol=1e-3)
         moving = [it.activation for it in scene.actuators.values() if it.spec.dynamics]
         assert_allclose(moving, answer["end_activation"], rtol=1e-6, atol=1e-6)
+
+
+def test_worlds_copies_and_saved_worlds_bound_the_sum_of_forces(tmp_path):
+    text = arm('<motor joint="j" gear="9"/><position joint="j" kp="500"/>', bounded=True)
+    with World() as world, World() as other:
+        body = load(world, tmp_path, text)["a"]
+        world.save(tmp_path / "saved")
+        saved = other.load(tmp_path / "saved")["a"]
+        worlds = Worlds(world, 2)
+        for each in (body.actuators, saved.actuators, worlds.bodies["a"]):
+            each.controls = [1.0, 0.5]
+        worlds.bodies["a"].change_actuator(0, where=[1], joint_lower=-1.0, joint_upper=1.0)
+        for each in (world, other, worlds):
+            each.step(20)
+        position = body.joints["j"].position
+        assert saved.joints["j"].position == position
+        found = worlds.bodies["a"].joint_positions[:, body.joints["j"].index]
+        assert_allclose(found[0], position, rtol=0.0, atol=1e-12)
+        assert abs(found[1] - position) > 1e-3
+        before = [it.force for it in body.actuators]
+        assert before[0] == 1.0
+        assert sum(it.force * it.gear for it in body.actuators) > 8.0
+        with pytest.raises(NotImplementedError, match="bound of their sum"):
+            world.linearize()
+        with pytest.raises(DescriptionError, match="joint_range must be that of"):
+            body.add_actuator("third", Motor("j"))
+        assert len(body.actuators) == 2
+        world.step()
 
 
 def test_actuators_have_the_names_and_the_order_of_the_file(tmp_path):

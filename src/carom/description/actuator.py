@@ -74,6 +74,8 @@ class ActuatorSpec:
         slider_site: Name of a site along whose z axis a slider moves, which a rod connects to `site`: the
             actuator then pushes the slider, and its length is `gear` times the position of the slider.
         rod: Length of that rod [m].
+        joint_range: Bounds of what all actuators of its joint together exert on the joint [N or N m], the
+            same for each of them; `force_range` bounds its own force before.
         muscle: How its force depends on length and velocity if it is a muscle; then gain and bias have no
             meaning.
     """
@@ -95,10 +97,11 @@ class ActuatorSpec:
     muscle: MuscleSpec | None = None
     slider_site: str = ""
     rod: float = 0.0
+    joint_range: Range = UNBOUNDED
 
     def check(self) -> None:
         """Raise `DescriptionError` unless the numbers have a meaning."""
-        for name in ("control_range", "force_range", "activation_range"):
+        for name in ("control_range", "force_range", "activation_range", "joint_range"):
             lower, upper = getattr(self, name)
             if not lower <= upper:
                 raise DescriptionError(f"actuator {self.name!r}: {name} {lower:g} to {upper:g} is empty")

@@ -69,3 +69,21 @@ class ContactCompliance:
     def mixing(self) -> tuple[float, float, float]:
         """Weight, margin, pyramids."""
         return (self.weight, self.margin, self.pyramids)
+
+
+@dataclass(frozen=True, slots=True)
+class PairContact:
+    """How the contacts of two links are, whatever each of them says, as `<pair>` of MJCF files gives it.
+
+    Attributes:
+        compliance: Spring, damper and impedance; of inverse masses those of the links count.
+        friction: Coefficients of lateral, rolling [m] and spinning friction [m].
+        margin: Distance at which contacts begin to push [m].
+        lateral_reference: Time constant and damping ratio of lateral friction, as in `Compliance`; both 0 for
+            those of the normal.
+    """
+
+    compliance: Compliance = Compliance()
+    friction: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    margin: float = 0.0
+    lateral_reference: tuple[float, float] = (0.0, 0.0)

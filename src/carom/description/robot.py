@@ -30,6 +30,8 @@ class Robot:
         base_damping: Viscous damping of the root if it is free, the same along and about all axes; of the
             motion of its inertial frame [N s/m, N m s/rad].
         base_armature: Inertia that is added there, likewise [kg, kg m²].
+        base_stiffness: Of a spring from there to the pose at which it is loaded, along and about all axes
+            [N/m, N m/rad].
         is_mocap: Its root is moved by users only, as a `mocap` body of MJCF.
     """
 
@@ -45,3 +47,4 @@ class Robot:
     is_mocap: bool = False
     base_damping: float = 0.0
     base_armature: float = 0.0
+    base_stiffness: float = 0.0

@@ -55,7 +55,7 @@ class EngineSettings:
             self._gravity = parameters.gravity
         shapes, used = contact_arrays.shapes, arrays.used
         of_constraints = used["constraint"], contact_arrays.user_count
-        of_shapes = (shapes.shape_count, shapes.filter_count, shapes.looks_ahead)
+        of_shapes = (shapes.shape_count, shapes.filter_count, shapes.filters.has_contacts, shapes.looks_ahead)
         given = (*_PARAMETERS(parameters), used["tree"], used["link"], *of_constraints, *of_shapes)
         if given == self._given:
             return
@@ -98,6 +98,7 @@ def _values(
         "cone_friction": _friction_bound(parameters),
         "shape_count": contact_arrays.shapes.shape_count,
         "filter_count": contact_arrays.shapes.filter_count,
+        "has_pair_contacts": int(contact_arrays.shapes.filters.has_contacts),
         "looks_ahead": int(contact_arrays.shapes.looks_ahead),
         "filter_both": int(parameters.collision_filter_mode == 0),
     }

@@ -137,11 +137,20 @@ class Shapes:
     link_reference: Vector4Rows
     link_impedance: Vector4Rows
     link_mixing: Vector3Rows  # weight among two links, margin [m], and share of pyramids
+    link_pair_twists: Ints  # 1: a pair with the link may have rolling or spinning friction of its own
+    link_pair_margin: Reals  # the greatest margin in `filter_impedance` of pairs with the link [m]
 
     # Pairs of links whose collisions users have switched on or off, sorted by both link rows.
     filter_link_a: Ints
     filter_link_b: Ints
     filter_enabled: Ints
+    # Contacts of a pair that are as it states them: as `link_reference`; bounds of the impedance, width and
+    # margin, 0 for contacts as both links state them; lateral, rolling and spinning friction; time constant
+    # and damping ratio of lateral friction, both 0 for those of the normal.
+    filter_reference: Vectors4
+    filter_impedance: Vectors4
+    filter_friction: Vectors3
+    filter_lateral: Vectors4
 
 
 @struct
@@ -394,7 +403,7 @@ class ContactTerms:
     distance: real
     friction: Vector3  # coefficients: lateral, rolling, spinning
     softness: real
-    erp: real
+    erp: real  # of a contact that yields as MuJoCo's, the damping of lateral friction [1/s]
     start: Vector3  # initial impulses
     ignored: Int32  # 1: its distance is too large for it to be solved
     from_forces: real  # change of its normal velocity by forces in this substep, if it counts

@@ -59,6 +59,7 @@ class Settings:
     constraint_count: Int32
     shape_count: Int32
     filter_count: Int32  # entries of `Shapes.filter_link_a`
+    has_pair_contacts: Int32  # 1: some pair of links has contacts of its own, see `Shapes.filter_impedance`
     looks_ahead: Int32  # 1: some shape has a swept sphere, see `kernels.contact.bounds`
     filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
 
@@ -134,6 +135,10 @@ class ActuatorModel:
 
     dynamics: Int32  # see `codes.ActivationDynamics`
     is_muscle: Int32  # 1: its force is that of a muscle, not affine
+    # Of actuators of one joint whose sum has bounds: 1 if one before it has the row of all, and how many rows
+    # after it the next one is, 0 for none.
+    follows: Int32
+    to_next: Int32
 
 
 @struct
@@ -180,6 +185,8 @@ class Model:
     actuator_control_upper: RealRows
     actuator_force_lower: RealRows
     actuator_force_upper: RealRows
+    actuator_joint_lower: RealRows  # of the force of all actuators of its joint on it, see `ActuatorModel`
+    actuator_joint_upper: RealRows
     actuator_activation_lower: RealRows
     actuator_activation_upper: RealRows
     actuator_time_constant: RealRows  # of a filter, or of a muscle's activation [s]

@@ -40,6 +40,11 @@ class FreeMotion:
         self._ask = ask
         self._spatial: list[Spatial] | None = None
         count, h, dofs = len(space), taken.time_step, space.dofs
+        for body in space.bodies:
+            if taken.model["dof_stiffness"][body.rows.first["dof"]] != 0.0:
+                raise NotImplementedError(
+                    f"body {body.name!r} has a spring at its free base, which has no exact derivatives"
+                )
         self._stiffness, self._damping = (
             taken.model["dof_stiffness"][dofs],
             taken.model["dof_implicit_damping"][dofs],

@@ -198,10 +198,18 @@ class JointRows:
             raise NotImplementedError(f"{name} is a muscle, which has no exact derivatives")
         gear = float(model["actuator_gear"][actuator])
         force = float(taken.state["actuator_force"][actuator])
+        if model["actuator_to_next"][actuator]:
+            raise NotImplementedError(
+                f"{name} and others of its joint have a bound of their sum; that has no exact derivatives"
+            )
+        bounds = sorted(
+            float(model[f"actuator_joint_{side}"][actuator]) / gear for side in ("lower", "upper")
+        )
+        lower = max(float(model["actuator_force_lower"][actuator]), bounds[0])
+        upper = min(float(model["actuator_force_upper"][actuator]), bounds[1])
+        force = min(max(force, lower), upper)
         impulse = h * gear * force
         self._left[dof] -= impulse
-        lower = float(model["actuator_force_lower"][actuator])
-        upper = float(model["actuator_force_upper"][actuator])
         status = status_of(force, lower, upper)
         if status != HOLDS:
             rows.add_of_dof(name, status, dof, impulse, 0.0, 1.0)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.description.actuator import ActuatorSpec
+from carom.errors import DescriptionError
 
 if TYPE_CHECKING:
     from carom.model.builder import TreeRows, WorldArrays
 
 _AXIS = "actuator"
+_BOUNDS = ("control", "force", "activation", "joint")
+_UNBOUNDED = (-inf, inf)
 
 
 def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
@@ -35,10 +39,34 @@ def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
             muscle.lengthening,
         )
         model["actuator_muscle_time"][:, row] = (muscle.fall_time, muscle.smoothing, 0.0)
-    for name in ("control", "force", "activation"):
+    for name in _BOUNDS:
         lower, upper = getattr(spec, f"{name}_range")
         model[f"actuator_{name}_lower"][:, row] = lower
         model[f"actuator_{name}_upper"][:, row] = upper
+
+
+def check_joint_ranges(specs: Iterable[ActuatorSpec]) -> None:
+    """Raise `DescriptionError` if two actuators of a joint have different bounds of their sum."""
+    first: dict[str, ActuatorSpec] = {}
+    for spec in specs:
+        other = first.setdefault(spec.joint, spec)
+        if spec.joint and other.joint_range != spec.joint_range:
+            raise DescriptionError(
+                f"actuator {spec.name!r}: joint_range must be that of {other.name!r}, "
+                f"which drives joint {spec.joint!r} as well"
+            )
+
+
+def join_actuators(model: dict[str, Any], first: int, specs: Sequence[ActuatorSpec]) -> None:
+    """Give the actuators of each joint with bounds of their sum one row; they are those of a body."""
+    last: dict[str, int] = {}
+    for number, spec in enumerate(specs):
+        model["actuator_follows"][first + number] = model["actuator_to_next"][first + number] = 0
+        before = last.get(spec.joint, -1)
+        last[spec.joint] = number
+        if spec.joint and before >= 0 and spec.joint_range != _UNBOUNDED:
+            model["actuator_follows"][first + number] = 1
+            model["actuator_to_next"][first + before] = number - before
 
 
 def read_actuator(model: dict[str, Any], row: int, world: int, spec: ActuatorSpec) -> ActuatorSpec:
@@ -54,10 +82,7 @@ def read_actuator(model: dict[str, Any], row: int, world: int, spec: ActuatorSpe
         bias=tuple(value("bias")),
         gear=value("gear"),
         time_constant=value("time_constant"),
-        **{
-            f"{name}_range": (value(f"{name}_lower"), value(f"{name}_upper"))
-            for name in ("control", "force", "activation")
-        },
+        **{f"{name}_range": (value(f"{name}_lower"), value(f"{name}_upper")) for name in _BOUNDS},
     )
 
 

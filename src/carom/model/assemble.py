@@ -47,7 +47,7 @@ def assemble(
     if as_written:
         flags |= LoadFlags.USE_INERTIA_FROM_FILE
         fixed_base = fixed_base or has_massless_base(root)
-    has_terms = robot.base_damping != 0.0 or robot.base_armature != 0.0
+    has_terms = any((robot.base_damping, robot.base_armature, robot.base_stiffness))
     if flags & LoadFlags.MERGE_FIXED_LINKS and not has_terms:
         (merge_rigidly if as_written else merge_fixed_links)(root, fixed_base=fixed_base)
     order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
@@ -55,6 +55,7 @@ def assemble(
     base = _link_spec(root.link, flags, compound_margin, read_inertia, is_massless=fixed_base)
     if as_written:
         base.damping, base.armature = robot.base_damping, robot.base_armature
+        base.stiffness = robot.base_stiffness
     index_of = {id(node): index for index, node in enumerate(order, start=BASE)}
     links = [_link_spec(node.link, flags, compound_margin, read_inertia) for node in order[1:]]
     for node in order:

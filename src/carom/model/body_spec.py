@@ -135,7 +135,8 @@ class BodySpec(Reusable):
 
     Attributes:
         name: Name of the robot.
-        base: The root link; of its joint fields damping and armature count, if it is free and not `is_held`.
+        base: The root link; of its joint fields damping, armature and stiffness count, if it is free
+            and not `is_held`.
         links: Every other link, parents before children, in the order users index joints.
         fixed_base: The base does not move (mass 0).
         flags: The loading flags it was made with.
@@ -149,6 +150,7 @@ class BodySpec(Reusable):
         sites: Named frames on its links.
         sensors: What it measures.
         keyframes: Its states by name.
+        base_rest: Position and orientation of its base at which a spring there is at rest; empty without one.
         is_mocap: Its base is fixed, and moved by users only: also with the mouse in the viewer.
     """
 
@@ -167,6 +169,7 @@ class BodySpec(Reusable):
     sensors: tuple[SensorSpec, ...] = ()
     keyframes: tuple[BodyKeyframe, ...] = ()
     is_mocap: bool = False
+    base_rest: tuple[float, ...] = ()
 
     @property
     def damping_field(self) -> str:

@@ -28,7 +28,7 @@ from carom.layouts.codes import (
 )
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
-from carom.model.actuator_rows import write_actuator
+from carom.model.actuator_rows import check_joint_ranges, join_actuators, write_actuator
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
@@ -64,8 +64,9 @@ _TERMS = ("dof_implicit_damping", "dof_armature", "dof_stiffness")
 
 
 def has_base_terms(spec: BodySpec) -> bool:
-    """Whether the base of a body has armature or implicit damping."""
-    return not spec.is_held and (spec.base.armature != 0.0 or spec.base.damping != 0.0)
+    """Whether the base of a body has armature, implicit damping or a spring."""
+    base = spec.base
+    return not spec.is_held and (base.armature != 0.0 or base.damping != 0.0 or base.stiffness != 0.0)
 
 
 def has_joint_terms(spec: BodySpec) -> bool:
@@ -169,12 +170,14 @@ class WorldArrays:
             "actuator": len(spec.actuators),
             "sensor": sum(sensor.memory for sensor in spec.sensors),
         }
+        check_joint_ranges(spec.actuators)
         self.reserve(**count)
         rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
         self._write_tree(rows, spec)
         self._write_links(rows, spec, codes)
         for row, actuator in enumerate(spec.actuators, start=rows.first["actuator"]):
             write_actuator(self.model.numpy, row, actuator)
+        join_actuators(self.model.numpy, rows.first["actuator"], spec.actuators)
         self.set_base_freedom(rows, free=not spec.fixed_base)
         self._write_start(rows, base_pose)
         if spec.soft is not None:
@@ -234,6 +237,9 @@ class WorldArrays:
             of_base = slice(first_dof, first_dof + BASE_VELOCITIES)
             model["dof_implicit_damping"][:, of_base] = spec.base.damping
             model["dof_armature"][:, of_base] = spec.base.armature
+            model["dof_stiffness"][:, of_base] = spec.base.stiffness
+        rest = slice(rows.first["position"], rows.first["position"] + BASE_POSITIONS)
+        model["position_spring"][:, rest] = spec.base_rest or 0.0
         model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
         model["link_gravity_compensation"][:, first_link] = spec.base.gravity_compensation

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.sensor import SensorObject
 from carom.model.body_spec import BASE
+from carom.scene.joint_terms.implicit import rest_base_spring
 from carom.scene.sensors.changes import put_sensor
 from carom.world.file_keyframes import give_keyframes
 from carom.world.file_muscles import find_forces
@@ -21,13 +22,19 @@ if TYPE_CHECKING:
 def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
     """Put joints where the file has them, and let links collide or not as in MuJoCo."""
     for body in bodies:
+        if body.spec.base.stiffness:
+            rest_base_spring(body)
         for index, link in enumerate(body.spec.links):
             start = model.starts.get(link.joint_name)
             if start is not None:
                 body.set_joint_state(index, [start], None)
-    for pairs, enabled in ((model.excluded, False), (model.paired, True)):
-        for a, b in sorted(set(_rows_of(bodies, pairs))):
-            bodies[0].world.contact_arrays.shapes.filters.set(a, b, enabled=enabled)
+    if not bodies:
+        return
+    filters = bodies[0].world.contact_arrays.shapes.filters
+    for a, b in sorted({rows for rows, _ in _rows_of(bodies, model.excluded)}):
+        filters.set(a, b, enabled=False)
+    for (a, b), names in _rows_of(bodies, list(model.paired)):
+        filters.set(a, b, enabled=True, contact=model.paired[names])
 
 
 def describe(scene: Scene, model: CompiledModel) -> None:
@@ -79,8 +86,10 @@ def _give_sensors(
         put_sensor(body, spec)
 
 
-def _rows_of(bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]) -> Iterator[tuple[int, int]]:
-    """Rows of pairs of links with shapes, by the names of bodies."""
+def _rows_of(
+    bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]
+) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
+    """Rows of pairs of links with shapes, in order, by the names of bodies, and these names."""
     rows: dict[str, int] = {}
     for body in bodies:
         for index in range(BASE, len(body.spec.links)):
@@ -90,4 +99,4 @@ def _rows_of(bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]) -> Iterat
     for first, second in pairs:
         if first in rows and second in rows and first != second:
             a, b = rows[first], rows[second]
-            yield (min(a, b), max(a, b))
+            yield (min(a, b), max(a, b)), (first, second)

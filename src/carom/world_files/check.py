@@ -26,6 +26,7 @@ _BOUNDS = frozenset(
         "control_range",
         "force_range",
         "activation_range",
+        "joint_range",
         "range",
     )
 )

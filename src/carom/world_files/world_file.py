@@ -13,6 +13,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
+from carom.description.compliance import PairContact
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.description.tendon import WORLD, PathPart, TendonSpec
 from carom.engine.parameters import EngineParameters
@@ -168,6 +169,7 @@ class SavedFilter:
     body_b: int
     link_b: int
     enabled: bool
+    contact: PairContact | None = None
 
 
 @dataclass(slots=True)
@@ -306,8 +308,8 @@ def _saved(world: World) -> SavedWorld:
         ties=[_saved_tie(tie) for tie in world.user_constraints.all],
         next_tie=world.user_constraints.next_id,
         filters=[
-            SavedFilter(*owners[a], *owners[b], enabled)
-            for a, b, enabled in world.contact_arrays.shapes.filters.all
+            SavedFilter(*owners[a], *owners[b], enabled, contact)
+            for a, b, enabled, contact in world.contact_arrays.shapes.filters.all
         ],
         user_data=[datum for body in bodies for datum in world.user_data.of_body(body.id)],
         anchors=[
@@ -547,4 +549,4 @@ def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> No
         for body, link in ((bodies[it.body_a], it.link_a), (bodies[it.body_b], it.link_b)):
             _check_link(body, link)
             rows.append(body.first_link + 1 + link)
-        world.contact_arrays.shapes.filters.set(*rows, enabled=it.enabled)
+        world.contact_arrays.shapes.filters.set(*rows, enabled=it.enabled, contact=it.contact)

@@ -20,6 +20,8 @@ _FIELDS = {
     "control_upper": "actuator_control_upper",
     "force_lower": "actuator_force_lower",
     "force_upper": "actuator_force_upper",
+    "joint_lower": "actuator_joint_lower",
+    "joint_upper": "actuator_joint_upper",
     "activation_lower": "actuator_activation_lower",
     "activation_upper": "actuator_activation_upper",
 }
@@ -65,7 +67,8 @@ class ActuatorBatch(Batch):
             where: Which worlds: a mask (count,) or their indices; None for all.
             **changes: One value for all, or one for each of the n worlds chosen: `gear`, `gain` (n, 3),
                 `bias` (n, 3), `time_constant`, `control_lower`, `control_upper`, `force_lower`,
-                `force_upper`, `activation_lower`, `activation_upper`; see `ActuatorSpec`.
+                `force_upper`, `activation_lower`, `activation_upper`, `joint_lower`, `joint_upper`; see
+                `ActuatorSpec`. Of several actuators of a joint, the last two are those of the first one.
 
         Raises:
             ValueError: A gear is 0, a time constant is not greater than 0, or there are not as many values

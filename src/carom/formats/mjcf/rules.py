@@ -99,7 +99,7 @@ _READ = {
     "weld": f"anchor relpose {_EQUALITY}",
     "equality": "active class solimp solref",
     **dict.fromkeys(_TENDONS, _TENDON),
-    "pair": "class geom1 geom2 name",
+    "pair": "class condim friction gap geom1 geom2 margin name solimp solref solreffriction",
     "key": "act ctrl name qpos qvel time",
     "default": "class",
 }
@@ -125,7 +125,7 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
         for tag in _TENDONS
     ],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
-    ("pair", "adhesion condim friction gap margin solimp solref solreffriction", _SOFT, _YET),
+    ("pair", "adhesion", "its geoms do not stick to each other", _YET),
     ("weld", "torquescale", _RIGID, _YET),
     ("site", "mesh", "touch sensors would feel another volume", _YET),
 )

@@ -28,8 +28,13 @@ def is_part_of_compound(shapes: Shapes, shape: Int32) -> bool:
 @func
 def stated_margin(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
     """Distance at which contacts of two shapes begin to push, if they yield [m]."""
-    of_a = shapes.link_mixing[world, shapes.shape_link[a]][1]
-    return of_a + shapes.link_mixing[world, shapes.shape_link[b]][1]
+    link_a, link_b = shapes.shape_link[a], shapes.shape_link[b]
+    own, other = shapes.link_mixing[world, link_a], shapes.link_mixing[world, link_b]
+    of_both = own[1] + other[1]
+    # Only links with a weight may be in such pairs.
+    if own[0] <= 0.0 or other[0] <= 0.0:
+        return of_both
+    return maximum(of_both, minimum(shapes.link_pair_margin[link_a], shapes.link_pair_margin[link_b]))
 
 
 @func

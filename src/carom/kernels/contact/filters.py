@@ -43,8 +43,8 @@ def touches_itself(shapes: Shapes, model: Model, a: Int32, b: Int32) -> bool:
 
 
 @func
-def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
-    """The user's filter for two links: 1 collide, 0 do not collide, -1 not set."""
+def pair_row(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
+    """The row of two links among the pairs with a rule of their own, or -1."""
     low, high = wp.min(a, b), wp.max(a, b)
     first = Int32(0)
     last = settings.filter_count
@@ -53,12 +53,32 @@ def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32
         link_a = shapes.filter_link_a[middle]
         link_b = shapes.filter_link_b[middle]
         if link_a == low and link_b == high:
-            return shapes.filter_enabled[middle]
+            return middle
         if link_a < low or (link_a == low and link_b < high):
             first = middle + 1
         else:
             last = middle
     return -1
+
+
+@func
+def pair_filter(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
+    """The user's filter for two links: 1 collide, 0 do not collide, -1 not set."""
+    row = pair_row(shapes, settings, a, b)
+    if row < 0:
+        return Int32(-1)
+    return shapes.filter_enabled[row]
+
+
+@func
+def pair_with_contacts(shapes: Shapes, settings: Settings, a: Int32, b: Int32) -> Int32:
+    """The row of two links whose contacts are as a pair states them, not as both links do, or -1."""
+    if settings.has_pair_contacts == 0:
+        return Int32(-1)
+    row = pair_row(shapes, settings, a, b)
+    if row >= 0 and shapes.filter_impedance[row][1] > 0.0:
+        return row
+    return Int32(-1)
 
 
 @func

@@ -15,6 +15,9 @@ from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE, UNFILTERED
 
+# Bounds of sums beyond these are none.
+_LEAST, _GREATEST = real(-1.0e30), real(1.0e30)
+
 
 @func
 def bounded_control(model: Model, state: State, world: Int32, actuator: Int32) -> real:
@@ -48,6 +51,62 @@ def actuator_law(model: Model, state: State, world: Int32, actuator: Int32, leng
 
 
 @func
+def within_own_range(model: Model, world: Int32, actuator: Int32, force: real) -> real:
+    """A force of an actuator within its own range."""
+    lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
+    return unless_nan(within_bounds(force, lower, upper), force)
+
+
+@func
+def joint_law(model: Model, state: State, world: Int32, first: Int32, position: real, rate: real, h: real):
+    """Force of all actuators of a joint on it at velocity 0, and by how much it falls with its velocity.
+
+    `first` is the first of them. One whose force is out of its range now has the constant force at the bound.
+    """
+    total, yielding = real(0.0), real(0.0)
+    actuator = first + 0
+    while actuator >= 0:
+        gear = model.actuator_gear[world, actuator]
+        speed = gear * rate
+        force, stiffness, damping = actuator_law(model, state, world, actuator, gear * position, speed)
+        now = force - damping * speed
+        bounded = within_own_range(model, world, actuator, now)
+        if bounded == now:
+            total += gear * force
+            yielding += gear * gear * (damping + h * stiffness)
+        else:
+            total += gear * bounded
+        step = model.actuator[actuator].to_next + 0
+        actuator = wp.where(step > 0, actuator + step, Int32(-1))
+    return total, yielding
+
+
+@func
+def keep_forces_of_joint(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, row: Int32, first: Int32
+):
+    """Store the forces of all actuators of a joint that has a bound of their sum, which does not bound them.
+
+    Those of servos are the ones at the end of the substep.
+    """
+    h = settings.time_step
+    link = model.constraint[scratch.row[world, row].constraint].link
+    before = state.dof_velocity[world, model.link[link].first_dof]
+    after = before + scratch.entry_delta_velocity[world, scratch.row[world, row].entry]
+    position = state.position[world, model.link[link].first_position]
+    actuator = first + 0
+    while actuator >= 0:
+        gear = model.actuator_gear[world, actuator]
+        force, stiffness, damping = actuator_law(
+            model, state, world, actuator, gear * position, gear * before
+        )
+        force -= (damping + h * stiffness) * gear * after
+        state.actuator_force[world, actuator] = within_own_range(model, world, actuator, force)
+        step = model.actuator[actuator].to_next + 0
+        actuator = wp.where(step > 0, actuator + step, Int32(-1))
+
+
+@func
 def actuator_row(
     model: Model,
     settings: Settings,
@@ -57,8 +116,13 @@ def actuator_row(
     constraint: Int32,
     row: Int32,
 ) -> Int32:
-    """Add the row of an actuator of a revolute or prismatic joint; returns the next free row."""
+    """Add the row of an actuator of a revolute or prismatic joint; returns the next free row.
+
+    Several of one joint whose sum has bounds have one row, that of the first.
+    """
     actuator = model.constraint[constraint].actuator
+    if model.actuator[actuator].follows != 0:
+        return row
     link = model.constraint[constraint].link
     tree = model.constraint[constraint].tree
     dof = model.link[link].first_dof
@@ -79,14 +143,29 @@ def actuator_row(
     first, second = h * gear * lower, h * gear * upper
     if gear < 0.0:
         first, second = h * gear * upper, h * gear * lower
+    impulse = h * gear * force
+    least, greatest = model.actuator_joint_lower[world, actuator], model.actuator_joint_upper[world, actuator]
+    if model.actuator[actuator].to_next > 0:
+        whole, falling = joint_law(
+            model, state, world, actuator, state.position[world, model.link[link].first_position], rate, h
+        )
+        impulse = h * whole
+        yielding = h * falling
+        first, second = h * least, h * greatest
+    else:
+        # Where both bounds do not overlap, that of the joint comes last.
+        first, second = (
+            within_bounds(first, h * least, h * greatest),
+            within_bounds(second, h * least, h * greatest),
+        )
     # Rows of one dof share the response to an impulse, so all have the same effective mass.
     effective_mass = 1.0 / inverse_mass
     if yielding == 0.0:
-        impulse = unless_nan(within_bounds(h * gear * force, first, second), force)
+        impulse = unless_nan(within_bounds(impulse, first, second), force)
         change = impulse * inverse_mass
         return add_row(model, scratch, world, constraint, row, dof, change, effective_mass, impulse, impulse)
     softness = 1.0 / yielding
-    change = h * gear * force * softness - rate
+    change = impulse * softness - rate
     share = inverse_mass / (inverse_mass + softness)
     scratch.row_share[world, row] = share
     scratch.row_softness[world, row] = share * softness
@@ -101,6 +180,11 @@ def keep_actuator_force(
 ):
     """Store the force of the actuator of a row."""
     actuator = model.constraint[scratch.row[world, row].constraint].actuator
+    if model.actuator_joint_lower[world, actuator] > _LEAST or (
+        model.actuator_joint_upper[world, actuator] < _GREATEST
+    ):
+        keep_forces_of_joint(model, settings, state, scratch, world, row, actuator)
+        return
     gear = model.actuator_gear[world, actuator]
     state.actuator_force[world, actuator] = scratch.row[world, row].impulse / (settings.time_step * gear)
 

@@ -7,6 +7,7 @@ is the sum of those of both links.
 
 import warp as wp
 
+from carom.kernels.contact.filters import pair_with_contacts
 from carom.kernels.dynamics.yielding import impedance_at, spring_and_damper
 from carom.kernels.maths.min_max import maximum
 from carom.kernels.structs import ContactTerms, Settings, Shapes
@@ -90,7 +91,7 @@ def lateral_softness(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32
 def let_contact_yield(
     settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32
 ) -> ContactTerms:
-    """The terms of a contact with what two links say about how it yields.
+    """The terms of a contact with what two links, or their pair, say about how it yields.
 
     One that is farther apart than its margin is no contact.
     """
@@ -100,6 +101,16 @@ def let_contact_yield(
     impedance = own * share + other * (1.0 - share)
     inverse_mass = own[3] + other[3]
     margin = shapes.link_mixing[world, a][1] + shapes.link_mixing[world, b][1]
+    lateral = reference
+    row = pair_with_contacts(shapes, settings, a, b)
+    if row >= 0:
+        terms.friction = shapes.filter_friction[row]
+        reference = shapes.filter_reference[row]
+        impedance = shapes.filter_impedance[row]
+        margin = impedance[3]
+        lateral = shapes.filter_lateral[row]
+        if lateral[0] == 0.0 and lateral[1] == 0.0:
+            lateral = reference
     distance = terms.distance - margin
     if distance >= 0.0 or terms.ignored != 0:
         terms.ignored = Int32(1)
@@ -110,6 +121,8 @@ def let_contact_yield(
     stiffness, damping = spring_and_damper(settings, reference, impedance)
     terms.yields = Int32(1)
     terms.damping = damping
+    _stiffness, lateral_damping = spring_and_damper(settings, lateral, impedance)
+    terms.erp = lateral_damping
     terms.pull = stiffness * d * distance
     terms.lateral_softness = lateral_softness(shapes, terms, world, a, b) * inverse_mass * (1.0 - d) / d
     terms.softness = inverse_mass * pyramid_share(shapes, terms, world, a, b) * (1.0 - d) / d

@@ -38,6 +38,27 @@ def spring_stretch(model: Model, state: State, world: Int32, link: Int32) -> Vec
 
 
 @func
+def base_stretch(model: Model, state: State, world: Int32, tree: Int32):
+    """Angle and distance of a free base from the rest of its spring, in world axes [rad, m]."""
+    q = model.tree[tree].first_position
+    rest = Quaternion(
+        model.position_spring[world, q + 3],
+        model.position_spring[world, q + 4],
+        model.position_spring[world, q + 5],
+        model.position_spring[world, q + 6],
+    )
+    turn = load_quaternion(state, world, q + 3)
+    # The axis of the turn from rest is the same in the axes at rest and in those of the base.
+    angle = wp.quat_rotate(turn, rotation_vector(wp.quat_inverse(rest) * turn))
+    distance = Vector3(
+        state.position[world, q] - model.position_spring[world, q],
+        state.position[world, q + 1] - model.position_spring[world, q + 1],
+        state.position[world, q + 2] - model.position_spring[world, q + 2],
+    )
+    return angle, distance
+
+
+@func
 def add_joint_terms(
     model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
 ):
@@ -47,13 +68,21 @@ def add_joint_terms(
     blocks = (model.tree[tree].dof_count + 3) // 4
     matrix = model.tree[tree].first_block
     base = model.tree[tree].first_link
+    first_of_base = model.link[base].first_dof
+    if model.link[base].dof_count > 0 and model.dof_stiffness[world, first_of_base] > 0.0:
+        angle, distance = base_stretch(model, state, world, tree)
+        for axis in range(3):
+            turning = first_of_base + axis
+            scratch.dof[world, turning].force -= model.dof_stiffness[world, turning] * angle[axis]
+            moving = first_of_base + 3 + axis
+            scratch.dof[world, moving].force -= model.dof_stiffness[world, moving] * distance[axis]
     for i in range(model.link[base].dof_count):
-        dof = model.link[base].first_dof + i
-        damping = model.dof_implicit_damping[world, dof]
-        scratch.dof[world, dof].force -= damping * state.dof_velocity[world, dof]
+        dof = first_of_base + i
+        yielding = model.dof_implicit_damping[world, dof] + h * model.dof_stiffness[world, dof]
+        scratch.dof[world, dof].force -= yielding * state.dof_velocity[world, dof]
         place = dof - first_of_tree
         scratch.entry_factor[world, 4 * (matrix + place * blocks) + place] += (
-            model.dof_armature[world, dof] + h * damping
+            model.dof_armature[world, dof] + h * yielding
         )
     for link in range(base + 1, base + model.tree[tree].link_count):
         count = model.link[link].dof_count

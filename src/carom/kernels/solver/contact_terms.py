@@ -303,7 +303,7 @@ def lateral_change(
     """Requested change of the velocity of a row of lateral friction, 1 or 2, along its direction."""
     if terms.yields != 0:
         before = velocity - terms.lateral_from_forces[row - 1]
-        return before - settings.time_step * terms.damping * before - velocity
+        return before - settings.time_step * terms.erp * before - velocity
     return friction_change(settings, velocity, terms.drift, direction)
 
 

@@ -33,9 +33,14 @@ def has_torsion(friction: Vector3) -> bool:
 
 @func
 def twists(shapes: Shapes, contacts: Contacts, world: Int32, contact: Int32) -> bool:
-    """Whether a contact has rolling or spinning friction."""
+    """Whether a contact may have rolling or spinning friction, of its links or of their pair."""
     pair = contacts.contact_shapes[world, contact]
-    return has_torsion(contact_friction(shapes, world, pair[2], pair[3]))
+    a, b = pair[2], pair[3]
+    if has_torsion(contact_friction(shapes, world, a, b)):
+        return True
+    if shapes.link_friction_rank[world, a] == 0:
+        return False
+    return shapes.link_pair_twists[a] != 0 and shapes.link_pair_twists[b] != 0
 
 
 @func

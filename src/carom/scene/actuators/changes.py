@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from carom.description.actuator import Actuator
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
-from carom.model.actuator_rows import insert_actuator, write_actuator
+from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
@@ -24,6 +24,7 @@ def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
     spec.check()
     if not name or any(other.name == name for other in body.spec.actuators):
         raise DescriptionError(f"actuator {name!r}: each one of a body needs a name of its own")
+    check_joint_ranges((*body.spec.actuators, spec))
     number = len(body.spec.actuators)
     if drives_joint(spec):
         joint = actuated_joint(body, spec)
@@ -35,6 +36,7 @@ def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
     row = insert_actuator(world.arrays, body.rows, [other.rows for other in world.bodies.values()])
     write_actuator(world.arrays.model.numpy, row, spec)
     body.spec = replace(body.spec, actuators=(*body.spec.actuators, spec))
+    join_actuators(world.arrays.model.numpy, body.rows.first["actuator"], body.spec.actuators)
     world.constraints.all.append(made)
     world.constraints.rows.forget()
     body.__dict__.pop("actuators", None)

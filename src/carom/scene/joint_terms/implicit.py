@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from carom.layouts.codes import JointCode
-from carom.model.builder import has_base_terms
+from carom.model.builder import BASE_POSITIONS, has_base_terms
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -73,6 +74,14 @@ def write_terms(body: Body, joint: int) -> None:
     model["tree_joint_terms"][:, body.rows.tree] = has_base_terms(body.spec) or any(
         map(body_term_check(body), links)
     )
+
+
+def rest_base_spring(body: Body) -> None:
+    """Let the spring of a free base be at rest at its present pose."""
+    arrays, first = body.world.arrays, body.rows.first["position"]
+    rest = arrays.state.numpy["position"][0, first : first + BASE_POSITIONS].tolist()
+    body.spec = replace(body.spec, base_rest=tuple(rest))
+    arrays.model.numpy["position_spring"][:, first : first + BASE_POSITIONS] = rest
 
 
 def body_term_check(body: Body) -> Any:

@@ -69,10 +69,15 @@ def _velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
 
 def _actuators_force(source: Source, body: Body, spec: SensorSpec) -> Array:
     first, total = body.rows.first["actuator"], np.zeros(source.count)
+    lower, upper = np.full(source.count, -np.inf), np.full(source.count, np.inf)
+    is_first = True
     for row, actuator in enumerate(body.spec.actuators, start=first):
         if actuator.joint == spec.object:
             total = total + source.parameter("actuator_gear", row) * source.state("actuator_force")[:, row]
-    return total
+            if is_first:
+                lower, upper = (source.parameter(f"actuator_joint_{end}", row) for end in ("lower", "upper"))
+                is_first = False
+    return np.minimum(np.maximum(total, lower), upper)
 
 
 def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:

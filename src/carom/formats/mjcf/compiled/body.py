@@ -96,6 +96,7 @@ class BodyReader:
     ) -> None:
         geoms: list[Geom] = []
         stated: BodyInertia | None = None
+        only_paired: tuple[Scope, Element] | None = None
         for child, within in self.elements.inside(element, scope):
             context = within.context
             match child.tag:
@@ -106,7 +107,10 @@ class BodyReader:
                         self.geom_bodies[geom.name] = body.name
                         self.geoms[geom.name] = geom
                         geoms.append(geom)
-                        body.contact = read_contact(within, child, body.contact, self.model.options)
+                        if geom.kinds != (0, 0):
+                            body.contact = read_contact(within, child, body.contact, self.model.options)
+                        elif geom.is_paired and only_paired is None:
+                            only_paired = within, child
                 case "joint" | "freejoint":
                     self._read_joint(child, within, body, is_world=is_world, is_top=is_top)
                 case "inertial":
@@ -123,6 +127,8 @@ class BodyReader:
                         self.model.cameras[camera.name] = camera
                 case tag if tag not in _UNBUILT:
                     raise context.error(child, f"<{tag}> is not known in a body")
+        if only_paired is not None and body.contact.lateral_friction is None:
+            body.contact = read_contact(*only_paired, body.contact, self.model.options)
         body.visuals = [geom.visual for geom in geoms]
         body.collisions = [
             Collision(geom.geometry, geom.frame, name=geom.name, group=geom.kinds[0], mask=geom.kinds[1])
@@ -227,12 +233,10 @@ def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None
     """Read the terms of a free joint that its class of defaults or itself states; report others."""
     if element.tag == "freejoint":
         return
-    context = scope.context
     attributes: Attributes = scope.attributes(element)
     body.free_damping = first_number(scope, element, attributes, "damping")
     body.free_armature = first_number(scope, element, attributes, "armature")
     body.free_friction = first_number(scope, element, attributes, "frictionloss")
     if body.free_friction:
         body.free_compliance = read_compliance(scope, element, attributes, "friction")
-    if any(context.singles(element, "stiffness", attributes.get("stiffness", ""))):
-        context.leave_out(element, "the body moves without it", "free bodies have no such terms", "stiffness")
+    body.free_stiffness = first_number(scope, element, attributes, "stiffness")

@@ -13,6 +13,8 @@ from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.xml_element import Element
 
 _FRICTION = (1.0, 0.005, 0.0001)
+_LEAST_WEIGHT = 1e-20
+"""It counts as 0, and says that there is one."""
 _EQUAL_RANK = 1000
 """Rank of friction at priority 0."""
 
@@ -20,7 +22,9 @@ _EQUAL_RANK = 1000
 def read_contact(
     scope: Scope, element: Element, earlier: ContactParameters, options: Mapping[str, Any]
 ) -> ContactParameters:
-    """Friction and compliance of a body: those of its first geom that collides; others are reported.
+    """Friction and compliance of a body with one more geom that collides: those of its first one.
+
+    Others are reported.
 
     An option can override what geoms say of both.
     """
@@ -28,13 +32,8 @@ def read_contact(
     values = context.singles(element, "friction", attributes.get("friction", ""))
     sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
     dimensions = int(context.number(element, attributes, "condim", 3.0))
-    collides = any(
-        context.number(element, attributes, name, 1.0) != 0.0 for name in ("contype", "conaffinity")
-    )
-    if not collides:
-        return earlier
     compliance = read_compliance(scope, element, attributes)
-    weight = context.number(element, attributes, "solmix", 1.0)
+    weight = max(_LEAST_WEIGHT, context.number(element, attributes, "solmix", 1.0))
     margin = context.number(element, attributes, "margin", 0.0)
     if options.get("flag.override", False):
         sliding, _, spinning, rolling, _ = options["o_friction"]

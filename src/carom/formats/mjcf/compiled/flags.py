@@ -26,7 +26,7 @@ def switch_off(model: CompiledModel) -> None:
         return
     model.robots = [_robot(placed, off) for placed in model.robots]
     if "contact" in off:
-        model.paired = []
+        model.paired = {}
     if "frictionloss" in off:
         model.frictions = []
     if "equality" in off:
@@ -50,7 +50,12 @@ def _robot(placed: PlacedRobot, off: set[str]) -> PlacedRobot:
     links = tuple(_link(link, off) for link in robot.links)
     joints = tuple(_joint(joint, off) for joint in robot.joints)
     actuators = tuple(_actuator(actuator, off) for actuator in robot.actuators)
-    return replace(placed, robot=replace(robot, links=links, joints=joints, actuators=actuators))
+    robot = replace(robot, links=links, joints=joints, actuators=actuators)
+    if "spring" in off:
+        robot = replace(robot, base_stiffness=0.0)
+    if "damper" in off:
+        robot = replace(robot, base_damping=0.0)
+    return replace(placed, robot=robot)
 
 
 def _link(link: Link, off: set[str]) -> Link:

@@ -7,7 +7,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Joint, Pose, Visual
-from carom.description.compliance import Compliance
+from carom.description.compliance import Compliance, PairContact
 from carom.description.link import ContactParameters
 from carom.description.pose import IDENTITY, Vector3
 from carom.formats.mjcf.compiled.inertia import BodyInertia
@@ -74,6 +74,7 @@ class CompiledBody:
         is_free: It has a free joint.
         free_damping: Damping of its free joint, along and about all axes [N s/m, N m s/rad].
         free_armature: Armature of its free joint [kg, kg m²].
+        free_stiffness: Of the spring of its free joint, along and about all axes [N/m, N m/rad].
         free_friction: Greatest force and torque of dry friction along and about each of its axes [N, N m].
         free_compliance: How that friction yields.
         is_mocap: It is moved by users only.
@@ -92,6 +93,7 @@ class CompiledBody:
     is_free: bool = False
     free_damping: float = 0.0
     free_armature: float = 0.0
+    free_stiffness: float = 0.0
     free_friction: float = 0.0
     free_compliance: Compliance | None = None
     is_mocap: bool = False
@@ -323,7 +325,7 @@ class CompiledModel:
         joints: Names of all joints in the order of `qpos`, and the number of coordinates of each.
         starts: Positions of joints whose reference is not 0, by name.
         excluded: Pairs of bodies that don't collide with each other.
-        paired: Pairs of bodies that collide with each other whatever their groups say.
+        paired: Pairs of bodies that collide with each other whatever their groups say, and how.
         options: Gravity, time step and other numbers and words of `<option>`, by name.
         sites: By name.
         cameras: By name.
@@ -347,7 +349,7 @@ class CompiledModel:
     joints: list[tuple[str, str, str]] = field(default_factory=list)
     starts: dict[str, float] = field(default_factory=dict)
     excluded: list[tuple[str, str]] = field(default_factory=list)
-    paired: list[tuple[str, str]] = field(default_factory=list)
+    paired: dict[tuple[str, str], PairContact] = field(default_factory=dict)
     options: dict[str, Any] = field(default_factory=dict)
     sites: dict[str, Site] = field(default_factory=dict)
     cameras: dict[str, FileCamera] = field(default_factory=dict)

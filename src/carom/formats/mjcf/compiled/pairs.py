@@ -1,15 +1,22 @@
-"""`<pair>` in `<contact>`: geoms that collide whatever their bits and excluded bodies say."""
+"""`<pair>` in `<contact>`: geoms that collide whatever their bits and excluded bodies say, and how."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
+from carom.description.compliance import Compliance, PairContact
 from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
-from carom.formats.mjcf.compiled.names import Names, full
-from carom.formats.mjcf.defaults import MAIN
-from carom.formats.reading.cursor import Recorded
+from carom.formats.mjcf.compiled.names import Names, full, section_attributes
+from carom.formats.mjcf.compiled.softness import read_compliance
+from carom.formats.robot.context import shown
+from carom.formats.xml_element import Element
 
 _PARTS = ("geom1", "geom2")
+_REASON = "pairs are of bodies"
+_FRICTION = (1.0, 1.0, 0.005, 0.0001, 0.0001)
 
 
 def paired_geoms(context: CompiledContext) -> set[str]:
@@ -44,10 +51,8 @@ def read_pairs(
     for element, of in names.sections(scope, "contact"):
         if element.tag != "pair":
             continue
-        defaults = of.context.classes.get(element.attributes.get("class") or MAIN, {}).get("pair", {})
-        if isinstance(defaults, Recorded):
-            defaults.note_use()
         of.name(element)
+        contact = _read_contact(of, element, model.options)
         geoms = [of.context.required(element, part) for part in _PARTS]
         copies = names.copies(of, geoms, set(bodies))
         if not copies:
@@ -55,7 +60,47 @@ def read_pairs(
         for copy in copies:
             first, second = (bodies[full(copy, geom)] for geom in geoms)
             if first != second:
-                model.paired.append((first, second))
+                stated = model.paired.setdefault((min(first, second), max(first, second)), contact)
+                if stated != contact:
+                    copy.context.leave_out(
+                        element, "contacts are as the first pair of both bodies has them", _REASON, *_PARTS
+                    )
             if shapes[first] > 1 or shapes[second] > 1:
-                consequence = "all geoms of both bodies collide"
-                copy.context.leave_out(element, consequence, "pairs are of bodies", *_PARTS)
+                copy.context.leave_out(element, "all geoms of both bodies collide", _REASON, *_PARTS)
+
+
+def _read_contact(scope: Scope, element: Element, options: Mapping[str, Any]) -> PairContact:
+    """How the contacts of a pair are: defaults are MuJoCo's, whatever its geoms say."""
+    context = scope.context
+    attributes = section_attributes(scope, element, "pair")
+    friction = list(_FRICTION)
+    given = context.numbers(element, "friction", attributes.get("friction", ""), 0, len(friction))
+    friction[: len(given)] = given
+    dimensions = int(context.number(element, attributes, "condim", 3.0))
+    if dimensions not in (1, 3, 4, 6):
+        raise context.error(element, f"condim={shown(attributes['condim'])} must be 1, 3, 4 or 6")
+    compliance = read_compliance(scope, element, attributes)
+    lateral = [0.0, 0.0]
+    given = context.numbers(element, "solreffriction", attributes.get("solreffriction", ""), 0, 2)
+    lateral[: len(given)] = given
+    margin = context.number(element, attributes, "margin", 0.0)
+    if options.get("flag.override", False):
+        friction, margin = list(options["o_friction"]), options["o_margin"]
+        compliance = Compliance(*options["o_solref"], *options["o_solimp"])
+    if options.get("cone", "pyramidal") != "elliptic":
+        lateral = [0.0, 0.0]  # Edges of pyramids have the reference of the normal.
+    sliding, across, spinning, rolling, other = friction
+    if (dimensions > 1 and across != sliding) or (dimensions > 4 and other != rolling):
+        context.leave_out(
+            element, "both directions have the first one's", "friction is alike along both", "friction"
+        )
+    return PairContact(
+        compliance,
+        (
+            sliding if dimensions > 1 else 0.0,
+            rolling if dimensions > 4 else 0.0,
+            spinning if dimensions > 3 else 0.0,
+        ),
+        margin,
+        (lateral[0], lateral[1]),
+    )

@@ -280,23 +280,15 @@ class ActuatorReader:
         )
 
     def _bound_joints(self) -> None:
-        """Bound the forces of actuators by what their joints allow."""
+        """Bound the sum of forces of actuators of a joint by what it allows."""
         for joint, numbers in self._drivers.items():
             _, of_joint = self.names.joints[joint]
             if of_joint.actuator_range == _UNBOUNDED:
                 continue
-            if len(numbers) > 1:
-                context = of_joint.context
-                context.leave_out(
-                    of_joint.element,
-                    "it bounds the force of each of its actuators",
-                    "a bound of their sum is not built",
-                    "actuatorfrcrange",
-                )
             for number in numbers:
                 it = self.model.actuators[number]
                 assert it.spec is not None, "only such actuators drive joints"
-                it.spec = _within(it.spec, of_joint.actuator_range)
+                it.spec = replace(it.spec, joint_range=of_joint.actuator_range)
 
 
 def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
@@ -368,13 +360,3 @@ def _damped(law: Law, gear: float, body: CompiledBody, joint: CompiledJoint) -> 
         mass = moved_inertia(body, joint) / (gear * gear)
         damping = -law.damping_ratio * 2.0 * (law.gain[0] * mass) ** 0.5
     return force, stiffness, damping
-
-
-def _within(spec: ActuatorSpec, bounds: tuple[float, float]) -> ActuatorSpec:
-    """An actuator whose force on the joint, `gear` times its own, is within bounds as well."""
-    first, second = bounds[0] / spec.gear, bounds[1] / spec.gear
-    lower = max(spec.force_range[0], min(first, second))
-    upper = min(spec.force_range[1], max(first, second))
-    if lower > upper:  # They do not overlap: the joint's bound comes last, so it counts.
-        lower = upper = min(max(spec.force_range[0], min(first, second)), max(first, second))
-    return replace(spec, force_range=(lower, upper))
