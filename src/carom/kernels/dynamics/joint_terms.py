@@ -8,8 +8,8 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.maths.rotation import rotation_vector
-from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Quaternion, Vector3, func
+from carom.kernels.structs import Model, Scratch, State
+from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 from carom.layouts.codes import PLANAR, SPHERICAL
 
 
@@ -38,11 +38,11 @@ def spring_stretch(model: Model, state: State, world: Int32, link: Int32) -> Vec
 
 
 @func
-def add_joint_terms(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
-):
-    """Add the forces of damping and springs to `dof_force`, and the joints' terms to the mass matrix."""
-    h = settings.time_step
+def add_joint_terms(model: Model, h: real, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Add the forces of damping and springs to `dof_force`, and the joints' terms to the mass matrix.
+
+    `h` is the time of a substep.
+    """
     first_of_tree = model.tree[tree].first_dof
     blocks = (model.tree[tree].dof_count + 3) // 4
     matrix = model.tree[tree].first_block
