@@ -1,15 +1,16 @@
-"""What users feel of the window: how long a slider takes to a script, how smoothly a replay is scrubbed.
+"""What users feel of the window: how long a slider takes to a script, how smoothly robots and a replay move.
 
 Used by `watching.py`.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import statistics
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -30,6 +31,11 @@ BODIES = 100
 SECONDS_SCRUBBED = 10.0
 # What a window is like in which somebody looks at a replay.
 WIDTH, HEIGHT = 900, 640
+# The window of a laptop.
+WIDE, HIGH = 1280, 800
+WANTED_OF_ROBOTS = 20.0
+WANTED_SHARPNESS = 0.5
+SECONDS_WATCHED = 12.0
 
 MOVE = """value => {
   const slider = document.querySelector("#sliders input[type=range]");
@@ -37,6 +43,23 @@ MOVE = """value => {
   const moved = performance.timeOrigin + performance.now();
   slider.dispatchEvent(new Event("input"));
   return moved / 1000;
+}"""
+# How many pictures of a robot that moves a page draws in a second, and how fine they are.
+WATCH = """async seconds => {
+  const { scene, renderer } = app;
+  const times = [];
+  const draw = renderer.draw;
+  renderer.draw = (...told) => { times.push(performance.now()); return draw.apply(renderer, told); };
+  const sizes = [];
+  const began = performance.now();
+  while (performance.now() - began < 1000 * seconds) {
+    await new Promise(done => setTimeout(done, 100));
+    sizes.push(renderer.pace.sharpness);
+  }
+  const settled = times.filter(time => time > began + 500 * seconds);
+  const later = sizes.slice(sizes.length >> 1);
+  const mean = later.reduce((sum, each) => sum + each, 0) / later.length;
+  return [(1000 * (settled.length - 1)) / (settled.at(-1) - settled[0]), mean];
 }"""
 # Drags the handle to and fro, a moment for each picture; returns pictures a second and how fine they were.
 SCRUB = """async seconds => {
@@ -109,6 +132,69 @@ def scrub_a_replay() -> list[list[str]]:
     verdict = "PASS" if pictures >= WANTED_PICTURES else "FAIL"
     cost = f"{pictures:.0f} pictures a second, {sharpness:g} of the pixels along an edge"
     return [[what, cost, f"≥ {WANTED_PICTURES:.0f}", verdict]]
+
+
+def swing(joints: dict[int, float]) -> Callable[[int], None]:
+    """A script's way to move joints of the first robot to and fro [rad], step by step."""
+
+    def move(step: int) -> None:
+        for joint, amplitude in joints.items():
+            target = amplitude * math.sin(step / 120)
+            p.setJointMotorControl2(1, joint, p.POSITION_CONTROL, target, force=200)
+
+    return move
+
+
+def drive(step: int) -> None:
+    """A script's way to drive R2D2, whose wheels are joints 2, 3, 6 and 7."""
+    for joint in (2, 3, 6, 7):
+        speed = -4.0 if joint < 4 else 4.0 * math.sin(step / 300)
+        p.setJointMotorControl2(1, joint, p.VELOCITY_CONTROL, targetVelocity=speed, force=10)
+
+
+ROBOTS: dict[str, tuple[str, bool, Callable[[int], None]]] = {
+    "the Panda": ("franka_panda/panda.urdf", True, swing({0: 1.0, 1: 0.4, 3: 0.6, 5: 0.5})),
+    "R2D2": ("r2d2.urdf", False, drive),
+}
+
+
+def watch_robots() -> list[list[str]]:
+    """Rows of the table about robots on a plane that move in real time, drawn by the processor."""
+    rows = []
+    for name, (file, fixed, move) in ROBOTS.items():
+        with window() as shown, stepping(file, fixed, move), chromium() as browser:
+            page = Page(browser, shown.viewer.address, WIDE, HIGH)
+            page.until("window.app?.scene.bodies.size === 2")
+            pictures, sharpness = page.page.evaluate(WATCH, SECONDS_WATCHED)
+            page.page.close()
+        cost = f"{pictures:.0f} pictures a second, {sharpness:.2g} of the pixels along an edge"
+        wanted = f"≥ {WANTED_OF_ROBOTS:.0f} at {WANTED_SHARPNESS:g}"
+        verdict = "PASS" if pictures >= WANTED_OF_ROBOTS and sharpness >= WANTED_SHARPNESS else "FAIL"
+        rows.append([f"{name} moves, {WIDE} x {HIGH}, without a graphics card", cost, wanted, verdict])
+    return rows
+
+
+@contextmanager
+def stepping(file: str, fixed: bool, move: Callable[[int], None]) -> Iterator[None]:
+    """A robot on a plane that a script moves and steps in real time, in a thread."""
+    stop = threading.Event()
+    p.setAdditionalSearchPath(pybullet_data.getDataPath())
+    p.setGravity(0, 0, -9.81)
+    p.loadURDF("plane.urdf")
+    p.loadURDF(file, [0, 0, 0 if fixed else 0.5], useFixedBase=fixed)
+
+    def steps() -> None:
+        step = 0
+        while not stop.wait(1 / 240):
+            move(step)
+            p.stepSimulation()
+            step += 1
+
+    thread = threading.Thread(target=steps)
+    thread.start()
+    yield
+    stop.set()
+    thread.join()
 
 
 def record_boxes(file: Path) -> None:

@@ -2,7 +2,8 @@
 
 Needs Chromium. The questions: what many moving bodies cost the server for each frame, what they cost the
 page, apart from drawing, which a graphics card does, by how much stepping gets slower while a page is open,
-how long a slider takes to the script, and how smoothly a replay is scrubbed without a graphics card.
+how long a slider takes to the script, what a page at rest takes, how smoothly robots move and a replay is
+scrubbed without a graphics card, and how memory grows (`--minutes 30`).
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from hands import move_a_slider, scrub_a_replay, window
+from hands import move_a_slider, scrub_a_replay, watch_robots, window
+from lasting import grow, rest
 from run import put_between_marks, readable
 from tests.viewer.browser import Page, chromium
 from websockets.sync.client import connect
@@ -137,6 +139,13 @@ def watch_a_crowd(count: int) -> list[list[str]]:
     ]
 
 
+def watch_for(minutes: float) -> list[list[str]]:
+    """Rows of the table about memory while a hundred bodies move."""
+    with window() as shown, moving(), chromium() as browser:
+        crowd(100)
+        return grow(Page(browser, shown.viewer.address, 640, 480), minutes)
+
+
 def clock_of_server() -> int:
     """The processor clock of the thread that sends."""
     (server,) = (thread for thread in threading.enumerate() if thread.name == "carom viewer")
@@ -233,10 +242,12 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description="Time what watching costs.")
     parser.add_argument("--bodies", type=int, default=1000)
+    parser.add_argument("--minutes", type=float, default=1, help="how long the memory is watched")
     parser.add_argument("--page", type=Path, help="put the table into this page, between its marks, as well")
     arguments = parser.parse_args()
     header = [["what", "cost", "wanted", ""], ["---", "---:", "---", "---"]]
-    rows = header + watch_a_crowd(arguments.bodies) + watch_the_panda() + move_a_slider() + scrub_a_replay()
+    rows = header + watch_a_crowd(arguments.bodies) + watch_the_panda()
+    rows += move_a_slider() + rest() + watch_robots() + scrub_a_replay() + watch_for(arguments.minutes)
     figures = "\n".join("| " + " | ".join(row) + " |" for row in rows)
     print(figures)
     if arguments.page:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from tests.patience import until
+from tests.viewer.browser import Page, needs_browser, wait_for
 from tests.viewer.watcher import Watcher
 
 from carom import World
@@ -82,6 +83,31 @@ def test_pages_let_the_mouse_grasp_what_follows_it(world: World, page: Watcher):
     page.tell("grasp", body=bodies["target"].id, link=-1, point=[0, 0, 0], target=[0, 1, 0.5])
     assert until(lambda: is_at(bodies["target"], 0, 1, 0.5))
     assert is_at(bodies["post"], -1, 0, 0.5)
+
+
+@needs_browser
+@pytest.mark.parametrize("paused", [False, True])
+def test_the_mouse_moves_a_mocap_body_in_the_page(world: World, browser, paused: bool):
+    viewer, target = Viewer(world, port=0), named(world, "target")
+    viewer.pause(paused)
+    page = Page(browser, viewer.address, 800, 480)
+    page.until("window.app?.scene.groups.length > 0")
+    # From the front: x points to the right.
+    page.page.evaluate("Object.assign(app.camera, { distance: 3, yaw: 0, pitch: 0, target: [1.2, 0, 0.5] })")
+    page.page.evaluate("app.camera.update()")
+    x, y, _ = page.page.evaluate("app.camera.pixel([0.5, 0, 0.5])")
+    right, top, _ = page.page.evaluate("app.camera.pixel([0.8, 0, 0.7])")
+    page.page.mouse.move(x, y)
+    page.page.mouse.down()
+    page.page.mouse.move(right, top, steps=4)
+    wait_for(lambda: math.dist(target.links[-1].pose.position, (0.8, 0, 0.7)) < 0.02, page)
+    page.page.mouse.up()
+    place = target.links[-1].pose.position
+    page.page.mouse.move(x, y)
+    page.page.wait_for_timeout(200)
+    assert is_at(target, *place)
+    assert page.complaints == []
+    viewer.close()
 
 
 def test_copies_and_files_know_mocap_bodies(world: World, tmp_path: Path):

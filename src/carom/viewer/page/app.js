@@ -1,5 +1,6 @@
 // The page: passes each message to the part of the page that shows it, and draws.
 
+import { Beat } from "./beat.js";
 import { Bodies } from "./panel/bodies.js";
 import { Camera } from "./view/camera.js";
 import { Drawings } from "./view/drawings.js";
@@ -40,6 +41,8 @@ import { element } from "./elements.js";
 
 /** Simulated time after which the camera is no longer moved to show added bodies [s]. */
 const SETTLED = 1;
+/** Time without a change before the page rests [ms]: by then the picture is as sharp as it gets. */
+const REST_MS = 2000;
 
 export class App {
   /**
@@ -266,6 +269,7 @@ export class App {
 
   changed() {
     this.stale = true;
+    this.beat?.wake();
   }
 
   select(body, link) {
@@ -352,11 +356,18 @@ export class App {
     this.drawn = false;
     this.last = this.since = performance.now();
     this.frames = 0;
-    requestAnimationFrame((now) => this.draw(now));
+    this.beat = new Beat((now, rested) => {
+      this.draw(now, rested);
+      return now - this.moved > REST_MS && !this.stale && !this.player.running;
+    });
+    this.beat.awoken = () => {
+      this.frames = 0;
+      this.last = this.since = performance.now();
+    };
+    this.beat.next();
   }
 
-  draw(now) {
-    requestAnimationFrame((next) => this.draw(next));
+  draw(now, rested) {
     // While the recording is filmed, all time is for the film.
     if (this.saving.rendering) return;
     const passed = now - this.last;
@@ -374,7 +385,7 @@ export class App {
       this.send({ type: FromPage.CAMERA, ...this.camera.state(), chosen: !this.viewpoint.undecided });
     }
     this.frames += 1;
-    if (now - this.since > 500) {
+    if (now - this.since > 500 && !rested) {
       this.panel.showFps((this.frames * 1000) / (now - this.since));
       this.quality.show();
       [this.frames, this.since] = [0, now];
