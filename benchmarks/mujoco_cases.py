@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
+import numpy as np
+
+DATA = Path(__file__).resolve().parents[1] / "src" / "pybullet_data"
 
 EDGE = 0.2
 FRICTION = 0.25
@@ -66,3 +71,28 @@ def step_cloth(original_data: str) -> Callable[[], None]:
     for _ in range(2 * SETTLING_STEPS):
         mujoco.mj_step(model, data)
     return partial(mujoco.mj_step, model, data)
+
+
+def _transition(spec: mujoco.MjSpec) -> Callable[[], None]:
+    """Central differences of a step of a robot with a torque on each joint that has one axis."""
+    spec.option.timestep = 1 / 240
+    for joint in spec.joints:
+        if joint.type in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+            spec.add_actuator(target=joint.name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data, 10)
+    size = 2 * model.nv + model.na
+    by_state, by_control = np.zeros((size, size)), np.zeros((size, model.nu))
+    return partial(mujoco.mjd_transitionFD, model, data, 1e-6, True, by_state, by_control, None, None)
+
+
+def linearize_panda(original_data: str) -> Callable[[], None]:
+    text = (DATA / "franka_panda" / "panda.urdf").read_text(encoding="utf-8")
+    # Meshes are not needed: nothing touches.
+    bare = re.sub(r"<(visual|collision)\b.*?</\1>", "", text, flags=re.DOTALL)
+    return _transition(mujoco.MjSpec.from_string(bare))
+
+
+def linearize_ant(original_data: str) -> Callable[[], None]:
+    return _transition(mujoco.MjSpec.from_file(str(DATA / "mjcf" / "ant.xml")))

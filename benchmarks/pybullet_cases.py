@@ -10,6 +10,7 @@ import itertools
 import math
 from collections.abc import Callable
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,10 @@ import robots
 import soft_bodies
 
 import pybullet as p
+
+# PyBullet has no derivatives.
+if find_spec("carom"):
+    from linearizing import linearize_ant, linearize_panda  # noqa: F401
 
 ROOT = Path(__file__).resolve().parents[1]
 ASSETS = ROOT / "src" / "pybullet_data"

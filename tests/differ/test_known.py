@@ -172,3 +172,117 @@ def test_only_constraints_of_what_cannot_move_are_known_to_stop_the_solver(
     results = [["ok", 0], ["ok", 1]]
     found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
     assert bool(statement(calls, found[0])) == expected
+
+
+MESH = {"fileName": "sphere_smooth.obj"}
+
+
+@pytest.mark.parametrize(
+    ("shape", "theirs", "ours", "expected"),
+    [
+        (MESH, 0.1, 0.1005, True),
+        (MESH, 0.1, 0.0995, False),
+        (MESH, 0.1, 0.103, False),
+        ({"fileName": "cube.obj"}, 0.1, 0.1005, False),
+    ],
+)
+def test_fine_hulls_may_be_a_little_farther(
+    shape: dict[str, str], theirs: float, ours: float, expected: bool
+):
+    said = [[0, 0, 1, -1, -1, [0.0] * 3, [gap, 0.0, 0.0], [1.0, 0.0, 0.0], gap] for gap in (theirs, ours)]
+    calls = [call(3, "createCollisionShape", 5, **shape), call(4, "getClosestPoints", BODY, {"$": 1}, 1.0)]
+    assert is_known(calls, "distance", *said) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "ours", "expected"),
+    [("mjcf/humanoid.xml", -0.09, True), ("mjcf/humanoid.xml", -0.01, False), ("a1/a1.urdf", -0.09, False)],
+)
+def test_crossing_capsules_are_those_of_mjcf(file: str, ours: float, expected: bool):
+    said = [[0, 0, 0, 1, 2, [0.0] * 3, [0.0] * 3, [1.0, 0.0, 0.0], depth] for depth in (-0.02, ours)]
+    function = "loadMJCF" if file.endswith(".xml") else "loadURDF"
+    calls = [call(0, function, file), call(4, "getClosestPoints", BODY, BODY, 1.0)]
+    assert is_known(calls, "depth", *said) == expected
+
+
+@pytest.mark.parametrize(
+    ("body", "fraction", "expected"), [(2, 0.5, True), (2, 0.5001, False), (-1, 0.5, False)]
+)
+def test_a_ray_may_meet_two_bodies_at_one_place(body: int, fraction: float, expected: bool):
+    hits = [[each, -1, part, [0.0] * 3, [0.0] * 3] for each, part in ((0, 0.5), (body, fraction))]
+    assert is_known([BOX, STEP, call(51, "rayTest", [0] * 3, [1] * 3)], "hit", *hits) == expected
+
+
+SAVE, RESTORE = call(20, "saveState"), call(22, "restoreState", {"$": 20})
+PUSH = call(21, "applyExternalForce", BODY, -1, [1, 0, 0], [0, 0, 0], 1)
+
+
+@pytest.mark.parametrize(
+    ("calls", "expected"),
+    [
+        ([BOX, SAVE, PUSH, RESTORE, STEP, PROBE], True),
+        ([BOX, SAVE, PUSH, STEP, RESTORE, STEP, PROBE], False),
+        ([BOX, SAVE, RESTORE, PUSH, STEP, PROBE], False),
+    ],
+)
+def test_forces_outlast_restored_states_until_the_next_step(calls: list[Call], expected: bool):
+    assert is_known(calls, "base.0.0", 0.0, 0.1) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "flags", "expected"),
+    [
+        ("TwoJointRobot_wo_fixedJoints.urdf", 131080, True),
+        ("TwoJointRobot_wo_fixedJoints.urdf", 8, False),
+        ("a1/a1.urdf", 131072, False),
+    ],
+)
+def test_children_come_first_in_the_order_of_some_files(file: str, flags: int, expected: bool):
+    calls = [call(0, "loadURDF", file, flags=flags), call(1, "getLinkState", BODY, 0)]
+    assert is_known(calls, ".0", 0.0, 0.1) == expected
+
+
+@pytest.mark.parametrize(
+    ("said", "kind", "expected"),
+    [
+        ("90 of 768 differ, 80 are nearer: 1", 7, True),
+        ("90 of 768 differ, 20 are nearer: 1", 7, False),
+        ("400 of 768 differ, 390 are nearer: 1", 7, False),
+        ("90 of 768 differ, 80 are nearer: 1", 3, False),
+    ],
+)
+def test_round_shapes_stand_out_of_polyhedra(said: str, kind: int, expected: bool):
+    calls = [call(0, "createVisualShape", kind), call(1, "getCameraImage")]
+    assert is_known(calls, "segments", said, 0) == expected
+
+
+def test_joints_are_numbered_with_children_after_their_parent():
+    body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0, 4, 2], linkParentIndices=[0, 1, 1, 2])
+    aims = [call(1, "setJointMotorControl2", BODY, link, 2, targetPosition=1) for link in range(4)]
+    known = [is_known([body, aim, PROBE], "positions.0.0", 0.0, 0.1) for aim in aims]
+    assert known == [True, False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("ours", "expected"), [([-0.5, 0.5, -0.5, -0.5], True), ([-0.5, 0.5, 0.5, -0.5], False)]
+)
+def test_a_rotation_has_two_quaternions(ours: list[float], expected: bool):
+    assert is_known([BOX, call(1, "getLinkState", BODY, 0)], ".1", [0.5, -0.5, 0.5, 0.5], ours) == expected
+
+
+@pytest.mark.parametrize(("other", "sign", "expected"), [(0, -1, True), (0, 1, False), (1, -1, False)])
+def test_normals_of_one_body_may_be_opposite(other: int, sign: int, expected: bool):
+    theirs = [0, 0, other, -1, 0, [0.0] * 3, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 0.1]
+    ours = [*theirs[:5], [0.0, 0.2, 0.0], [0.1, 0.2, 0.0], [sign * 1.0, 0.0, 0.0], 0.1]
+    assert is_known([call(0, "getClosestPoints", BODY, BODY, 1.0)], "normal", theirs, ours) == expected
+
+
+@pytest.mark.parametrize(
+    ("kind", "label", "expected"),
+    [(4, 0, True), (7, 1 << 24, True), (3, 0, False), (2, 0, False), (4, -1, False)],
+)
+def test_long_round_shapes_are_shaded_as_balls(kind: int, label: int, expected: bool):
+    shape, body = call(3, "createCollisionShape", kind), call(4, "createMultiBody", 1, {"$": 3})
+    calls = [shape, body, call(5, "getCameraImage", shadow=0)]
+    said = f"9 of 16 differ: [90, 90, 90, 255] of {label}"
+    assert is_known(calls, "colour", said, [70, 70, 70, 255]) == expected

@@ -4,8 +4,12 @@ WEIGHED = """<mujoco><worldbody><body name="a" pos="0 0 1" euler="10 20 30"><joi
  damping=".1" armature=".2"/><geom size=".1" pos=".2 0 0"/><body name="b" pos=".4 .1 0"><joint name="ball"
  type="ball" pos="0 .1 0"/><geom type="box" size=".1 .2 .3" pos=".1 0 .3"/><body name="c" pos="0 0 .5"><joint
  name="slide" type="slide" axis="1 1 0"/><joint name="other" axis="0 1 1" armature=".1" ref="30"/><geom
- size=".05"/><body name="d" pos="0 .1 0"><geom size=".1"/></body></body></body></body><body name="free"
- pos="3 0 0"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 .2 0"/><body name="arm" pos=".3 0 0"><joint
+ size=".05"/><body name="d" pos="0 .1 0"><geom size=".1"/></body></body>
+<body name="massless" pos=".2 .3 .4" euler="0 40 0">
+<geom size=".1" mass="0" pos="0 0 1"/></body><frame pos="0 0 1"><body name="empty" pos=".1 0 .2"/>
+</frame></body></body>
+<body name="free" pos="3 0 0"><freejoint/><geom type="box" size=".1 .2 .3" pos=".1 .2 0"/>
+<body name="arm" pos=".3 0 0"><joint
  name="last" axis="1 0 0"/><geom size=".1" pos="0 .2 0"/></body></body><body name="still"><geom size=".1"/>
 </body></worldbody></mujoco>"""
 
@@ -27,6 +31,13 @@ def _arm(geom: str, option: str = "") -> str:
     return f"""<mujoco>{option}<worldbody><geom type="plane" size="5 5 .1" {geom}/><body name="a"
  pos="0 0 .25"><joint name="j" axis="0 1 0"/>{ball}/><body name="b" pos=".3 0 0"><joint name="k"
  axis="0 1 0"/>{ball} solref=".04 .8"/></body></body></worldbody></mujoco>"""
+
+
+def _hull(ground: str) -> str:
+    corners = " ".join(f"{x} {y} {z}" for x in (-0.3, 0.3) for y in (-0.2, 0.2) for z in (-0.1, 0.1))
+    return f"""<mujoco><asset><mesh name="m" vertex="{corners}"/></asset><worldbody><geom pos="0 0 -.1"
+ {ground}/><body name="f" pos="0 0 .0999"><freejoint/><geom type="mesh" mesh="m" solref=".05 .6"/></body>
+</worldbody></mujoco>"""
 
 
 _FIXED = '<tendon><fixed name="t" range="-.1 .2" {}><joint joint="j" coef=".5"/><joint joint="k" coef="2"/>'
@@ -70,6 +81,15 @@ MOVED: dict[str, str] = {
     "contact of one stiffness": _ball('solref="-500 -20"', 'solref=".02 .5"'),
     "contacts of two stiffnesses": _ball('solref="-500 -20"', 'solref="-300 -50"'),
     "contact of priority": _ball('solref=".1 1" priority="1"', 'solref=".03 .5"'),
+    "contacts that an option overrides": _ball(
+        'friction="2" priority="1" margin=".1"',
+        'solref="-300 -50"',
+        '<option o_margin=".03" o_solref=".05 .7" o_solimp=".6 .7 .01" o_friction=".3 .3 .02"><flag'
+        ' override="enable"/></option>',
+    ),
+    "options that override nothing": _ball(
+        "", "", '<option o_margin=".03" o_solref=".05 .7" o_friction="3"/>'
+    ),
     "contact off": _ball("", "", '<option><flag contact="disable"/></option>'),
     "arm on a smooth floor": _arm('condim="1"'),
     "arm on a floor": _arm(""),
@@ -77,5 +97,10 @@ MOVED: dict[str, str] = {
     "arm with round cones": _arm("", '<option cone="elliptic"/>'),
     "box": """<mujoco><worldbody><geom type="plane" size="5 5 .1"/><body name="f" pos="0 0 .0999"><freejoint/>
 <geom type="box" size=".3 .2 .1" solref=".05 .6"/></body></worldbody></mujoco>""",
+    "box beside the origin of a plane": """<mujoco><worldbody><geom type="plane" size="1 1 .1" pos="2 -3 0"/>
+<body name="f" pos="0 0 .0999"><freejoint/><geom type="box" size=".3 .2 .1" solref=".05 .6"/></body>
+</worldbody></mujoco>""",
+    "hull on a box": _hull('type="box" size="1 1 .1"'),
+    "hull on a hull": _hull('type="mesh" mesh="m"'),
 }
 STEPS = (40, 120, 400)

@@ -3,10 +3,12 @@
 _HEAD = '<mujoco><option timestep=".001" gravity="{}">{}</option><default>{}</default><worldbody>'
 
 
-def _free(terms: str, default: str = "", gravity: str = "0 0 -9.81") -> str:
-    return f"""{_HEAD.format(gravity, "", default)}<body name="f" pos="0 0 1" euler="20 30 40">
+def _free(
+    terms: str, default: str = "", gravity: str = "0 0 -9.81", option: str = "", damping: str = 'damping=".1"'
+) -> str:
+    return f"""{_HEAD.format(gravity, option, default)}<body name="f" pos="0 0 1" euler="20 30 40">
 <joint type="free" {terms}/><geom type="box" size=".1 .2 .3" pos=".1 .2 .05"/><body name="arm" pos=".3 0 0">
-<joint axis="0 1 1" damping=".1"/><geom size=".1" pos="0 .2 .1"/></body></body></worldbody>
+<joint axis="0 1 1" {damping}/><geom size=".1" pos="0 .2 .1"/></body></body></worldbody>
 <keyframe><key qpos="0 .1 1 1 .2 .1 0 .3" qvel="1 -.5 2 4 -3 5 2"/></keyframe></mujoco>"""
 
 
@@ -40,7 +42,16 @@ MOVED: dict[str, str] = {
     "free with damping": _free('damping="3"'),
     "free with armature": _free('armature="5"', gravity="1 2 -3"),
     "free with both by a default": _free("", '<joint damping="2" armature=".7"/>'),
+    "free with friction": _free('frictionloss="3"', damping=""),
+    "free with friction that holds": _free('frictionloss="900" solreffriction=".1 1"', damping=""),
+    "free with soft friction": _free(
+        'frictionloss="40" solreffriction=".3 1" solimpfriction=".4 .5 .1"', damping=""
+    ),
+    "free with friction off": _free('frictionloss="3"', option='<flag frictionloss="disable"/>'),
     "ball without a limit": _ball(""),
+    "ball with friction": _ball('frictionloss=".3"'),
+    "ball with friction that holds": _ball('frictionloss="90"'),
+    "ball with soft friction": _ball('frictionloss="8" solreffriction=".3 1" solimpfriction=".4 .5 .1"'),
     "ball with a limit": _ball('range="0 45"'),
     "ball with a soft limit": _ball('range="0 30" solreflimit=".1 .4" solimplimit=".5 .8 .1" margin=".1"'),
     "ball beyond half a turn": _ball('range="0 150"', "-.1 .9 .3 .2"),

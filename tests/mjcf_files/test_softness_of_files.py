@@ -60,7 +60,9 @@ def test_bodies_move_as_in_mujoco(tmp_path, name):
 def test_saved_worlds_and_copies_yield_alike(tmp_path, name):
     (tmp_path / "file.xml").write_text(MOVED[name])
     with World() as world, World() as other:
-        body = world.load(tmp_path / "file.xml")["a"]
+        scene = world.load(tmp_path / "file.xml")
+        scene.apply_options()
+        body = scene["a"]
         world.save(tmp_path / "saved")
         saved = other.load(tmp_path / "saved")["a"]
         for each in (world, other):
@@ -113,3 +115,23 @@ def test_options_of_a_file_let_the_solver_go_further(tmp_path, name):
                 found = np.concatenate([body.joints[joint].coordinates for joint in ("j", "k")])
             errors.append(np.abs(np.array(found) - answer).max())
         assert max(errors) < 5e-5
+
+
+@pytest.mark.parametrize(("override", "lost"), [("enable", ["o_friction"]), ("disable", [])])
+def test_friction_with_directions_that_overrides_is_reported(tmp_path, override, lost):
+    option = f'<option o_friction="1 2"><flag override="{override}"/></option>'
+    (tmp_path / "file.xml").write_text(f"<mujoco>{option}</mujoco>")
+    with World() as world:
+        found = world.load(tmp_path / "file.xml").ignored.that_matter
+    assert [name for it in found for name in it.attributes] == lost
+
+
+@pytest.mark.parametrize(("name", "what"), [("soft friction", "friction"), ("soft limit", "limit")])
+def test_limits_and_friction_that_yield_have_no_exact_derivatives(tmp_path, name, what):
+    (tmp_path / "file.xml").write_text(MOVED[name])
+    with World() as world:
+        world.load(tmp_path / "file.xml").apply_options()
+        world.step(300)
+        with pytest.raises(NotImplementedError, match=f"{what} of .* yields"):
+            world.linearize()
+        world.linearize(method="differences")

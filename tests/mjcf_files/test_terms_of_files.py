@@ -75,7 +75,10 @@ def test_limits_of_balls_are_tendons_that_tell_their_angle_and_force(load):
     assert max(forces) > 0.0
 
 
-@pytest.mark.parametrize("name", ["free with both by a default", "ball with a limit", "tendon with armature"])
+KEPT = ("free with both by a default", "ball with a limit", "tendon with armature", "free with friction")
+
+
+@pytest.mark.parametrize("name", [*KEPT, "ball with friction"])
 def test_saved_worlds_and_copies_move_alike(load, tmp_path, name):
     scene = load(MOVED[name])
     scene.reset("0")
@@ -123,3 +126,14 @@ def test_a_weld_that_yields_does_so_after_loading_a_saved_world(tmp_path):
         world.step(100)
         other.step(100)
         assert_allclose(saved.links[-1].pose.position, body.links[-1].pose.position, rtol=0.0, atol=0.0)
+
+
+def test_friction_of_a_ball_joint_can_be_set(load):
+    scene = load(MOVED["ball with friction"])
+    joint = scene["a"].joints["b"]
+    assert joint.friction_loss == 0.3
+    joint.friction_loss = 90.0
+    scene.reset("0")
+    scene.world.step(STEPS[1])
+    expected = ANSWERS["ball with friction that holds"][1]["c"][:3]
+    assert_allclose(scene["a"].links["c"].pose.position, expected, atol=1e-6)

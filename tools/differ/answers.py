@@ -16,6 +16,7 @@ _ARRIVED, _ARRIVED_TURNED, _OTHER_POSE = 1e-4, 1e-3, 1e-3
 _LIMIT = 2.5
 _SHARE_OF_SEGMENTS, _SHARE_OF_DEPTHS, _SHARE_OF_COLOURS = 0.06, 0.04, 0.08
 _DEPTH, _COLOUR = 2e-3, 12
+_NOTHING = 1 - 1e-6
 _CORNER, _LARGE_HULL = 1e-5, 32
 _DIRECTIONS, _STANDS_OUT = 200, 1e-3
 
@@ -144,10 +145,12 @@ def of_images(theirs: Any, ours: Any) -> Place | None:
         return Place("shape", count, len(b))
     if set(b) == {-1}:
         # Segments that were not asked for, or nothing in sight: PyBullet leaves what was there.
-        a = b
+        a, b = ([-1 if depth > _NOTHING else 0 for depth in depths] for depths in (da, db))
     wrong = [pixel for pixel in range(count) if a[pixel] != b[pixel]]
     if len(wrong) > _SHARE_OF_SEGMENTS * count:
-        return Place("segments", f"{len(wrong)} of {count} differ: {a[wrong[0]]}", b[wrong[0]])
+        nearer = sum(db[pixel] < da[pixel] for pixel in wrong)
+        said = f"{len(wrong)} of {count} differ, {nearer} are nearer: {a[wrong[0]]}"
+        return Place("segments", said, b[wrong[0]])
     same = [pixel for pixel in range(count) if a[pixel] == b[pixel]]
     deep = [pixel for pixel in same if abs(da[pixel] - db[pixel]) > _DEPTH]
     if len(deep) > _SHARE_OF_DEPTHS * count:

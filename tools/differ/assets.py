@@ -42,3 +42,7 @@ AT_LIMITS = _names("at_limits.json")
 """Files with a joint that stands exactly at one of its limits when it is loaded."""
 IMMOVABLE = _names("immovable.json")
 """Files with a body whose base cannot move."""
+CHILDREN_FIRST = _names("children_first.json")
+"""Files that list a link before its parent."""
+FINE = _names("fine.json")
+"""Files with a hull of very many corners, and meshes that make one."""

@@ -8,7 +8,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from tools.differ.assets import AT_LIMITS, FILES, FIXED, GEAR, IMMOVABLE, PRISMATIC, SPHERICAL
+from tools.differ.assets import (
+    AT_LIMITS,
+    CHILDREN_FIRST,
+    FILES,
+    FINE,
+    FIXED,
+    GEAR,
+    IMMOVABLE,
+    PRISMATIC,
+    SPHERICAL,
+)
 from tools.differ.compare import Difference
 from tools.differ.programs import Call
 
@@ -51,12 +61,18 @@ SHAPE_OF_HEIGHTS = 9
 _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
 # Balls, cylinders and capsules.
 _ROUND = frozenset({2, 4, 7})
+_LONG_AND_ROUND = frozenset({4, 7})
+_LABELS_OF_A_LINK = 1 << 24
 _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
 _LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
+_OF_SIMPLIFIED_HULLS = 2e-3
+_SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.25, 0.7
+_MAINTAIN_LINK_ORDER = 131072
+_QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
@@ -75,11 +91,26 @@ def pybullet_raises(seen: Seen) -> bool:
 
 def _joint_types(seen: Seen) -> dict[int, list[int]]:
     """The types of the joints of bodies, by the call that made the body."""
-    types = {call["id"]: list(call["k"].get("linkJointTypes", ())) for call in seen.before}
+    types = {call["id"]: _types_in_order(call) for call in seen.before}
     for call in seen.before:
         if call["f"] == "loadURDF":
             types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
     return types
+
+
+def _types_in_order(call: Call) -> list[int]:
+    """The types of the joints that `createMultiBody` makes, as it numbers them: children after parents."""
+    given, parents = (list(call["k"].get(name, ())) for name in ("linkJointTypes", "linkParentIndices"))
+    if len(parents) != len(given) or call["k"].get("flags", 0) & _MAINTAIN_LINK_ORDER:
+        return given
+    order: list[int] = []
+    waiting = [0]
+    while waiting:
+        parent = waiting.pop()
+        order += [parent - 1] if parent else []
+        # 0 is the base, and 1 the first link.
+        waiting += [link + 1 for link in reversed(range(len(parents))) if parents[link] == parent]
+    return [given[link] for link in order]
 
 
 def has_joints(seen: Seen, call: Call) -> bool:
@@ -216,11 +247,15 @@ def holds_half_a_turn(seen: Seen) -> bool:
 
 
 def exchanges_points(seen: Seen) -> bool:
-    """Whether the points of two links of one body are exchanged."""
+    """Whether the points of two links of one body are exchanged, or others of the same two faces are."""
     theirs, ours = seen.difference.place[1:3]
-    return theirs[1] == theirs[2] and all(
+    exchanged = all(
         abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
     )
+    opposite = abs(theirs[8] - ours[8]) < _ROUNDED and all(
+        abs(a + b) < _ROUNDED for a, b in zip(theirs[7], ours[7], strict=True)
+    )
+    return theirs[1] == theirs[2] and (exchanged or opposite)
 
 
 def names_another_face(seen: Seen) -> bool:
@@ -235,6 +270,64 @@ def is_a_little_nearer(seen: Seen) -> bool:
     return 0.0 < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
 
 
+def is_farther_from_a_fine_hull(seen: Seen) -> bool:
+    """Whether the points are a little farther than PyBullet's, and there is a hull of very many corners."""
+    theirs, ours = seen.difference.place[1:3]
+    if not 0.0 < ours[8] - theirs[8] < _OF_SIMPLIFIED_HULLS:
+        return False
+    return abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED and any(
+        _is_fine(call) for call in seen.before
+    )
+
+
+def _is_fine(call: Call) -> bool:
+    """Whether a call makes a hull of very many corners, or loads a file that has one."""
+    name = call["a"][0] if call["f"].startswith("load") and call["a"] else call["k"].get("fileName")
+    return name in FINE
+
+
+def crosses_capsules(seen: Seen) -> bool:
+    """Whether links of a body from MJCF, where capsules are given by two points, are in each other deeper."""
+    theirs, ours = seen.difference.place[1:3]
+    return seen.loads(".xml") and ours[8] < theirs[8] < 0.0
+
+
+def hits_another_at_the_same_place(seen: Seen) -> bool:
+    """Whether a ray hits another body than PyBullet's, as far away."""
+    theirs, ours = seen.difference.place[1:3]
+    return min(theirs[0], ours[0]) >= 0 and abs(theirs[2] - ours[2]) < _ROUNDED
+
+
+def is_the_same_rotation(seen: Seen) -> bool:
+    """Whether a pose's quaternion is that of PyBullet with the other sign."""
+    theirs, ours = seen.difference.place[1:3]
+    if not (isinstance(theirs, list) and isinstance(ours, list) and len(theirs) == len(ours) == _QUATERNION):
+        return False
+    return all(abs(a + b) < _NO_ROTATION for a, b in zip(theirs, ours, strict=True))
+
+
+def forgets_forces(seen: Seen) -> bool:
+    """Whether forces were applied for a step before which a state was restored."""
+    applied = False
+    for call in seen.before:
+        if call["f"] == "restoreState" and applied:
+            return True
+        if call["f"] in ("stepSimulation", "resetSimulation"):
+            applied = False
+        applied |= call["f"].startswith("applyExternal")
+    return False
+
+
+def numbers_a_child_first(seen: Seen) -> bool:
+    """Whether a file that lists a link before its parent was loaded in the order of its links."""
+    return any(
+        call["f"] == "loadURDF"
+        and call["a"][0] in CHILDREN_FIRST
+        and call["k"].get("flags", 0) & _MAINTAIN_LINK_ORDER
+        for call in seen.before
+    )
+
+
 def nothing_hit_before_the_first_step(seen: Seen) -> bool:
     theirs = seen.difference.place.theirs
     return seen.difference.phase == "start" and seen.differs("rayTest") and theirs[0] == -1
@@ -246,6 +339,38 @@ def rounder(seen: Seen) -> bool:
     if not any(_is_round(call) for call in seen.before):
         return False
     return float(str(said).split("differ: ")[1].split(" of ")[0]) > ours
+
+
+def stands_out_round(seen: Seen) -> bool:
+    """Whether what an image shows elsewhere than PyBullet's is mostly nearer, and some shape is round."""
+    if not any(_is_round(call) for call in seen.before):
+        return False
+    said = re.match(r"(\d+) of (\d+) differ, (\d+) are nearer", str(seen.difference.place.theirs))
+    assert said
+    wrong, count, nearer = map(int, said.groups())
+    return wrong < _SHARE_OF_ROUND_EDGES * count and nearer > _SHARE_OF_NEARER * wrong
+
+
+def shades_as_a_ball(seen: Seen) -> bool:
+    """Whether a pixel whose colour differs shows a body made of cylinders or capsules, or from a file."""
+    label = int(str(seen.difference.place.theirs).rsplit(" of ", 1)[1])
+    made = [call for call in seen.before if call["f"].startswith(("load", "createMultiBody"))]
+    number = label % _LABELS_OF_A_LINK
+    if label < 0 or not made:
+        return False
+    # A file may hold several bodies, so that those after it have higher numbers.
+    body = made[min(number, len(made) - 1)]
+    if any(not call["f"].startswith(("loadURDF", "createMultiBody")) for call in made[: number + 1]):
+        return True
+    said = str([body["a"], body["k"]])
+    return body["f"] == "loadURDF" or any(
+        f"{{'$': {call['id']}}}" in said and _is_long_and_round(call) for call in seen.before
+    )
+
+
+def _is_long_and_round(call: Call) -> bool:
+    kinds = call["k"].get("shapeTypes", call["a"][:1]) if "Shape" in call["f"] else ()
+    return not _LONG_AND_ROUND.isdisjoint(kinds)
 
 
 def _is_round(call: Call) -> bool:

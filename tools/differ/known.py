@@ -19,21 +19,29 @@ from tools.differ.causes import (
     Seen,
     aims_a_ball_joint_by_a_number,
     casts_shadows,
+    crosses_capsules,
     error,
     exchanges_points,
+    forgets_forces,
     goes_on_with_masses,
     has_joints,
+    hits_another_at_the_same_place,
     holds_half_a_turn,
     holds_what_cannot_move,
     is_a_little_nearer,
+    is_farther_from_a_fine_hull,
+    is_the_same_rotation,
     limits_what_has_none,
     makes,
     moved_since_the_last_step,
     names_another_face,
     nothing_hit_before_the_first_step,
+    numbers_a_child_first,
     pybullet_raises,
     reaches_from_positions,
     rounder,
+    shades_as_a_ball,
+    stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
     turns_by_no_rotation,
@@ -111,6 +119,18 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getClosestPoints distance") and is_a_little_nearer(seen),
     ),
     Known(
+        "Hulls of very fine meshes are simplified",
+        lambda seen: seen.differs("getClosestPoints distance") and is_farther_from_a_fine_hull(seen),
+    ),
+    Known(
+        "Capsules that MJCF files give by two points",
+        lambda seen: seen.differs("getClosestPoints depth") and crosses_capsules(seen),
+    ),
+    Known(
+        "Where a ray meets two bodies at the same place",
+        lambda seen: seen.differs("rayTest hit", "rayTestBatch hit") and hits_another_at_the_same_place(seen),
+    ),
+    Known(
         "At a `distance` of 0",
         lambda seen: (
             seen.differs("getClosestPoints pairs", "getClosestPoints depth") and seen.call["a"][2:3] == [0]
@@ -123,7 +143,14 @@ KNOWN: tuple[Known, ...] = (
     Known("PyBullet does not hit what a ray passes outside", nothing_hit_before_the_first_step),
     Known(
         "**Round shapes are round.**",
-        lambda seen: seen.differs("getCameraImage depth") and rounder(seen),
+        lambda seen: (
+            (seen.differs("getCameraImage depth") and rounder(seen))
+            or (seen.differs("getCameraImage segments") and stands_out_round(seen))
+        ),
+    ),
+    Known(
+        "shades cylinders and capsules with the normals of a ball",
+        lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
     ),
     Known(
         "With `currentPositions` the target is in the inertial frame of the base",
@@ -151,6 +178,10 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getLinkState", "getAABB") and turns_by_no_rotation(seen, 1),
     ),
     Known(
+        "the same rotation with the other sign",
+        lambda seen: seen.differs("getLinkState") and is_the_same_rotation(seen),
+    ),
+    Known(
         "constraints to hold them there",
         lambda seen: (
             seen.differs("@probe") and seen.has("createConstraint") and turns_by_no_rotation(seen, 1)
@@ -162,6 +193,14 @@ KNOWN: tuple[Known, ...] = (
             seen.has("restoreState")
             and seen.differs("getJointState .3", "getJointState .2", "getJointStates .", "@probe reactions")
         ),
+    ),
+    Known(
+        "forces applied before it are still applied",
+        lambda seen: seen.differs("@probe") and forgets_forces(seen),
+    ),
+    Known(
+        "`URDF_MAINTAIN_LINK_ORDER` numbers links as the file has them, but a link after its parent",
+        numbers_a_child_first,
     ),
     Known(
         "PyBullet matches bodies by their order",

@@ -1,7 +1,8 @@
 """Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
 
 `at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
-`immovable.json` those with a body whose base cannot move.
+`immovable.json` those with a body whose base cannot move, `children_first.json` those that list a link before
+its parent, and `fine.json` those with a hull of very many corners, and meshes that make one.
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -20,6 +21,10 @@ LEFT_OUT = (
     "model2", "gripper_new_free",
 )  # fmt: skip
 SLOW, MANY_BODIES = 0.4, 8
+MESHES = (
+    "cube.obj", "duck_vhacd.obj", "sphere_smooth.obj", "l_finger_tip.stl", "teddy2_VHACD_CHs.obj", "duck.obj",
+)  # fmt: skip
+MANY_CORNERS = 100
 
 
 def load(name):
@@ -30,13 +35,12 @@ def load(name):
     return list((p.loadSDF if name.endswith("sdf") else p.loadMJCF)(name))
 
 
-def loads(name):
-    """Whether a file can be loaded: tried in a process of its own."""
+def holds(question, name):
+    """Whether a question about a file is answered with yes: asked in a process of its own, which may end."""
     child = os.fork()
     if child == 0:
         try:
-            load(name)
-            os._exit(0)
+            os._exit(0 if question(name) else 1)
         except BaseException:
             os._exit(1)
     return os.waitpid(child, 0)[1] == 0
@@ -51,6 +55,32 @@ def at_limit(body):
     return False
 
 
+def is_fine(body):
+    """Whether a link of a body is a hull of many corners."""
+    for link in range(-1, p.getNumJoints(body)):
+        meshes = [shape for shape in p.getCollisionShapeData(body, link) if shape[2] == p.GEOM_MESH]
+        if meshes and p.getMeshData(body, link)[0] > MANY_CORNERS:
+            return True
+    return False
+
+
+def has_a_fine_hull(name):
+    """Whether a body of a file has such a hull."""
+    return any(map(is_fine, load(name)))
+
+
+def lists_a_child_first(name):
+    """Whether a URDF file lists a link before its parent."""
+    p.resetSimulation()
+    body = p.loadURDF(name, flags=p.URDF_MAINTAIN_LINK_ORDER)
+    return any(p.getJointInfo(body, j)[16] >= j for j in range(p.getNumJoints(body)))
+
+
+def makes_a_fine_hull(name):
+    """Whether the hull of a mesh has many corners."""
+    return is_fine(p.createMultiBody(1, p.createCollisionShape(p.GEOM_MESH, fileName=name)))
+
+
 def main():
     """Write the tables."""
     folder = os.path.dirname(os.path.abspath(__file__))
@@ -59,9 +89,10 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, limits, immovable = [], [], []
+    lines, limits, immovable, children_first = [], [], [], []
+    fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
-        if any(word in name for word in LEFT_OUT) or not loads(name):
+        if any(word in name for word in LEFT_OUT) or not holds(load, name):
             continue
         start = time.time()
         bodies = load(name)
@@ -72,8 +103,13 @@ def main():
             limits.append(name)
         if any(p.getDynamicsInfo(body, -1)[0] == 0 for body in bodies):
             immovable.append(name)
+        if holds(has_a_fine_hull, name):
+            fine.append(name)
         lines.append(f"{json.dumps(name)}: {json.dumps(types, separators=(',', ':'))}")
-    for table, rows in (("at_limits", limits), ("immovable", immovable)):
+        if name.endswith("urdf") and holds(lists_a_child_first, name):
+            children_first.append(name)
+    tables = {"at_limits": limits, "immovable": immovable, "children_first": children_first, "fine": fine}
+    for table, rows in tables.items():
         with open(os.path.join(folder, f"{table}.json"), "w") as file:
             file.write(json.dumps(rows, indent=1) + "\n")
     with open(os.path.join(folder, "assets.json"), "w") as file:

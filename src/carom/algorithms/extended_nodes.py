@@ -87,7 +87,10 @@ def _joint_frame(kind: JointCode, spec: LinkSpec, as_pybullet: bool, *, is_base:
     if is_base:
         return _Frame(_NO_TURN, (0.0, 0.0, 0.0))
     to_inertial = conjugate(spec.inertial_frame.orientation)
-    axis = rotate(to_inertial, spec.joint_axis)
+    x, y, z = rotate(to_inertial, spec.joint_axis)
+    # PyBullet turns z to the axis as it is given, whatever its length.
+    size = spec.joint_axis_length if as_pybullet else 1.0
+    axis = (x * size, y * size, z * size)
     turn = _NO_TURN
     if kind == JointCode.REVOLUTE:
         turn = _shortest_turn(_Z, axis, (0.0, -1.0, 0.0, 0.0))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.algorithms.ask import Ask, asking
-from carom.algorithms.nodes import End, Node, body_nodes
+from carom.algorithms.nodes import End, Node, body_nodes, has_long_axis
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, POSITION_COUNT
 from carom.layouts.mechanism import BASE_MOTION, POSE, MechanismSizes, MechanismTable
 from carom.native.kernels import (
@@ -224,6 +224,21 @@ def mechanism_of(body: Body) -> Mechanism:
     mechanism = body.derived.get(Mechanism)
     if mechanism is None:
         mechanism = body.derived[Mechanism] = Mechanism(*body_nodes(body), free=not body.fixed_base)
+    return mechanism
+
+
+def mechanism_in_pybullet(body: Body) -> Mechanism:
+    """The mechanism of a body as PyBullet's algorithms have it: with joint axes of length 1.
+
+    Steps, there as here, use axes as long as they are given. Cached as in `mechanism_of`.
+    """
+    mechanism = body.derived.get(mechanism_in_pybullet)
+    if mechanism is None:
+        if any(has_long_axis(body, link) for link in range(body.joint_count)):
+            mechanism = Mechanism(*body_nodes(body, unit_axes=True), free=not body.fixed_base)
+        else:
+            mechanism = mechanism_of(body)
+        body.derived[mechanism_in_pybullet] = mechanism
     return mechanism
 
 

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+# Axes whose length differs from 1 by less are rounded ones of length 1.
+_UNIT = 1e-12
+
+
 @dataclass(frozen=True, slots=True)
 class Node:
     """A joint and the rigid body behind it; the first node is the base.
@@ -61,8 +65,11 @@ class End:
     origin: np.ndarray
 
 
-def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
-    """The nodes of a body, parents first, and its links, the base first."""
+def body_nodes(body: Body, *, unit_axes: bool = False) -> tuple[list[Node], list[End]]:
+    """The nodes of a body, parents first, and its links, the base first.
+
+    With `unit_axes`, hinges and sliders whose axis has another length than 1 are taken as if it had that.
+    """
     moving = [link for link, kind in enumerate(body.joint_types) if kind != JointCode.FIXED]
     frames = JointFrames(body, moving)
     ends: list[End] = []
@@ -78,7 +85,8 @@ def body_nodes(body: Body) -> tuple[list[Node], list[End]]:
         carrier, frame = frames.of_joint(link)
         kind = JointCode(body.joint_types[link])
         rigid = (masses[index], moments[index], inertias[index])
-        of_joint = _axes(body, link, kind), body.dynamics(link).joint_armature
+        axes = joint_axes(kind) if unit_axes and has_long_axis(body, link) else _axes(body, link, kind)
+        of_joint = axes, body.dynamics(link).joint_armature
         nodes.append(Node(1 + carrier, kind, *_parts(frame), *rigid, *of_joint))
     return nodes, ends
 
@@ -130,6 +138,14 @@ def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
     none = np.zeros(3)
     slides = (model["link_planar_axis1"][row], model["link_planar_axis2"][row])
     return np.array([(model["link_axis"][row], none), *((none, slide) for slide in slides)])
+
+
+def has_long_axis(body: Body, link: int) -> bool:
+    """Whether a joint is a hinge or slider whose axis is longer or shorter than 1."""
+    if body.joint_types[link] not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
+        return False
+    axis = body.world.arrays.model.numpy["link_axis"][body.first_link + 1 + link]
+    return abs(length(axis) - 1.0) > _UNIT
 
 
 def joint_axes(kind: JointCode) -> np.ndarray:

@@ -109,7 +109,9 @@ class Sweeps:
         if size == 0:
             return np.zeros(0)
         known = self._launches.get((kernel, numbers))
-        question, answer, launch = known or self._launch(kernel, size, numbers)
+        if known is None:
+            known = self._launches[kernel, numbers] = self._launch(kernel, size, numbers)
+        question, answer, launch = known
         np.concatenate([body.world.parameters.gravity, placed, rates, changed], out=question)
         # Kernels do not write entries that are always 0.
         answer.fill(0.0)
@@ -118,16 +120,40 @@ class Sweeps:
             raise ValueError("the answer is not finite")
         return answer.copy()
 
-    def _launch(self, kernel: Kernel, size: int, numbers: tuple[int, ...]) -> Any:
+    def answers(self, kernel: Kernel, size: int, *numbers: int, questions: np.ndarray) -> np.ndarray:
+        """The answers (k, size) of a kernel to questions (k, numbers) as it reads them, a new array.
+
+        Args:
+            kernel: The kernel.
+            size: Length of an answer.
+            numbers: As in `ask`.
+            questions: Gravity, pose of the base, joint positions, velocities, accelerations or forces.
+
+        Raises:
+            ValueError: An answer is not finite.
+        """
+        count = len(questions)
+        known = self._launches.get((kernel, numbers, count))
+        if known is None:
+            known = self._launch(kernel, size, numbers, count)
+            self._launches[kernel, numbers, count] = known
+        question, answer, launch = known
+        question[:] = questions.ravel()
+        answer.fill(0.0)
+        launch()
+        found = answer.reshape(count, size).copy()
+        if size and np.isnan(found[:, 0]).any():
+            raise ValueError("the answer is not finite")
+        return found
+
+    def _launch(self, kernel: Kernel, size: int, numbers: tuple[int, ...], count: int = 1) -> Any:
         batch: Any = MechanismBatch()
-        question = put_zeros(batch, "question", self._length)
-        answer = put_zeros(batch, "answer", size)
+        question = put_zeros(batch, "question", count * self._length)
+        answer = put_zeros(batch, "answer", count * size)
         for name in ("mass", "moment", "inertia", "armature"):
             put_zeros(batch, name, 0)
-        launch = Launch(kernel, 1, [*self._mechanism.structs, self._table, batch, *numbers, 0])
-        made = question, answer, launch.brief_function
-        self._launches[kernel, numbers] = made
-        return made
+        launch = Launch(kernel, count, [*self._mechanism.structs, self._table, batch, *numbers, 0])
+        return question, answer, launch.brief_function
 
 
 def sweeps_of(body: Body) -> Sweeps:

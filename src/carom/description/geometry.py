@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
+from carom.layouts.contacts import MARGIN
 
 if TYPE_CHECKING:
     import numpy as np
@@ -84,10 +85,12 @@ class ConvexHull:
     Attributes:
         points: (n, 3) positions.
         scale: Factor along x, y and z that the points have been multiplied by.
+        margin: Distance of the colliding surface from the hull [m]; 0 for the hull of exactly these points.
     """
 
     points: NDArray[np.float64]
     scale: Vector3 = (1.0, 1.0, 1.0)
+    margin: float = MARGIN
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -31,9 +31,12 @@ def can_collide(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
 
 
 def can_sleep(arrays: WorldArrays) -> bool:
-    """Whether a body may fall asleep, or has to be woken up."""
+    """Whether a body may fall asleep, has to be woken up, or was told to sleep and has to forget it."""
     count = arrays.used["tree"]
     if arrays.model.numpy["tree_can_sleep"][:count].any():
         return True
-    activity = np.asarray(arrays.state.numpy["tree_activity"])[:, :count]
+    state = arrays.state.numpy
+    if np.asarray(state["tree_wants_sleep"])[:, :count].any():
+        return True
+    activity = np.asarray(state["tree_activity"])[:, :count]
     return bool(((activity != ACTIVE) & (activity != ABSENT)).any())

@@ -154,7 +154,7 @@ class PredictionResiduals:
             if row == rows - 1:
                 break
             slopes = self._drive(state, p, window.start + row)
-            by_state, by_input, _ = step_derivatives(world, space, inputs, copies, 0.0)
+            by_state, by_input = step_derivatives(world, space, inputs, copies, 0.0).matrices()
             driven = np.zeros((width, len(p)))
             driven[:, : len(fitted)] = by_input[:, len(self._controls) :]
             for name, place in self._unknowns.delays.items():

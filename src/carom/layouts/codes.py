@@ -60,6 +60,7 @@ class UserConstraintKind(IntEnum):
     TENDON = 8
     TENDON_COUPLING = 9
     TRANSMISSION = 10  # of an actuator to a tendon, or to a site
+    BASE_FRICTION = 11  # dry friction of a free body, along and about three axes each
 
 
 class Activity(IntEnum):
@@ -124,7 +125,9 @@ LIMIT_KIND: dict[int, ConstraintKind] = {
 }
 
 # Joints that can have friction.
-WITH_FRICTION = (JointCode.REVOLUTE, JointCode.PRISMATIC)
+WITH_FRICTION = (JointCode.REVOLUTE, JointCode.PRISMATIC, JointCode.SPHERICAL)
+# Joints that can have actuators.
+DRIVEN = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 
 BASE_POSITIONS = 7
 BASE_VELOCITIES = 6
@@ -155,7 +158,9 @@ UNFILTERED, INTEGRATOR, FILTER, FILTER_EXACT, MUSCLE = map(int, ActivationDynami
 USER_PRISMATIC, USER_FIXED, USER_POINT_TO_POINT, USER_GEAR, USER_COUPLING = map(
     int, tuple(UserConstraintKind)[:5]
 )
-USER_TENDON, USER_TENDON_COUPLING, USER_TRANSMISSION = map(int, tuple(UserConstraintKind)[5:])
+USER_TENDON, USER_TENDON_COUPLING, USER_TRANSMISSION, USER_BASE_FRICTION = map(
+    int, tuple(UserConstraintKind)[5:]
+)
 PATH_JOINT, PATH_SITE, PATH_SPHERE, PATH_CYLINDER, PATH_PULLEY, PATH_BALL, PATH_CRANK = map(int, PathKind)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN, ABSENT = map(int, Activity)
 ISOTROPIC = int(FrictionBound.ISOTROPIC)

@@ -1,4 +1,4 @@
-"""Rows of tables, as native code puts them in and takes them out."""
+"""Rows of tables, as native code puts them in and takes them out, and blocks of memory, as it copies them."""
 
 from carom.layouts.records import Bytes, Int64, Read, c_record
 
@@ -33,3 +33,12 @@ class RowTable:
     references: Read[RowReference]
     column_count: Int64
     reference_count: Int64
+
+
+@c_record()
+class Block:
+    """Memory to be copied."""
+
+    source: Bytes
+    target: Bytes
+    size: Int64

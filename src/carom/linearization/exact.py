@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
+from carom.layouts.contacts import THERE
 from carom.linearization.contact_rows import ContactRows
 from carom.linearization.free_motion import FreeMotion
+from carom.linearization.joint_rows import JointRows, bounded_control
+from carom.linearization.motion_questions import ask_lone, questions_of_step
 from carom.linearization.pair_rows import Places
-from carom.linearization.rows import JointRows, Rows, bounded_control
+from carom.linearization.row_solver import RowSolver, row_solver
+from carom.linearization.rows import Rows
 from carom.linearization.stepping import Copies
-from carom.linearization.taken_step import TakenStep
+from carom.linearization.taken_step import StateBefore, TakenStep
 from carom.linearization.user_rows import UserRows
 
 if TYPE_CHECKING:
@@ -21,119 +26,147 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
-# Singular values of the rows' equations below this share of the greatest one are those of redundant rows: no
-# number of sweeps resolves them.
-_REDUNDANT = 1e-7
+# At most so many rows has a contact or a user constraint, and a constraint of a joint.
+_MOST_ROWS, _BALL_ROWS = 6, 3
 
 
-def step_derivatives(
-    world: World, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
-) -> tuple[np.ndarray, np.ndarray, tuple[tuple[str, str], ...]]:
-    """Perform a step of a copy of a world, and differentiate it.
+@dataclass(frozen=True, eq=False, slots=True)
+class StepFactors:
+    """A step that has been performed, and the factors of its derivatives.
+
+    Columns are changes of positions, of velocities, of activations (nx in all), then of inputs. The
+    velocities after the step are v + h M⁻¹ forces + M⁻¹ Jᵀ λ.
+
+    Attributes:
+        rows: Names and status of all rows.
+        states: Number of states, nx.
+        response: h M⁻¹, (n, n).
+        forces: Derivatives of forces at constant impulses, (n, columns).
+        free_forces: The same without impulses; the same array if there are no rows.
+        solver: What finds the impulses of the rows; None without rows.
+        moving: 1 where a velocity is below the greatest one, else 0, (n,).
+        turned, moved: Derivatives of positions after the step by those before it and by the velocities
+            after it, (n, n).
+        acted, driven: Those of activations by themselves, (a,), and by inputs, (a, inputs).
+    """
+
+    rows: tuple[tuple[str, str], ...]
+    states: int
+    response: np.ndarray
+    forces: np.ndarray
+    free_forces: np.ndarray
+    solver: RowSolver | None
+    moving: np.ndarray
+    turned: np.ndarray
+    moved: np.ndarray
+    acted: np.ndarray
+    driven: np.ndarray
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of the state after the step by that before it (nx, nx), and by inputs (nx, inputs)."""
+        dofs, width = len(self.moving), self.states
+        velocities = self.response @ self.forces
+        _add_identity(velocities, dofs)
+        if self.solver is not None:
+            free = velocities
+            if self.free_forces is not self.forces:
+                free = self.response @ self.free_forces
+                _add_identity(free, dofs)
+            velocities = velocities + self.solver.changes(free, velocities)
+        velocities *= self.moving[:, None]
+        found = np.zeros((width, velocities.shape[1]))
+        found[:dofs] = self.moved @ velocities
+        found[:dofs, :dofs] += self.turned
+        found[dofs : 2 * dofs] = velocities
+        if len(self.acted):
+            found[2 * dofs :, 2 * dofs : width] = np.diag(self.acted)
+            found[2 * dofs :, width:] = self.driven
+        return found[:, :width], found[:, width:]
+
+    def pulled_back(self, cotangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A cotangent (nx,) times `matrices`, (nx,) and (inputs,), without making these."""
+        dofs, width = len(self.moving), self.states
+        given = self.moving * (cotangent[dofs : 2 * dofs] + cotangent[:dofs] @ self.moved)
+        found = np.zeros(self.forces.shape[1])
+        if self.solver is not None:
+            of_free, given, found = self.solver.pulled_back(given)
+            found = found + (of_free @ self.response) @ self.free_forces
+            found[dofs : 2 * dofs] += of_free
+        found = found + (given @ self.response) @ self.forces
+        found[dofs : 2 * dofs] += given
+        found[:dofs] += cotangent[:dofs] @ self.turned
+        if len(self.acted):
+            found[2 * dofs : width] += cotangent[2 * dofs :] * self.acted
+            found[width:] += cotangent[2 * dofs :] @ self.driven
+        return found[:width], found[width:]
+
+
+def _add_identity(velocities: np.ndarray, dofs: int) -> None:
+    """Add 1 to the derivatives of velocities by themselves."""
+    velocities[np.arange(dofs), np.arange(dofs, 2 * dofs)] += 1.0
+
+
+def step_factors(
+    space: TangentSpace, inputs: Sequence[Input], taken: TakenStep, motion: FreeMotion, smoothing: float
+) -> StepFactors:
+    """Differentiate a step that has been performed.
 
     Args:
-        world: The world.
-        space: Its tangent space.
+        space: The tangent space of the world.
         inputs: Controls and parameters.
-        copies: One copy of the world; it is at the end of the step afterwards.
+        taken: The step.
+        motion: Its free motion.
         smoothing: Softness of all rows, relative to their own.
-
-    Returns:
-        Derivatives by the state (nx, nx) and by the inputs (nx, inputs); names and status of all rows.
 
     Raises:
         NotImplementedError: Something in the step has no exact derivatives.
     """
-    taken = TakenStep(world, space, copies)
-    motion = FreeMotion(space, taken)
-    free_q, free_v = motion.derivatives(taken.free_velocity)
-    free_u = motion.input_derivatives(taken.free_velocity, inputs)
-    rows = Rows(space, inputs)
-    places = Places(space, motion)
-    UserRows(space, taken, places, rows).add_all(taken.user_count)
-    ContactRows(space, taken, places, motion, rows).add_all()
+    contacts, users = int(taken.contacts["count_contacts"][THERE]), taken.user_count
+    constraints = taken.constraint_count
+    rows = Rows(space, inputs, _MOST_ROWS * (contacts + users) + _BALL_ROWS * constraints)
+    if contacts or users:
+        places = Places(space, motion)
+        UserRows(space, taken, places, rows).add_all(users)
+        ContactRows(space, taken, places, motion, rows).add_all()
     total = motion.effective @ (taken.solved - taken.free_velocity) - rows.generalized_impulses()
-    JointRows(space, taken, rows, total).add_all(world.arrays.used["constraint"])
-    after_q, after_v, after_u = free_q, free_v, free_u
+    JointRows(space, taken, rows, total).add_all(constraints)
     dofs, active = len(space), len(space.activations)
-    after_a = np.zeros((dofs, active))
+    free_forces = forces = motion.force_derivatives(0, active, inputs)
+    solver = None
     if len(rows):
-        after_q, after_v = motion.derivatives(taken.solved)
-        after_u = motion.input_derivatives(taken.solved, inputs)
-        jacobian = np.stack(rows.jacobian)
-        through = np.stack(rows.by_free_velocity)
+        forces = motion.force_derivatives(1, active, inputs)
         of_after = np.zeros((len(rows), dofs))
-        pushed = np.zeros((dofs, dofs))
         for row, hessian in rows.hessians.items():
-            pushed += rows.impulses[row] * hessian
+            forces[:, :dofs] += rows.impulses[row] / taken.time_step * hessian
             of_after[row] = taken.solved @ hessian
-        after_q = after_q + motion.inverse @ pushed
-        change = _changes_of_rows(
-            rows,
-            motion.inverse @ jacobian.T,
-            [
-                (np.stack(rows.by_position) + through @ free_q, jacobian @ after_q + of_after),
-                (through @ free_v, jacobian @ after_v),
-                (np.stack(rows.by_activation), np.zeros((len(rows), active))),
-                (np.stack(rows.by_input) + through @ free_u, jacobian @ after_u),
-            ],
-            smoothing,
-        )
-        after_q, after_v = after_q + change[:, :dofs], after_v + change[:, dofs : 2 * dofs]
-        after_a = change[:, 2 * dofs : 2 * dofs + active]
-        after_u = after_u + change[:, 2 * dofs + active :]
-    bound = np.concatenate(
-        [
-            np.full(size, taken.model["tree_max_velocity"][body.rows.tree])
-            for body, (_, size) in zip(space.bodies, space.places, strict=True)
-        ]
+        solver = row_solver(rows, motion.inverse, of_after, smoothing)
+    bound = taken.model["tree_max_velocity"][space.trees]
+    return StepFactors(
+        tuple(rows.names),
+        2 * dofs + active,
+        taken.time_step * motion.inverse,
+        forces,
+        free_forces,
+        solver,
+        (np.abs(taken.solved) < bound).astype(float),
+        *space.integration(taken.after, taken.time_step),
+        *_activations(space, taken, inputs),
     )
-    moving = np.where(np.abs(taken.solved) < bound, 1.0, 0.0)[:, None]
-    after_q, after_v, after_a, after_u = (moving * it for it in (after_q, after_v, after_a, after_u))
-    turned, moved = space.integration(taken.after, taken.time_step)
-    acted, driven = _activations(space, taken, inputs)
-    width = 2 * dofs + active
-    by_state, by_input = np.zeros((width, width)), np.zeros((width, len(inputs)))
-    velocities = np.concatenate([after_q, after_v, after_a], axis=1)
-    by_state[dofs : 2 * dofs] = velocities
-    by_state[:dofs] = moved @ velocities
-    by_state[:dofs, :dofs] += turned
-    by_state[2 * dofs :, 2 * dofs :] = np.diag(acted)
-    by_input[dofs : 2 * dofs], by_input[:dofs], by_input[2 * dofs :] = after_u, moved @ after_u, driven
-    return by_state, by_input, tuple(rows.names)
 
 
-def _changes_of_rows(
-    rows: Rows, response: np.ndarray, sides: list[tuple[np.ndarray, np.ndarray]], smoothing: float
-) -> np.ndarray:
-    """Changes of velocities (n, columns) by the changes of all impulses.
+def step_derivatives(
+    world: World, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
+) -> StepFactors:
+    """Perform a step of a copy of a world, and differentiate it; the copy is at its end afterwards.
 
-    Args:
-        rows: The rows.
-        response: M⁻¹ Jᵀ, (n, rows).
-        sides: Right sides of the rows, and changes of their rates at constant impulses, for some columns.
-        smoothing: As in `step_derivatives`.
+    Arguments and errors are those of `step_factors`.
     """
-    alpha, beta = rows.matrix(rows.alpha), rows.matrix(rows.beta)
-    delassus = np.stack(rows.jacobian) @ response
-    if smoothing:
-        beta = beta + smoothing * alpha * np.diag(delassus)
-    system = alpha @ delassus + beta
-    wanted = np.concatenate([side - alpha @ rate for side, rate in sides], axis=1)
-    scale = np.maximum(np.abs(system).max(axis=1, keepdims=True), 1e-300)
-    return response @ _solution(system / scale, wanted / scale)
-
-
-def _solution(system: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """The solution of equations; the least one where some are redundant."""
-    try:
-        inverse = np.linalg.inv(system)
-    except np.linalg.LinAlgError:
-        inverse = None
-    # Of equations far from that the singular values need not be known.
-    if inverse is not None and np.abs(system).sum() * np.abs(inverse).sum() < 1.0 / _REDUNDANT:
-        return inverse @ wanted
-    return np.linalg.lstsq(system, wanted, rcond=_REDUNDANT)[0]
+    copies.apply_forces()
+    before = StateBefore(space, copies)
+    copies.step()
+    taken = TakenStep(world.parameters, space, copies, before)
+    answers = [ask_lone(*it) for it in zip(space.bodies, questions_of_step(space, taken), strict=True)]
+    return step_factors(space, inputs, taken, FreeMotion(space, taken, answers, ask_lone), smoothing)
 
 
 def _activations(

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.dynamics_derivatives import inverse_dynamics_derivatives
-from carom.algorithms.inverse_dynamics import inverse_dynamics
-from carom.algorithms.regressor import joint_torque_regressor
-from carom.layouts.codes import BASE_POSITIONS, PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
+from carom.algorithms.sweeps import sweeps_of
+from carom.layouts.codes import PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
 from carom.linearization.inputs import INERTIAL
+from carom.linearization.motion_questions import Ask, motion_questions
 from carom.linearization.spatial import Spatial, link_forces
-from carom.linearization.turns import cross_matrix, matrix_of
+from carom.linearization.turns import matrix_of
+from carom.native.kernels import regressor_kernel
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
@@ -31,93 +31,117 @@ class FreeMotion:
     Attributes:
         effective: Effective mass matrix M, with armature, damping and springs, (n, n).
         inverse: Its inverse; zeros where nothing can move.
-        spatial: Motion subspaces of each body.
     """
 
-    def __init__(self, space: TangentSpace, taken: TakenStep) -> None:
+    def __init__(self, space: TangentSpace, taken: TakenStep, answers: list[np.ndarray], ask: Ask) -> None:
+        """Take the answers to `questions_of_step`; `ask` answers further questions."""
         self._space = space
         self._taken = taken
-        count, h = len(space), taken.time_step
-        self.spatial: list[Spatial] = []
-        for body, (first, size) in zip(space.bodies, space.places, strict=True):
-            own = slice(first, first + size)
-            links = slice(body.first_link, body.first_link + 1 + body.joint_count)
-            columns = taken.angular[own], taken.linear[own]
-            self.spatial.append(Spatial(body, taken.link_pose[links], columns))
-        dofs = space.dofs
+        self._ask = ask
+        self._spatial: list[Spatial] | None = None
+        count, h, dofs = len(space), taken.time_step, space.dofs
         self._stiffness, self._damping = (
             taken.model["dof_stiffness"][dofs],
             taken.model["dof_implicit_damping"][dofs],
         )
         self._yielding = self._damping + h * self._stiffness
-        self._stretch, self._stretch_q = space.stretch(taken.position, taken.model["position_spring"])
         self.effective: np.ndarray = np.zeros((count, count))
         self.inverse: np.ndarray = np.zeros((count, count))
-        self._forces_q, self._forces_v = np.zeros((count, count)), np.zeros((count, count))
-        self._add_forces()
+        # Derivatives by positions and by velocities, with the accelerations of free motion and of the solver.
+        self._by_state = np.zeros((2, count, 2 * count))
+        for found, (first, size) in zip(answers, space.places, strict=True):
+            own, own_v = slice(first, first + size), slice(count + first, count + first + size)
+            self._by_state[:, own, own] = -found[:, 0]
+            self._by_state[:, own, own_v] = -found[:, 1]
+            effective = found[0, 2].copy()
+            effective.ravel()[:: size + 1] += h * self._yielding[own]
+            self.effective[own, own] = effective
+            self.inverse[own, own] = _inverse(effective)
+        self._add_forces(self._by_state[:, :, :count], self._by_state[:, :, count:])
 
-    def derivatives(self, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of velocities by positions and velocities before, (n, n), at constant impulses.
+    def _stretched(self) -> tuple[np.ndarray, np.ndarray]:
+        """How far springs are stretched, and the derivatives by positions."""
+        taken = self._taken
+        return self._space.stretch(taken.position, taken.model["position_spring"])
 
-        Also finds `effective` and `inverse`.
+    @property
+    def spatial(self) -> list[Spatial]:
+        """Motion subspaces of each body."""
+        if self._spatial is None:
+            space, taken = self._space, self._taken
+            self._spatial = []
+            for body, (first, size) in zip(space.bodies, space.places, strict=True):
+                links = slice(body.first_link, body.first_link + 1 + body.joint_count)
+                columns = taken.angular[first : first + size], taken.linear[first : first + size]
+                self._spatial.append(Spatial(body, taken.link_pose[links], columns))
+        return self._spatial
+
+    def force_derivatives(self, end: int, activations: int, inputs: Sequence[Input]) -> np.ndarray:
+        """Derivatives of the forces, less those that the motion takes, at constant impulses.
 
         Args:
-            after: The velocities after the step with these impulses, (n,).
-        """
-        space, taken, h = self._space, self._taken, self._taken.time_step
-        by_q, by_v = self._forces_q.copy(), self._forces_v.copy()
-        accelerations = (after - taken.velocity) / h
-        known = self.effective.any()
-        for body, (first, size), spatial in zip(space.bodies, space.places, self.spatial, strict=True):
-            own = slice(first, first + size)
-            dtau = _inverse_derivatives(body, taken, own, accelerations[own], spatial)
-            by_q[own, own] -= dtau[0]
-            by_v[own, own] -= dtau[1]
-            if not known:
-                self.effective[own, own] = dtau[2] + np.diag(h * self._yielding[own])
-                self.inverse[own, own] = _inverse(self.effective[own, own])
-        return h * self.inverse @ by_q, np.eye(len(space)) + h * self.inverse @ by_v
+            end: With the accelerations of free motion (0) or those of the solver (1).
+            activations: Number of activations, by which they are 0.
+            inputs: The inputs.
 
-    def _add_forces(self) -> None:
-        """Find the derivatives of forces that do not depend on accelerations."""
+        Returns:
+            By positions, velocities, activations and inputs, (n, nx + inputs).
+        """
+        count = len(self._space)
+        width = 2 * count + activations
+        found = np.zeros((count, width + len(inputs)))
+        found[:, : 2 * count] = self._by_state[end]
+        self._put_input_forces(found[:, width:], self._taken.ends[end], inputs)
+        return found
+
+    def _add_forces(self, by_q: np.ndarray, by_v: np.ndarray) -> None:
+        """Add the derivatives of forces that do not depend on accelerations, (2, n, n)."""
         space, taken = self._space, self._taken
-        by_q, by_v = self._forces_q, self._forces_v
-        for body, (first, size), spatial in zip(space.bodies, space.places, self.spatial, strict=True):
+        for place, (body, (first, size)) in enumerate(zip(space.bodies, space.places, strict=True)):
             own = slice(first, first + size)
             links = slice(body.first_link, body.first_link + 1 + body.joint_count)
             tree = body.rows.tree
-            damping = taken.model["tree_linear_damping"][tree], taken.model["tree_angular_damping"][tree]
-            masses = taken.model["link_mass"][links]
-            constant = taken.link_wrench[links].copy()
-            carried = taken.model["link_gravity_compensation"][links] * masses
-            constant[:, :3] -= carried[:, None] * taken.gravity
-            _, by_q[own, own], by_v[own, own] = link_forces(
-                *(spatial, taken.velocity[own], masses, taken.model["link_inertia"][links]),
-                *(damping, constant),
+            linear, angular = (
+                taken.model["tree_linear_damping"][tree],
+                taken.model["tree_angular_damping"][tree],
             )
-        by_q -= self._stiffness[:, None] * self._stretch_q
-        by_v -= np.diag(self._yielding + taken.model["dof_damping"][space.dofs])
+            compensated = taken.model["link_gravity_compensation"][links]
+            constant = taken.link_wrench[links]
+            if not (linear or angular or constant.any() or compensated.any()):
+                continue
+            masses = taken.model["link_mass"][links]
+            constant = constant.copy()
+            constant[:, :3] -= (compensated * masses)[:, None] * taken.gravity
+            _, pushed_q, pushed_v = link_forces(
+                *(self.spatial[place], taken.velocity[own], masses, taken.model["link_inertia"][links]),
+                *((linear, angular), constant),
+            )
+            by_q[:, own, own] += pushed_q
+            by_v[:, own, own] += pushed_v
+        if self._stiffness.any():
+            by_q -= self._stiffness[:, None] * self._stretched()[1]
+        diagonal = np.arange(len(space))
+        by_v[:, diagonal, diagonal] -= self._yielding + taken.model["dof_damping"][space.dofs]
         drive = taken.drive
         if drive is not None:
             pushed = _explicit_pd(taken.joint_position, taken.velocity, drive)
-            by_q -= np.diag(pushed * drive[:, PD_KP])
-            by_v -= np.diag(pushed * drive[:, PD_KD])
-
-    def input_derivatives(self, after: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
-        """Derivatives of velocities by inputs, (n, inputs), as `derivatives`, which comes before."""
-        return self._taken.time_step * self.inverse @ self._input_forces(after, inputs)
+            by_q[:, diagonal, diagonal] -= pushed * drive[:, PD_KP]
+            by_v[:, diagonal, diagonal] -= pushed * drive[:, PD_KD]
 
     def mass_input_derivatives(self, response: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
         """Derivatives of M response by inputs, (n, inputs), for a constant `response` (n,)."""
         velocity, h = self._taken.velocity, self._taken.time_step
-        return self._input_forces(velocity, inputs) - self._input_forces(velocity + h * response, inputs)
+        found = np.zeros((2, len(self._space), len(inputs)))
+        for part, end in zip(found, (velocity, velocity + h * response), strict=True):
+            self._put_input_forces(part, end, inputs)
+        return found[0] - found[1]
 
-    def _input_forces(self, after: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
-        """Derivatives of the forces, less those that the motion takes, by inputs, (n, inputs)."""
+    def _put_input_forces(self, found: np.ndarray, after: np.ndarray, inputs: Sequence[Input]) -> None:
+        """Put the derivatives of the forces, less those that the motion takes, by inputs into (n, inputs)."""
         space, taken, h = self._space, self._taken, self._taken.time_step
-        found = np.zeros((len(space), len(inputs)))
         accelerations = (after - taken.velocity) / h
         regressors: dict[int, np.ndarray] = {}
+        stretch: np.ndarray | None = None
         for column, given in enumerate(inputs):
             row = given.row
             if given.kind == "torques":
@@ -125,7 +149,8 @@ class FreeMotion:
             elif given.kind == "armature":
                 found[row, column] = -accelerations[row]
             elif given.kind == "stiffness":
-                found[row, column] = -(self._stretch[row] + h * after[row])
+                stretch = self._stretched()[0] if stretch is None else stretch
+                found[row, column] = -(stretch[row] + h * after[row])
             elif given.kind == "damping":
                 explicit = given.field == "dof_damping"
                 found[row, column] = -(taken.velocity if explicit else after)[row]
@@ -141,20 +166,15 @@ class FreeMotion:
                 found[own, column] = self._by_inertia(
                     given, body, own, regressors[place], self.spatial[place]
                 )
-        return found
 
     def mass_derivatives(self, response: np.ndarray) -> np.ndarray:
         """Derivatives of M response by positions, (n, n), for a constant `response` (n,)."""
         found = np.zeros((len(response), len(response)))
-        for body, (first, size), spatial in zip(
-            self._space.bodies, self._space.places, self.spatial, strict=True
-        ):
+        for body, (first, size) in zip(self._space.bodies, self._space.places, strict=True):
             own = slice(first, first + size)
             if response[own].any():
-                with_it, without = (
-                    _inverse_derivatives(body, self._taken, own, response[own] * share, spatial)[0]
-                    for share in (1.0, 0.0)
-                )
+                both = np.stack([response[own], np.zeros(size)])
+                with_it, without = self._ask(body, motion_questions(body, self._taken, own, both))[:, 0]
                 found[own, own] = with_it - without
         return found
 
@@ -211,53 +231,16 @@ def _explicit_pd(positions: np.ndarray, velocities: np.ndarray, drive: np.ndarra
     return np.where((bound > 0.0) & (np.abs(force) < bound), 1.0, 0.0)
 
 
-def _in_own_axes(
-    body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
-    """Positions, velocities, accelerations and the base's rotation, as the algorithms take them."""
-    first = body.first_position
-    count = BASE_POSITIONS + sum(body.position_count)
-    position = taken.position[first : first + count]
-    velocity = taken.velocity[own].copy()
-    changes = accelerations.copy()
-    if body.fixed_base:
-        return position[BASE_POSITIONS:], velocity, changes, None
-    turn = spatial.rotations[0]
-    for vector in (velocity, changes):
-        vector[_ANGULAR], vector[_LINEAR] = vector[_ANGULAR] @ turn, vector[_LINEAR] @ turn
-    return position, velocity, changes, turn
-
-
-def _inverse_derivatives(
-    body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives of the forces that a motion takes by positions, velocities and accelerations.
-
-    Those of a free base are along axes of the world, which the algorithms have along its own.
-    """
-    position, velocity, changes, turn = _in_own_axes(body, taken, own, accelerations, spatial)
-    found = inverse_dynamics_derivatives(body, position, velocity, changes)
-    if turn is None:
-        return found.dtau_dq, found.dtau_dv, found.dtau_da
-    forces = np.array(inverse_dynamics(body, position, velocity, changes))
-    dq = found.dtau_dq.copy()
-    for part in (_ANGULAR, _LINEAR):
-        # Vectors of the world turn the other way for a base that turns.
-        dq[:, _ANGULAR] += found.dtau_dv[:, part] @ cross_matrix(velocity[part])
-        dq[:, _ANGULAR] += found.dtau_da[:, part] @ cross_matrix(changes[part])
-    # `inverse_dynamics` has the force first.
-    dq[_ANGULAR, _ANGULAR] -= cross_matrix(forces[_LINEAR])
-    dq[_LINEAR, _ANGULAR] -= cross_matrix(forces[_ANGULAR])
-    whole = np.eye(len(velocity))
-    whole[_ANGULAR, _ANGULAR] = whole[_LINEAR, _LINEAR] = turn
-    return whole @ dq @ whole.T, whole @ found.dtau_dv @ whole.T, whole @ found.dtau_da @ whole.T
-
-
 def _regressor(
     body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
 ) -> np.ndarray:
-    position, velocity, changes, turn = _in_own_axes(body, taken, own, accelerations, spatial)
-    found = joint_torque_regressor(body, position, velocity, changes).copy()
-    if turn is not None:
+    """Forces per inertial parameter; those of a free base along axes of the world."""
+    question = motion_questions(body, taken, own, accelerations[None])
+    sweeps = sweeps_of(body)
+    width = _PARTS * sweeps.links
+    answers = sweeps.answers(regressor_kernel, sweeps.dofs * width, sweeps.links, questions=question)
+    found = answers.reshape(sweeps.dofs, width)
+    if not body.fixed_base:
+        turn = spatial.rotations[0]
         found[_ANGULAR], found[_LINEAR] = turn @ found[_ANGULAR], turn @ found[_LINEAR]
     return found

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.checks import Array
-from carom.linearization.exact import step_derivatives
-from carom.linearization.inputs import CONTROLS, INERTIAL, PARAMETERS, Input, chosen_inputs
+from carom.checks import Array, vector
+from carom.linearization.chosen import Chosen, chosen_parts
+from carom.linearization.exact import StepFactors, step_derivatives
+from carom.linearization.given_state import GivenState, Start
 from carom.linearization.stepping import copy_of, differences
-from carom.linearization.tangent import TangentSpace
 
 if TYPE_CHECKING:
+    from carom.linearization.inputs import Input
+    from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
 _SIZE = 1e-6
@@ -65,79 +67,100 @@ def linearize(
     method: str,
     smoothing: float,
     outputs: Callable[[World], ArrayLike] | None,
+    start: Start,
 ) -> LinearizedStep:
     """As `World.linearize`."""
-    if steps < 1:
-        raise ValueError(f"steps must be at least 1, not {steps}")
+    check_steps(steps)
     if method not in ("exact", "differences"):
         raise ValueError(f"method must be 'exact' or 'differences', not {method!r}")
     if not smoothing >= 0.0 or (smoothing and method != "exact"):
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
-    world.prepare()
-    space = TangentSpace(world)
-    given = chosen_inputs(world, space, CONTROLS, controls, "control")
-    control_count = len(given)
-    given += chosen_inputs(world, space, PARAMETERS, parameters, "parameter")
+    chosen = chosen_parts(world, controls, parameters)
     rows: tuple[tuple[str, str], ...] = ()
-    _refuse_inertial(world, space, given, method)
+    chosen.refuse_inertial(world.arrays.model.numpy, method)
+    space, count = chosen.space, chosen.control_count
+    given = start.checked(space, chosen.inputs[:count])
     if method == "differences":
-        by_state, by_input = differences(world, space, given, steps, _SIZE)
+        by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE, given)
     else:
-        by_state, by_input, rows = _exact(world, space, given, steps, smoothing)
-    seen, fed = _outputs(world, space, given[:control_count], steps, outputs)
+        taken = performed(world, chosen, steps, smoothing, given)
+        by_state, by_input, rows = *_chained(taken), taken[-1].rows
+    seen, fed = _outputs(world, space, chosen.inputs[:count], steps, outputs, given)
     return LinearizedStep(
         A=by_state,
-        B=by_input[:, :control_count],
+        B=by_input[:, :count],
         C=seen,
         D=fed,
-        E=by_input[:, control_count:],
-        states=_state_names(space),
-        controls=tuple(it.name for it in given[:control_count]),
-        parameters=tuple(it.name for it in given[control_count:]),
+        E=by_input[:, count:],
+        states=chosen.states,
+        controls=chosen.controls,
+        parameters=chosen.parameters,
         rows=rows,
     )
 
 
-def _refuse_inertial(world: World, space: TangentSpace, given: list[Input], method: str) -> None:
-    """Refuse inertial parameters where they have no derivatives."""
-    if all(it.kind != INERTIAL for it in given):
-        return
-    if method != "exact":
-        raise NotImplementedError("inertial parameters have exact derivatives only")
-    model = world.arrays.model.numpy
-    for body in space.bodies:
-        tree, links = body.rows.tree, slice(body.first_link, body.first_link + 1 + body.joint_count)
-        drags = model["tree_linear_damping"][0, tree], model["tree_angular_damping"][0, tree]
-        if any(drags) or model["link_gravity_compensation"][0, links].any():
-            raise NotImplementedError(
-                f"inertial parameters of {body.name!r} have no derivatives with air damping or gravity "
-                "compensation"
-            )
+def check_steps(steps: int) -> None:
+    """Raise `ValueError` unless there is at least one step."""
+    if steps < 1:
+        raise ValueError(f"steps must be at least 1, not {steps}")
 
 
-def _state_names(space: TangentSpace) -> tuple[str, ...]:
-    dofs = [f"{label}.{end}" if end else label for label, end in space.labels]
-    of_positions, of_velocities = ([f"{dof}.{what}" for dof in dofs] for what in ("position", "velocity"))
-    return (*of_positions, *of_velocities, *(f"{name}.activation" for name in space.actuators))
-
-
-def _exact(
-    world: World, space: TangentSpace, given: list[Input], steps: int, smoothing: float
-) -> tuple[np.ndarray, np.ndarray, tuple[tuple[str, str], ...]]:
-    """The derivatives of steps, one after the other."""
+def refuse_substeps(world: World) -> None:
+    """Refuse steps that have no exact derivatives."""
     if world.parameters.substep_count > 1:
         raise NotImplementedError(
             'steps of several substeps have no exact derivatives: use method="differences"'
         )
+
+
+def performed(
+    world: World, chosen: Chosen, steps: int, smoothing: float, start: GivenState
+) -> list[StepFactors]:
+    """The factors of some steps, one after the other, from a given start."""
+    refuse_substeps(world)
     copies = copy_of(world)
-    copies.keep_forces()
-    width = 2 * len(space) + len(space.activations)
-    by_state, by_input = np.eye(width), np.zeros((width, len(given)))
-    rows: tuple[tuple[str, str], ...] = ()
-    for _ in range(steps):
-        stepped, driven, rows = step_derivatives(world, space, given, copies, smoothing)
+    start.write(copies.engine.arrays.state.numpy)
+    if steps > 1:
+        copies.keep_forces()
+    return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
+
+
+def _chained(taken: list[StepFactors]) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives of the last state by the first and by inputs."""
+    by_state, by_input = taken[0].matrices()
+    for factors in taken[1:]:
+        stepped, driven = factors.matrices()
         by_state, by_input = stepped @ by_state, stepped @ by_input + driven
-    return by_state, by_input, rows
+    return by_state, by_input
+
+
+def step_vjp(
+    world: World,
+    cotangent: ArrayLike,
+    controls: Sequence[str],
+    parameters: Sequence[str],
+    steps: int,
+    smoothing: float,
+    start: Start,
+) -> tuple[Array, Array, Array]:
+    """As `World.step_vjp`."""
+    check_steps(steps)
+    chosen = chosen_parts(world, controls, parameters)
+    chosen.refuse_inertial(world.arrays.model.numpy, "exact")
+    count = chosen.control_count
+    given = start.checked(chosen.space, chosen.inputs[:count])
+    pulled = vector(cotangent, len(chosen.states), "cotangent")
+    found = pulled_back(performed(world, chosen, steps, smoothing, given), pulled)
+    return found[0], found[1][:count], found[1][count:]
+
+
+def pulled_back(taken: list[StepFactors], cotangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A cotangent of the last state of some steps, as one of the first (nx,), and one of inputs."""
+    by_input = np.zeros(taken[0].forces.shape[1] - len(cotangent))
+    for factors in reversed(taken):
+        cotangent, driven = factors.pulled_back(cotangent)
+        by_input += driven
+    return cotangent, by_input
 
 
 def _outputs(
@@ -146,12 +169,14 @@ def _outputs(
     controls: list[Input],
     steps: int,
     outputs: Callable[[World], ArrayLike] | None,
+    given_start: GivenState,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Central differences of outputs after the steps, by states and by controls."""
     width = 2 * len(space) + len(space.activations)
     if outputs is None:
         return np.zeros((0, width)), np.zeros((0, len(controls)))
     scene = world.copy()
+    given_start.write(scene.arrays.state.numpy)
     start = scene.snapshot()
     columns: list[np.ndarray] = []
     for number in range(width + len(controls)):

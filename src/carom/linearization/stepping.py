@@ -2,72 +2,107 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from copy import deepcopy
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from carom.engine.engine import Engine
+from carom.engine.workspace import Workspace
 from carom.errors import SimulationError
+from carom.layouts.contacts import OVERLAPS, THERE
 from carom.layouts.status import STATUS, WELL
+from carom.linearization.fields import Fields
+from carom.native.block_copies import BlockCopies
 
 if TYPE_CHECKING:
+    from carom.engine.parameters import EngineParameters
+    from carom.linearization.given_state import GivenState
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
+    from carom.native.tables import ArrayTable
     from carom.world.world import World
 
 # Parameters without effect in trees where all such terms are 0, unless this field says otherwise.
 _JOINT_TERMS = ("dof_armature", "dof_stiffness", "dof_implicit_damping")
 
 
+class _OwnRows(Engine):
+    """An engine whose worlds have rows of their own in the workspace: results of steps are read there."""
+
+    def _make_workspaces(self, threads: int) -> list[Workspace]:
+        return [Workspace(self.arrays.world_count)] * threads
+
+
 class Copies:
-    """Copies of a world, all in its state at first, on one thread.
+    """Copies of a world, all in its state at first, or of the worlds of an engine.
 
     Attributes:
         engine: Their engine.
         state: Fields of their states.
         model: Fields of their models.
+        count: Number of worlds.
     """
 
     def __init__(self, world: World, count: int) -> None:
+        """Make copies of a world, which are stepped on one thread."""
         world.prepare()
-        self._parameters = world.parameters
+        self._parameters: EngineParameters = world.parameters
         self._unspent = world.unspent_time
         arrays = world.arrays.repeated(count)
-        self.engine: Engine = Engine(arrays, world.contact_arrays.repeated(arrays), 1)
-        self.engine.update_settings(world.parameters)
-        self.state: dict[str, np.ndarray] = arrays.state.numpy
-        self.model: dict[str, np.ndarray] = arrays.model.numpy
-        self.count = count
-        self._forces: list[tuple[str, np.ndarray]] = []
+        self._set(_OwnRows(arrays, world.contact_arrays.repeated(arrays), 1))
 
-    def follow(self, world: World) -> bool:
-        """Give one copy the present state and parameters of its world; False if it no longer fits."""
-        mine, its = self.engine.contact_arrays, world.contact_arrays
-        room = mine.contacts.numpy
-        if (
-            len(room["contact_distance"][0]) < its.contact_count
-            or len(room["overlap_place"][0]) < its.overlap_count
-        ):
+    @classmethod
+    def of_engine(cls, engine: Engine, parameters: EngineParameters, threads: int) -> Copies:
+        """A copy of each world of an engine, in its state and with its parameters."""
+        made = cls.__new__(cls)
+        made._parameters, made._unspent = parameters, 0.0
+        made._set(_OwnRows(*deepcopy((engine.arrays, engine.contact_arrays)), threads))
+        made.follow(engine, 0.0)
+        return made
+
+    def _set(self, engine: Engine) -> None:
+        self.engine: Engine = engine
+        engine.update_settings(self._parameters)
+        self.state: dict[str, np.ndarray] = engine.arrays.state.numpy
+        self.model: dict[str, np.ndarray] = engine.arrays.model.numpy
+        self.count = engine.arrays.world_count
+        self._forces: list[tuple[str, np.ndarray]] = []
+        self._blocks: tuple[list[int], BlockCopies] | None = None
+
+    def follow(self, other: Engine, unspent_time: float) -> bool:
+        """Give copies the states and parameters of the worlds of an engine; False if they do not fit."""
+        mine, its = self.engine.contact_arrays, other.contact_arrays
+        room = mine.contacts.capacity
+        counts = its.contacts.numpy["count_contacts"]
+        if int(counts[:, THERE].max()) > room["contact"] or int(counts[:, OVERLAPS].max()) > room["overlap"]:
             return False
-        self._unspent = world.unspent_time
+        self._unspent = unspent_time
         self._forces = []
-        for table, other, names in (
-            (self.engine.arrays.state, world.arrays.state, ""),
-            (self.engine.arrays.model, world.arrays.model, ""),
-            (mine.contacts, its.contacts, ""),
-            (mine.users, its.users, ""),
-            (mine.shapes.table, its.shapes.table, "link_"),
-        ):
-            for name, array in table.numpy.items():
-                if name.startswith(names):
-                    _copy(other.numpy[name], array)
+        self.engine.update_settings(self._parameters)
+        tables = (
+            *((self.engine.arrays.state, other.arrays.state), (self.engine.arrays.model, other.arrays.model)),
+            *((mine.contacts, its.contacts), (mine.users, its.users)),
+            (mine.shapes.table, its.shapes.table),
+        )
+        made_for = [table.replacements for pair in tables for table in pair]
+        if self._blocks is None or self._blocks[0] != made_for:
+            self._blocks = made_for, BlockCopies(_pairs(tables))
+        self._blocks[1]()
         self.engine.status[:] = 0
         mine.forget_order()
         self.engine.activity_changed()
-        self.engine.update_settings(world.parameters)
         return True
+
+    def scratch(self, world: int) -> Fields:
+        """Intermediate results of the last step of a world."""
+        return Fields(self.engine.workspace.scratch, world)
+
+    def pair_rows(self, world: int) -> Fields:
+        """The rows of contacts in the last step of a world."""
+        return Fields(self.engine.workspace.pair_rows, world)
 
     def change(self, given: Input, worlds: np.ndarray, changes: np.ndarray) -> None:
         """Add changes (m,) to an input in m of the worlds."""
@@ -85,39 +120,41 @@ class Copies:
 
     def keep_forces(self) -> None:
         """Apply the present forces and torques on joints and links in every step from now on."""
-        self._forces = [(name, self.state[name].copy()) for name in ("dof_torque", "link_wrench")]
+        state = self.engine.arrays.state.numpy
+        self._forces = [(name, state[name].copy()) for name in ("dof_torque", "link_wrench")]
 
     def apply_forces(self) -> None:
         """Apply the forces that are kept."""
+        state = self.engine.arrays.state.numpy
         for name, forces in self._forces:
-            self.engine.arrays.state.numpy[name][:] = forces
+            state[name][:] = forces
 
-    def step(self) -> None:
-        """Perform a step.
+    def step(self, worlds: np.ndarray | None = None) -> None:
+        """Perform a step of some of the worlds; None for all.
 
         Raises:
             SimulationError: A velocity is not finite.
         """
         self.apply_forces()
         due, self._unspent = self._parameters.substeps_due(self._unspent)
-        self.engine.step([due])
-        if (self.engine.status[:, STATUS] > WELL).any():
+        self.engine.step([due], worlds)
+        if self.engine.status[:, STATUS].max() > WELL:
             raise SimulationError("a step cannot be linearised: a velocity is not finite")
 
 
-def _copy(source: np.ndarray, target: np.ndarray) -> None:
-    """Copy as much as there is room for: the rest of the rows is not in use."""
-    if source.shape == target.shape:
-        target[:] = source
-    else:
-        own = tuple(slice(min(pair)) for pair in zip(source.shape, target.shape, strict=True))
-        target[own] = source[own]
+def _pairs(tables: Iterable[tuple[ArrayTable, ArrayTable]]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Arrays (source, target) of tables (mine, its): of shapes only what belongs to links."""
+    for mine, its in tables:
+        of_shapes = "shape" in mine.capacity
+        for own, other in zip(mine.row_fields, its.row_fields, strict=True):
+            if not of_shapes or own.axis == "link":
+                yield other.array, own.array
 
 
 _kept: WeakKeyDictionary[World, tuple[tuple[object, ...], Copies]] = WeakKeyDictionary()
 
 
-def _made_for(world: World) -> tuple[object, ...]:
+def made_for(world: World) -> tuple[object, ...]:
     """What is the same as long as a copy can follow its world."""
     counts = world.contact_arrays.user_count, *world.arrays.used.values()
     return world.engine, world.engine.changes, counts
@@ -126,17 +163,22 @@ def _made_for(world: World) -> tuple[object, ...]:
 def copy_of(world: World) -> Copies:
     """One copy of a world, in its present state; it is kept for the next call."""
     world.prepare()
-    made_for = _made_for(world)
+    now = made_for(world)
     kept = _kept.get(world)
-    if kept is not None and kept[0] == made_for and kept[1].follow(world):
+    if kept is not None and kept[0] == now and kept[1].follow(world.engine, world.unspent_time):
         return kept[1]
     copies = Copies(world, 1)
-    _kept[world] = _made_for(world), copies
+    _kept[world] = made_for(world), copies
     return copies
 
 
 def differences(
-    world: World, space: TangentSpace, inputs: Sequence[Input], steps: int, size: float
+    world: World,
+    space: TangentSpace,
+    inputs: Sequence[Input],
+    steps: int,
+    size: float,
+    start: GivenState,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Central differences of the state after steps.
 
@@ -146,6 +188,7 @@ def differences(
         inputs: Controls and parameters.
         steps: Number of steps.
         size: Size of the changes; those of inputs are relative if the input is greater than 1.
+        start: What replaces the present state.
 
     Returns:
         Derivatives by the state (nx, nx), and by the inputs (nx, inputs).
@@ -155,6 +198,7 @@ def differences(
     total = width + len(inputs)
     copies = Copies(world, 2 * total)
     state = copies.state
+    start.write(state)
     sizes = np.full(total, size)
     signed = np.concatenate([np.eye(total), -np.eye(total)]) * size
     state["position"][:] = space.moved(state["position"], signed[:, :dofs])

@@ -2,27 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.layouts.codes import PD_MAX_FORCE
-from carom.layouts.contacts import Shapes, UserConstraints
-from carom.layouts.model import Model
+from carom.linearization.fields import Fields
 from carom.linearization.stepping import Copies
 
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
     from carom.linearization.tangent import TangentSpace
-    from carom.world.world import World
 
 
-def _of_first_world(struct: Any, arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Fields of a table with parameters, without the axis of worlds that some have."""
-    return {
-        name: array[0] if getattr(struct.fields.get(name), "ndim", 1) == 2 else array
-        for name, array in arrays.items()
-    }
+class StateBefore:
+    """What a step starts from, as copies, of all worlds of an engine: first axis worlds.
+
+    Attributes:
+        position, velocity, motor, drive, activation, control, link_wrench: See `TakenStep`.
+    """
+
+    __slots__ = ("activation", "control", "drive", "link_wrench", "motor", "position", "velocity")
+
+    def __init__(self, space: TangentSpace, copies: Copies) -> None:
+        state = copies.engine.arrays.state.numpy
+        self.position: np.ndarray = state["position"].copy()
+        self.velocity: np.ndarray = state["dof_velocity"][:, space.dofs]
+        self.motor: np.ndarray = state["dof_motor"][:, space.dofs]
+        self.drive: np.ndarray = state["dof_pd"][:, space.dofs]
+        self.activation: np.ndarray = state["actuator_activation"].copy()
+        self.control: np.ndarray = state["actuator_control"].copy()
+        self.link_wrench: np.ndarray = state["link_wrench"].copy()
 
 
 class TakenStep:
@@ -47,53 +57,51 @@ class TakenStep:
         activation: Activations of all actuators before it.
         control: Controls of all actuators.
         state: Fields of the state after it, without an axis of worlds.
+        ends: Velocities after free motion, and those of the solver, (2, n).
         user_count: Number of user constraints in the engine.
+        constraint_count: Number of joint constraints.
         users, shapes, contacts: Fields of these tables after it, likewise.
     """
 
-    def __init__(self, world: World, space: TangentSpace, copies: Copies) -> None:
-        copies.apply_forces()
-        before = copies.engine.arrays.state.numpy
-        parameters = world.parameters
+    def __init__(
+        self,
+        parameters: EngineParameters,
+        space: TangentSpace,
+        copies: Copies,
+        before: StateBefore,
+        world: int = 0,
+    ) -> None:
+        """Read the step that one of the worlds of `copies` has performed from a state."""
+        arrays, contact_arrays = copies.engine.arrays, copies.engine.contact_arrays
         self.time_step: float = parameters.substep_time
-        self.gravity: np.ndarray = np.array(parameters.gravity)
         self.parameters: EngineParameters = parameters
-        self.model: dict[str, np.ndarray] = _of_first_world(Model, copies.engine.arrays.model.numpy)
-        self.position: np.ndarray = before["position"][0].copy()
-        self.velocity: np.ndarray = before["dof_velocity"][0, space.dofs]
-        self.joint_position: np.ndarray = space.scalars(self.position)
-        self.motor: np.ndarray = before["dof_motor"][0, space.dofs]
-        drive = before["dof_pd"][0, space.dofs]
-        self.drive: np.ndarray | None = drive if (drive[:, PD_MAX_FORCE] > 0.0).any() else None
-        self.activation: np.ndarray = before["actuator_activation"][0].copy()
-        self.control: np.ndarray = before["actuator_control"][0].copy()
-        self.link_wrench: np.ndarray = before["link_wrench"][0].copy()
-        copies.step()
-        self.state: dict[str, np.ndarray] = {
-            name: array[0] for name, array in copies.engine.arrays.state.numpy.items()
-        }
-        contact_arrays = copies.engine.contact_arrays
+        self.model = Fields(arrays.model, world)
+        self.state = Fields(arrays.state, world)
+        self.users = Fields(contact_arrays.users, world)
+        self.shapes = Fields(contact_arrays.shapes.table, world)
+        self.contacts = Fields(contact_arrays.contacts, world)
         self.user_count: int = contact_arrays.user_count
-        self.users: dict[str, np.ndarray] = _of_first_world(UserConstraints, contact_arrays.users.numpy)
-        self.shapes: dict[str, np.ndarray] = _of_first_world(Shapes, contact_arrays.shapes.table.numpy)
-        self.contacts: dict[str, np.ndarray] = {
-            name: array[0] for name, array in contact_arrays.contacts.numpy.items()
-        }
-        self._pair_rows = copies.engine.workspace.pair_rows.numpy
-        scratch = copies.engine.workspace.scratch.numpy
+        self.constraint_count: int = arrays.used["constraint"]
+        self.gravity: np.ndarray = self.model["gravity_vector"][0]
+        self.position: np.ndarray = before.position[world]
+        self.velocity: np.ndarray = before.velocity[world]
+        self.joint_position: np.ndarray = space.scalars(self.position)
+        self.motor: np.ndarray = before.motor[world]
+        drive = before.drive[world]
+        self.drive: np.ndarray | None = drive if (drive[:, PD_MAX_FORCE] > 0.0).any() else None
+        self.activation: np.ndarray = before.activation[world]
+        self.control: np.ndarray = before.control[world]
+        self.link_wrench: np.ndarray = before.link_wrench[world]
+        self._pair_rows = copies.pair_rows(world)
+        scratch = copies.scratch(world)
         self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
-        self.free_velocity: np.ndarray = self.velocity + self.time_step * scratch["dof_force"][0, space.dofs]
-        deltas = np.concatenate(
-            [
-                4 * int(self.model["tree_first_delta"][body.rows.tree]) + np.arange(size)
-                for body, (_, size) in zip(space.bodies, space.places, strict=True)
-            ]
-            or [np.zeros(0, dtype=np.int64)]
-        )
-        self.solved: np.ndarray = self.free_velocity + scratch["delta_velocity"][0].ravel()[deltas]
-        self.angular: np.ndarray = scratch["dof_angular"][0, space.dofs]
-        self.linear: np.ndarray = scratch["dof_linear"][0, space.dofs]
-        self.link_pose: np.ndarray = self.state["link_pose"].copy()
+        self.free_velocity: np.ndarray = self.velocity + self.time_step * scratch["dof_force"][space.dofs]
+        deltas = 4 * self.model["tree_first_delta"][space.trees] + space.places_in_tree
+        self.solved: np.ndarray = self.free_velocity + scratch["delta_velocity"].ravel()[deltas]
+        self.ends: np.ndarray = np.stack([self.free_velocity, self.solved])
+        self.angular: np.ndarray = scratch["dof_angular"][space.dofs]
+        self.linear: np.ndarray = scratch["dof_linear"][space.dofs]
+        self.link_pose: np.ndarray = self.state["link_pose"]
 
     def torsion_impulses(self, contact: int) -> list[float] | None:
         """Impulses of rolling friction, two, and of spinning friction, in the solver's rows of a contact.
@@ -103,16 +111,16 @@ class TakenStep:
         """
         expected = tuple(self.contacts["contact_impulse"][contact])
         # Contacts of rigid bodies have rows of fixed size, in two places that follow each other.
-        of_singles = self._pair_rows["single_impulse"][0]
-        for place in np.flatnonzero(self._pair_rows["single_contact"][0, :-1] == contact).tolist():
+        of_singles = self._pair_rows["single_impulse"]
+        for place in np.flatnonzero(self._pair_rows["single_contact"][:-1] == contact).tolist():
             after = place + 1
-            if self._pair_rows["single_contact"][0, after] != contact:
+            if self._pair_rows["single_contact"][after] != contact:
                 continue
             if tuple(of_singles[place, :3]) == expected:
                 spun, *rolled = of_singles[after, :3].tolist()
                 return [*rolled, spun]
-        impulses = self._pair_rows["row_terms_impulse"][0]
-        normal, lateral, rolling, spinning = self._pair_rows["contact_rows"][0, contact].tolist()
+        impulses = self._pair_rows["row_terms_impulse"]
+        normal, lateral, rolling, spinning = self._pair_rows["contact_rows"][contact].tolist()
         known = impulses[normal], impulses[lateral], impulses[lateral + 1]
         if known != expected:
             return None

@@ -12,9 +12,9 @@ from carom.linearization.turns import (
     cross,
     inverse,
     left_derivative,
-    matrix_of,
     multiplied,
     quaternion_of,
+    turned_by,
     vector_of,
 )
 
@@ -40,6 +40,12 @@ class TangentSpace:
         labels: Names of the dofs in two parts: that of the joint or base, and which one of it, such as "x".
         actuators: Names of the actuators with activations.
         activations: Their rows in the arrays of actuators, (a,).
+        trees: The tree of each dof, (n,).
+        places_in_tree: Its place among the dofs of the tree, (n,).
+        coordinates: Number of all coordinates, and length of `World.position`, which may have spare rows.
+        rates: Likewise of `World.velocity`.
+        dof_of_row: The dofs by their rows of `World.velocity`.
+        column_of_actuator: The columns of activations by rows of actuators.
     """
 
     def __init__(self, world: World, bodies: Iterable[Body] | None = None) -> None:
@@ -94,6 +100,18 @@ class TangentSpace:
         self.dofs: np.ndarray = np.array(rows, dtype=np.int64)
         self.labels: list[tuple[str, str]] = labels
         self.activations: np.ndarray = np.array(active, dtype=np.int64)
+        used = world.arrays.used
+        self.coordinates: tuple[int, int] = used["position"], len(world.position)
+        self.rates: tuple[int, int] = used["dof"], len(world.velocity)
+        sizes = [size for _, size in self.places]
+        self.trees: np.ndarray = np.repeat(
+            np.array([body.rows.tree for body in self.bodies], dtype=np.int64), sizes
+        )
+        self.places_in_tree: np.ndarray = np.concatenate(
+            [np.arange(size) for size in sizes] or [np.zeros(0, dtype=np.int64)]
+        )
+        self.dof_of_row: dict[int, int] = {row: dof for dof, row in enumerate(rows)}
+        self.column_of_actuator: dict[int, int] = {row: column for column, row in enumerate(active)}
         self._positions = np.array([row for row, _ in self._scalars], dtype=np.int64)
         self._columns = np.array([dof for _, dof in self._scalars], dtype=np.int64)
 
@@ -162,13 +180,13 @@ class TangentSpace:
         for _, dof in self._bases:
             own = slice(dof, dof + 3)
             turn = time_step * velocity[own]
-            by_position[own, own] = matrix_of(quaternion_of(turn))
-            by_velocity[own, own] = time_step * left_derivative(turn)
+            by_position[own, own], derivative = turned_by(turn)
+            by_velocity[own, own] = time_step * derivative
         for _, dof in self._balls:
             own = slice(dof, dof + 3)
             turn = -time_step * velocity[own]
-            by_position[own, own] = matrix_of(quaternion_of(turn))
-            by_velocity[own, own] = time_step * left_derivative(turn)
+            by_position[own, own], derivative = turned_by(turn)
+            by_velocity[own, own] = time_step * derivative
         for _, dof, hand in self._planes:
             own = slice(dof + 1, dof + 3)
             by_position[own, own] = _plane_turn(-hand * time_step * velocity[dof])

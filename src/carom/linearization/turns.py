@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from math import sin, sqrt
+
 import numpy as np
 
 _SMALL = 1e-6
+# Angles below this have their derivatives by series.
+_SERIES = 1e-4
+_UNIT = np.eye(3)
 
 
 def cross_matrix(vectors: np.ndarray) -> np.ndarray:
@@ -56,6 +61,34 @@ def matrix_of(quaternions: np.ndarray) -> np.ndarray:
     """Rotation matrices (..., 3, 3) of unit quaternions (..., 4)."""
     skew = cross_matrix(quaternions[..., :3])
     return np.eye(3) + 2.0 * quaternions[..., 3, None, None] * skew + 2.0 * skew @ skew
+
+
+def rotation_of(quaternion: np.ndarray) -> np.ndarray:
+    """As `matrix_of`, of one quaternion (4,), in less time."""
+    x, y, z, w = quaternion.tolist()
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+
+
+def turned_by(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The rotation matrix of a rotation vector (3,), and `left_derivative` of it."""
+    x, y, z = vector.tolist()
+    angle = sqrt(x * x + y * y + z * z)
+    if angle < _SERIES:
+        sine, versine, rest = 1.0 - angle**2 / 6.0, 0.5 - angle**2 / 24.0, 1.0 / 6.0
+    else:
+        sine = sin(angle) / angle
+        half = sin(0.5 * angle) / angle
+        versine, rest = 2.0 * half * half, (1.0 - sine) / angle**2
+    outer = np.array([[x * x, x * y, x * z], [x * y, y * y, y * z], [x * z, y * z, z * z]])
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    cosine = 1.0 - versine * angle**2
+    return cosine * _UNIT + sine * skew + versine * outer, sine * _UNIT + versine * skew + rest * outer
 
 
 def left_derivative(vector: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.layouts.codes import Activity, UserConstraintKind
+from carom.layouts.codes import ABSENT, UserConstraintKind
 from carom.linearization.rows import HOLDS, Rows, status_of
 from carom.linearization.turns import cross, euler_rates, inverse, matrix_of, multiplied
 
@@ -29,16 +29,20 @@ class UserRows:
         self._places = places
         self._rows = rows
         self._space = space
-        self._of_row = {int(row): dof for dof, row in enumerate(space.dofs)}
 
     def add_all(self, count: int) -> None:
         """Add those of the first `count` constraints of the engine."""
-        users, activity = self._taken.users, self._taken.state["tree_activity"]
+        if not count:
+            return
+        users = self._taken.users
+        absent: list[bool] = (self._taken.state["tree_activity"] == ABSENT).tolist()
+        enabled, first, second, kinds = (
+            users[f"user_{name}"][:count].tolist() for name in ("enabled", "tree_a", "tree_b", "kind")
+        )
         for user in range(count):
-            trees = [tree for tree in (users["user_tree_a"][user], users["user_tree_b"][user]) if tree >= 0]
-            if not users["user_enabled"][user] or any(activity[tree] == Activity.ABSENT for tree in trees):
+            if not enabled[user] or any(tree >= 0 and absent[tree] for tree in (first[user], second[user])):
                 continue
-            kind = UserConstraintKind(int(users["user_kind"][user]))
+            kind = UserConstraintKind(kinds[user])
             if kind >= UserConstraintKind.TENDON:
                 raise NotImplementedError(f"{_described(kind)} have no exact derivatives")
             if users["user_impedance"][user][1] > 0.0:
@@ -61,7 +65,7 @@ class UserRows:
         return row if holds else None
 
     def _dof(self, link: int) -> int:
-        return self._of_row[int(self._taken.model["link_first_dof"][link])]
+        return self._space.dof_of_row[int(self._taken.model["link_first_dof"][link])]
 
     def _add_gear(self, user: int) -> None:
         taken, users = self._taken, self._taken.users
@@ -156,4 +160,5 @@ def _described(kind: UserConstraintKind) -> str:
         UserConstraintKind.TENDON: "tendons",
         UserConstraintKind.TENDON_COUPLING: "couplings of tendons",
         UserConstraintKind.TRANSMISSION: "actuators of tendons and sites",
+        UserConstraintKind.BASE_FRICTION: "frictions of free bodies",
     }.get(kind, f"{kind.name.lower().replace('_', ' ')} constraint")

@@ -101,10 +101,13 @@ def moments_at(mass: float, terms: MassTerms) -> Vector3:
     return (x, y, z)
 
 
-def mass_terms(link: LinkSpec, *, implicit_cylinder: bool) -> MassTerms:
-    """The moments of `inertia_from_shapes`, which has the same arguments, as functions of the mass."""
+def mass_terms(link: LinkSpec, *, implicit_cylinder: bool, margin: float = MARGIN) -> MassTerms:
+    """The moments of `inertia_from_shapes`, which has the same arguments, as functions of the mass.
+
+    `margin` is that of a single hull, or of the hulls of an OBJ file together [m].
+    """
     if is_in_place(link.collisions, link.inertial_frame):
-        return _shape_terms(link.collisions[0].geometry, implicit_cylinder)
+        return _shape_terms(link.collisions[0].geometry, implicit_cylinder, margin)
     return _box_terms(12.0, 1.0, link_bounds(link, implicit_cylinder=implicit_cylinder))
 
 
@@ -215,8 +218,8 @@ def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3
     return matrix_product(back, rotation_matrix(shape_frame.orientation)), (px + ox, py + oy, pz + oz)
 
 
-def _shape_terms(geometry: Geometry, implicit_cylinder: bool) -> MassTerms:
-    """Terms of the moments of one shape about the axes of its own frame."""
+def _shape_terms(geometry: Geometry, implicit_cylinder: bool, margin: float) -> MassTerms:
+    """Terms of the moments of one shape about the axes of its own frame, with a margin if it is of hulls."""
     match geometry:
         case Sphere(radius):
             ball = MassTerm(1.0, (0.4, radius, radius)), _NO_TERM
@@ -232,11 +235,12 @@ def _shape_terms(geometry: Geometry, implicit_cylinder: bool) -> MassTerms:
         case Box():
             return _box_terms(12.0, 1.0, bounds)
         case Mesh(path) if path.suffix.lower() == ".obj":
-            return _box_terms(12.0, 1.0, bounds)
+            return _box_terms(12.0, 1.0, bounds.grown(margin - MARGIN))
         case Capsule():
             return _box_terms(1.0, TWELFTH, bounds)
         case _:
-            return _box_terms(1.0, TWELFTH, bounds.grown(MARGIN))
+            # The bounds of the points keep the margin they were found with.
+            return _box_terms(1.0, TWELFTH, bounds.grown(margin - MARGIN).grown(margin))
 
 
 def _box_terms(divisor: float, factor: float, bounds: Bounds) -> MassTerms:

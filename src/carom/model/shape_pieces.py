@@ -136,15 +136,15 @@ def _polyhedral(
     return ShapePiece(kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy)
 
 
-def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
+def _hull_piece(points: NDArray[np.float64], margin: float = MARGIN) -> ShapePiece:
     """The hull of points, once made for the same ones: files and scripts bring the same again and again."""
-    key = blake2b(points.astype(np.float64).tobytes(), digest_size=20).digest()
+    key = blake2b(np.append(points.astype(np.float64), margin).tobytes(), digest_size=20).digest()
     with _hulls_lock:
         known = _hulls.pop(key, None)
         if known is not None:
             _hulls[key] = known
             return known
-    made = _made_hull(points)
+    made = _made_hull(points, margin)
     with _hulls_lock:
         _hulls[key] = made
         while len(_hulls) > MAX_HULLS:
@@ -152,17 +152,17 @@ def _hull_piece(points: NDArray[np.float64]) -> ShapePiece:
     return made
 
 
-def _made_hull(points: NDArray[np.float64]) -> ShapePiece:
+def _made_hull(points: NDArray[np.float64], margin: float) -> ShapePiece:
     try:
         hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
     except ValueError as problem:
         # The points are too far apart, or flat and so far apart that rounding removes the added thickness.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
     low, high = points.min(axis=0), points.max(axis=0)
-    if (high - low).min() > SMALLEST:
+    if margin > 0.0 and (high - low).min() > SMALLEST:
         # Coplanar points may not be coplanar on the grid, so the faces are determined first.
         hull = hull.with_vertices(_on_grid(hull.vertices, low, high))
-    return _polyhedral(ShapeKind.HULL, hull, MARGIN)
+    return _polyhedral(ShapeKind.HULL, hull, margin)
 
 
 @lru_cache(_CACHED)
@@ -200,7 +200,7 @@ def _on_grid(
 
 @lru_cache(_CACHED)
 def _hull_of(geometry: ConvexHull) -> ShapePiece:
-    return _hull_piece(geometry.points)
+    return _hull_piece(geometry.points, geometry.margin)
 
 
 @lru_cache(_CACHED)

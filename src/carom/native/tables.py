@@ -142,6 +142,7 @@ class ArrayTable:
         self._fields = {
             name: field for name, field in fields_of(struct).items() if name not in self._entry_views
         }
+        self._per_world: dict[str, bool] = {}
         self._world_counts = dict.fromkeys(self._fields, world_count)
         self.capacity: dict[str, int] = {field.axis: first_capacity for field in self._fields.values()}
         self.replacements: int = 0
@@ -188,8 +189,16 @@ class ArrayTable:
 
     def is_per_world(self, name: str) -> bool:
         """Whether the array of that name in `numpy` has a world axis."""
-        field = self._fields.get(name) or self._fields[name.partition("_")[0]]
-        return field.per_world
+        known = self._per_world.get(name)
+        if known is None:
+            # That of an array of structs is named after the array and a field of the struct.
+            array = name
+            while (field := self._fields.get(array)) is None:
+                array, _, part = array.rpartition("_")
+                if not part:
+                    raise KeyError(name)
+            known = self._per_world[name] = field.per_world
+        return known
 
     def bytes_of(self, name: str) -> memoryview[int]:
         """The memory of a field: reading a few rows takes less time than reading one row with NumPy."""

@@ -257,14 +257,14 @@ def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
 def shape_terms(body: Body, link: int) -> MassTerms:
     """The principal moments of inertia of a link's collision shapes as a function of the mass.
 
-    The margin that `collision_margin` has set widens the box that several shapes count as.
+    The margin that `collision_margin` has set widens the box that several shapes, or a hull, count as.
     """
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     spec = body.link_spec(link)
     margin = body.dynamics(link).collision_margin
-    if margin != collision_margin(spec):
-        spec = replace(spec, compound_margin=margin)
-    return mass_terms(spec, implicit_cylinder=implicit)
+    if margin == collision_margin(spec):
+        return mass_terms(spec, implicit_cylinder=implicit)
+    return mass_terms(replace(spec, compound_margin=margin), implicit_cylinder=implicit, margin=margin)
 
 
 def has_margin(body: Body, link: int) -> bool:

@@ -53,8 +53,16 @@ class JointConstraint:
     impedance: Four = NONE
     margin: float = 0.0
 
-    def yield_as(self, compliance: Compliance | None) -> None:
-        """Let it yield, unless there is no compliance."""
+    def yield_as_described(self) -> None:
+        """Let a limit, or friction that the joint had from the start, yield as its description says."""
+        if self.user is not None or self.kind not in (ConstraintKind.LIMIT, ConstraintKind.FRICTION):
+            return
+        link = self.body.spec.links[self.joint]
+        compliance: Compliance | None = None
+        if self.kind == ConstraintKind.LIMIT:
+            compliance, self.margin = link.limit_compliance, link.limit_margin
+        elif link.friction > 0.0:
+            compliance = link.friction_compliance
         if compliance is not None:
             self.reference, self.impedance = compliance.reference, compliance.impedance
 
@@ -101,8 +109,7 @@ class JointConstraints:
                     )
             elif link.limited:
                 limit = JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper)
-                limit.yield_as(link.limit_compliance)
-                limit.margin = link.limit_margin
+                limit.yield_as_described()
                 self.all.append(limit)
         for joint, code in enumerate(body.joint_types):
             if code in MOTOR_KIND:
@@ -111,7 +118,7 @@ class JointConstraints:
             for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
                 if code in WITH_FRICTION and link.friction > 0.0:
                     friction = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=link.friction)
-                    friction.yield_as(link.friction_compliance)
+                    friction.yield_as_described()
                     self.all.append(friction)
         for number, actuator in enumerate(body.spec.actuators):
             if not drives_joint(actuator):

@@ -28,6 +28,7 @@ ROWS = {
     UserConstraintKind.TENDON: 3,
     UserConstraintKind.TENDON_COUPLING: 1,
     UserConstraintKind.TRANSMISSION: 1,
+    UserConstraintKind.BASE_FRICTION: 6,
 }
 _MAX_ROWS = 6
 _ROW_BYTES = 8 * _MAX_ROWS
@@ -110,7 +111,8 @@ class UserConstraint:
             to a site: force along its axes, per force of the actuator.
         armature: Of a tendon: inertia along it.
         range: Of a tendon: least and greatest length, friction, margin. Of coupled ones: the lengths from
-            which both are counted. Of a transmission to a site: torque about its axes.
+            which both are counted. Of a transmission to a site: torque about its axes. Of friction of a base:
+            its greatest force and torque, in the place of that of a tendon.
         reference: Of a compliant constraint: time constant and damping ratio, or minus stiffness and damping;
             midpoint and power of the impedance's curve.
         impedance: Of a compliant constraint: least and greatest impedance, width, and the inverse mass for

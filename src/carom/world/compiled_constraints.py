@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BASE
+from carom.scene.named_constraints.base_friction import new_base_friction
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.named_constraints.tie import Connect, Weld, new_tie
@@ -45,6 +46,9 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
         yield_as(tie, it.compliance)
         _put(first[0], tie, enabled=it.enabled)
         made.append(Weld(tie) if it.is_weld else Connect(tie))
+    free = {body.name: body for body in bodies}
+    for it in model.frictions:
+        _put(free[it.body], new_base_friction(free[it.body], it.friction, it.compliance), enabled=True)
     if model.tendons or any(it.spec is not None and it.spec.site for it in model.actuators):
         made += add_tendons(bodies, model, place)
     return made

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 from numpy.typing import ArrayLike
 
 if TYPE_CHECKING:
+    from carom.checks import Array
     from carom.linearization import LinearizedStep
     from carom.world.world import World
 
@@ -24,6 +25,10 @@ class Linearizing:
         method: str = "exact",
         smoothing: float = 0.0,
         outputs: Callable[[World], ArrayLike] | None = None,
+        positions: ArrayLike | None = None,
+        velocities: ArrayLike | None = None,
+        activations: ArrayLike | None = None,
+        control_values: ArrayLike | None = None,
     ) -> LinearizedStep:
         """What the next steps would do to small changes of state, controls and parameters.
 
@@ -46,6 +51,11 @@ class Linearizing:
                 a tenth. Only with "exact".
             outputs: A function that returns numbers, such as readings of sensors, of a world after the steps;
                 for `C` and `D`, which are found by central differences.
+            positions: Positions to linearise at, as `position`; None for the present ones. Contacts start
+                from the impulses that they have now.
+            velocities: Velocities, as `velocity`, likewise.
+            activations: Activations of actuators, in the order of `LinearizedStep.states`, (a,), likewise.
+            control_values: Values of the controls, in their order; None for the present ones.
 
         Returns:
             The matrices, and what their rows and columns are.
@@ -55,7 +65,56 @@ class Linearizing:
             NotImplementedError: Something in these steps has no exact derivatives; it is named.
             carom.errors.SimulationError: A velocity is not finite.
         """
+        from carom.linearization.given_state import Start
         from carom.linearization.linearized_step import linearize
 
         world = cast("World", self)
-        return linearize(world, controls, parameters, steps, method, smoothing, outputs)
+        return linearize(
+            *(world, controls, parameters, steps, method, smoothing, outputs),
+            Start(positions, velocities, activations, control_values),
+        )
+
+    def step_vjp(
+        self,
+        cotangent: ArrayLike,
+        controls: Sequence[str] = ("torques",),
+        *,
+        parameters: Sequence[str] = (),
+        steps: int = 1,
+        smoothing: float = 0.0,
+        positions: ArrayLike | None = None,
+        velocities: ArrayLike | None = None,
+        activations: ArrayLike | None = None,
+        control_values: ArrayLike | None = None,
+    ) -> tuple[Array, Array, Array]:
+        """The vector-Jacobian product of the next steps, for reverse differentiation.
+
+        It takes the gradient of a number by the state after the steps back to what the steps start from. The
+        matrices of `linearize` are not made: of n dofs and r rows, a step takes n² and r³ operations more.
+
+        Args:
+            cotangent: The gradient by the state after the steps, (nx,), in the order of
+                `LinearizedStep.states`.
+            controls: As in `linearize`, like all that follow.
+            parameters: Likewise.
+            steps: Number of steps.
+            smoothing: Softness of rows that hold.
+            positions: Positions to start from.
+            velocities: Velocities to start from.
+            activations: Activations to start from.
+            control_values: Values of the controls.
+
+        Returns:
+            cotangent A (nx,), cotangent B (nu,) and cotangent E (np,).
+
+        Raises:
+            ValueError, NotImplementedError, carom.errors.SimulationError: As `linearize`.
+        """
+        from carom.linearization.given_state import Start
+        from carom.linearization.linearized_step import step_vjp
+
+        world = cast("World", self)
+        return step_vjp(
+            *(world, cotangent, controls, parameters, steps, smoothing),
+            Start(positions, velocities, activations, control_values),
+        )

@@ -452,7 +452,7 @@ def _make_ties(
 
 def _check_path(body: Body, record: SavedTie) -> None:
     """Raise `ValueError` unless the path of a constraint is one, and its actuator exists."""
-    if record.kind < UserConstraintKind.TENDON:
+    if record.kind < UserConstraintKind.TENDON or record.kind is UserConstraintKind.BASE_FRICTION:
         return
     if record.kind is UserConstraintKind.TENDON:
         stiffness, damping, *rest = record.spring
@@ -515,6 +515,7 @@ def _order_constraints(
         limits = record.lower, record.upper, record.twist
         rest = tie, record.max_impulse, record.actuator
         own.append(JointConstraint(body, record.joint, record.kind, *limits, *rest))
+        own[-1].yield_as_described()
     if used != ties.keys():
         raise ValueError("a constraint is missing")
     world.constraints.all = own

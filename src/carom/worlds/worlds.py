@@ -19,6 +19,7 @@ from carom.native.cpu import core_count
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
+from carom.worlds.algorithms.linearizing import Linearizing
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.checks import Mask
@@ -40,7 +41,7 @@ _MAX_NAMED = 8
 """Maximum number of worlds named in a warning when several halt."""
 
 
-class Worlds(ContactQueries, Closed):
+class Worlds(ContactQueries, Linearizing, Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.

@@ -146,14 +146,14 @@ def calculateInverseDynamics(
         with _refusing_overflow(_INVERSE_DYNAMICS):
             return tuple(extended_bias_forces(body, q, qd).tolist())
 
-    from carom.algorithms.mechanism import mechanism_of
+    from carom.algorithms.mechanism import mechanism_in_pybullet
 
     if floating:
         if not any(q[3:_BASE_POSITIONS]):
             # Scripts that fill a list with zeros mean no turn, and in PyBullet get it.
             q = (*q[:3], *_NO_TURN, *q[_BASE_POSITIONS:])
         _check_rotation(q[3:_BASE_POSITIONS], _INVERSE_DYNAMICS)
-    forces = client.bodies.forces_of_motion[body.id] = mechanism_of(body).forces_in_pybullet
+    forces = client.bodies.forces_of_motion[body.id] = mechanism_in_pybullet(body).forces_in_pybullet
     with _refusing_overflow(_INVERSE_DYNAMICS):
         return forces(client.world.parameters.gravity, q, qd, qdd)
 
@@ -229,11 +229,10 @@ def calculateJacobian(
         fail(_JACOBIAN_SIZES, f"Body {body.id} ({body.name}) has no joint that moves.")
     link_of(body, link, "linkIndex", "Internal error in calculateJacobian")
 
-    from carom.algorithms import jacobian
+    from carom.algorithms.mechanism import mechanism_in_pybullet
 
     with _refusing_overflow(_JACOBIAN_SIZES):
-        linear, angular = jacobian(body, link, values["localPosition"], values["objPositions"])
-    return _rows(linear), _rows(angular)
+        return mechanism_in_pybullet(body).jacobian(link, values["localPosition"], values["objPositions"])
 
 
 @exported
@@ -293,10 +292,10 @@ def calculateMassMatrix(
         with _refusing_overflow(problem):
             return _rows(extended_mass_matrix(body, q[:needed]))
 
-    from carom.algorithms import mass_matrix
+    from carom.algorithms.mechanism import mechanism_in_pybullet
 
     with _refusing_overflow(problem):
-        return _rows(mass_matrix(body, joint_coordinates(body, q[:needed])))
+        return mechanism_in_pybullet(body).mass_matrix(joint_coordinates(body, q[:needed]))
 
 
 @contextmanager

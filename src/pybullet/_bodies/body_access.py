@@ -131,9 +131,9 @@ class BodyAccess:
         """The body's equations of motion; None if a joint has more than one degree of freedom."""
         if any(freedoms > 1 for freedoms in self.body.velocity_count):
             return None
-        from carom.algorithms.mechanism import mechanism_of
+        from carom.algorithms.mechanism import mechanism_in_pybullet
 
-        return mechanism_of(self.body)
+        return mechanism_in_pybullet(self.body)
 
     @cached_property
     def joint_infos(self) -> dict[int, JointInfo]:

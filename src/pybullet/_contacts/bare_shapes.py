@@ -62,16 +62,20 @@ def bare_shape(
 
 
 def links_of(client: Client, body_id: int, link: int) -> list[Thing]:
-    """One link of a body, or with `BARE_LINK` all; an empty list if there is no such body or link."""
+    """One link of a body where it is now, or with `BARE_LINK` all; none if there is no such body or link."""
     body = client.world.bodies.get(body_id)
     if body is None:
         return []
     things = []
+    # After a step, `link_pose` alone is that of the start of its last substep.
+    with client.world.present_poses():
+        first = body.first_link
+        poses = client.world.link_pose[first : first + 1 + body.joint_count].tolist()
     for index in range(-1, body.joint_count) if link == BARE_LINK else [link]:
         if not -1 <= index < body.joint_count:
             continue
         spec = body.link_spec(index)
-        x, y, z, qx, qy, qz, qw = client.world.link_pose[body.first_link + 1 + index].tolist()
+        x, y, z, qx, qy, qz, qw = poses[1 + index]
         pose = compose(Pose((x, y, z), (qx, qy, qz, qw)), inverse(spec.inertial_frame))
         copy = replace(spec, parent=-1, visuals=())
         things.append(

@@ -32,6 +32,7 @@ from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import OUT_OF_RANGE, body_access, joint_access, joint_of
 from pybullet._joints.joints import NO_INDICES
+from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
     from pybullet._bodies.body_access import BodyAccess
@@ -43,6 +44,7 @@ _DAMPING = (1.0,)
 _UNUSED = (nan,) * TARGET_ENTRIES
 _ARRAY_MODES = (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL)
 _QUATERNION = 4
+_ROUNDED = 1e-12
 
 
 @exported
@@ -100,6 +102,7 @@ def setJointMotorControlMultiDof(
         fail(_ILLEGAL_MODE, f"{mode} is neither position nor torque control.")
     if mode == POSITION_CONTROL and len(position) == _QUATERNION:
         _check_rotation(position)
+        position = _rotation(position)
     _command(access, joint, mode, (position, velocity, forces, kp, kd, damped), clamp)
 
 
@@ -182,7 +185,8 @@ def setJointMotorControlMultiDofArray(
         return
     columns = [column.entries or [()] * count for column in (positions, velocities, bounds)]
     for joint, position, velocity, force, kp, kd in zip(joints, *columns, kps, kds, strict=True):
-        lists = (position, velocity, force, (kp,), (kd,), _DAMPING)
+        turn = _rotation(position) if len(position) == _QUATERNION else position
+        lists = (turn, velocity, force, (kp,), (kd,), _DAMPING)
         _command(access, joint, mode, lists, NO_CLAMP)
 
 
@@ -224,6 +228,12 @@ def _gain(value: float | Vector, name: str) -> tuple[float, ...]:
     if isinstance(value, SupportsFloat) and not getattr(value, "ndim", 0):
         return (quantity(value, name),)
     return quantities(value, f"expected a {name} sequence", name)[:3]
+
+
+def _rotation(position: Sequence[float]) -> Sequence[float]:
+    """The rotation that a quaternion of any length stands for; as it is if that is 1 but for rounding."""
+    x, y, z, w = position
+    return position if abs(x * x + y * y + z * z + w * w - 1.0) < _ROUNDED else unit((x, y, z, w))
 
 
 def _check_rotation(position: Sequence[float]) -> None:

@@ -335,3 +335,31 @@ def test_rays_of_a_link_start_where_it_was_at_the_start_of_the_last_substep(clie
     assert hit[3][2] == pytest.approx(height(body))
     (hit,) = p.rayTestBatch([[0, -1, 0]], [[0, -9, 0]], 1, body, -1)
     assert hit[3][2] == pytest.approx(p.getBasePositionAndOrientation(body)[0][2])
+
+
+@pytest.mark.parametrize(("link", "distance"), [(-1, 0.18667658806331805), (0, 0.863273728645406)])
+def test_shapes_without_bodies_are_near_what_has_just_moved(client, link, distance):
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    two = p.createMultiBody(
+        1,
+        ball,
+        basePosition=[0.3, 0.1, 0.4],
+        linkMasses=[1],
+        linkCollisionShapeIndices=[ball],
+        linkVisualShapeIndices=[-1],
+        linkPositions=[[1, 0, 0]],
+        linkOrientations=[[0, 0, 0, 1]],
+        linkInertialFramePositions=[[0, 0, 0]],
+        linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        linkParentIndices=[0],
+        linkJointTypes=[p.JOINT_REVOLUTE],
+        linkJointAxis=[[0, 0, 1]],
+    )
+    p.setGravity(0, 0, -9.8)
+    p.setPhysicsEngineParameter(numSubSteps=4)
+    p.resetBaseVelocity(two, [0, 0, -1], [0, 2, 0])
+    for _ in range(3):
+        p.stepSimulation()
+    below = {"collisionShapeB": ball, "collisionShapePositionB": [0.3, 0.1, 0]}
+    (point,) = p.getClosestPoints(two, -1, 5, linkIndexA=link, **below)
+    assert point[8] == pytest.approx(distance, abs=1e-12)

@@ -189,3 +189,14 @@ def test_fixed_bases_and_bodies_without_shapes_never_sleep() -> None:
     p.setGravity(0, 0, -10)
     steps(3)
     assert height(ghost) < 0
+
+
+def test_sleep_that_is_not_enabled_is_over_after_a_step() -> None:
+    body = p.createMultiBody(1, p.createCollisionShape(p.GEOM_BOX, halfExtents=[RADIUS] * 3))
+    p.setGravity(0, 0, -10)
+    p.changeDynamics(body, -1, activationState=p.ACTIVATION_STATE_SLEEP)
+    steps(1)
+    p.changeDynamics(body, -1, activationState=p.ACTIVATION_STATE_ENABLE_SLEEPING)
+    steps(2)
+    # In PyBullet, too, it has fallen for all three steps: by 1 + 2 + 3 times g dt², but for damping.
+    assert height(body) == pytest.approx(-6 * 10 / 240**2, rel=1e-3)

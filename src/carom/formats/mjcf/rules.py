@@ -72,8 +72,8 @@ _READ = {
     "mujoco": "model",
     "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
     "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
-    "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic solver "
-    "timestep viscosity wind",
+    "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic o_friction "
+    "o_margin o_solimp o_solref solver timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
     "texture": "class file name type",
@@ -106,7 +106,6 @@ _READ = {
 
 _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("compiler", "conflict", "settings of attached models do not reach this one", _YET),
-    ("option", "o_friction o_margin o_solimp o_solref", _SOFT, _YET),
     ("option", "sleep_tolerance", "bodies do not fall asleep", _YET),
     ("body", "sleep", "it does not fall asleep", _YET),
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),

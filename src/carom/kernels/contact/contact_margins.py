@@ -55,6 +55,8 @@ def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other:
     """
     if not is_part_of_compound(shapes, part) or is_part_of_compound(shapes, other):
         return True
+    if shapes.shape_kind[part] == PLANE:
+        return True
     if shapes.shape_kind[other] == PLANE or shapes.shape_kind[other] >= TRIANGLES:
         return True
     pose = shapes.shape_pose[part]

@@ -16,16 +16,22 @@ def friction_row(
     constraint: Int32,
     row: Int32,
 ) -> Int32:
-    """Add the row of a revolute or prismatic joint's friction; returns the next free row.
+    """Add the rows of a joint's friction, one for each of its dofs; returns the next free row.
 
-    The greatest force is the upper bound of the constraint.
+    The greatest force along each is the upper bound of the constraint.
     """
     bound = model.constraint_upper[world, constraint] * settings.time_step
     if bound == 0.0:
         return row
-    if model.constraint_impedance[world, constraint][1] > 0.0:
-        return yielding_row(model, settings, state, scratch, world, constraint, row, real(0.0), -bound, bound)
-    dof = model.link[model.constraint[constraint].link].first_dof
-    effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
-    change = -state.dof_velocity[world, dof]
-    return add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, bound)
+    link = model.constraint[constraint].link
+    first = model.link[link].first_dof
+    for dof in range(first, first + model.link[link].dof_count):
+        if model.constraint_impedance[world, constraint][1] > 0.0:
+            row = yielding_row(
+                model, settings, state, scratch, world, constraint, row, dof, real(0.0), -bound, bound
+            )
+        else:
+            effective_mass = dof_effective_mass(model, scratch, world, model.constraint[constraint].tree, dof)
+            change = -state.dof_velocity[world, dof]
+            row = add_row(model, scratch, world, constraint, row, dof, change, effective_mass, -bound, bound)
+    return row

@@ -54,11 +54,11 @@ def limit_rows(
     if model.constraint_impedance[world, constraint][1] > 0.0:
         if below >= 0.0:
             row = yielding_row(
-                model, settings, state, scratch, world, constraint, row, -below, 0.0, _UNBOUNDED
+                model, settings, state, scratch, world, constraint, row, dof, -below, 0.0, _UNBOUNDED
             )
         if above >= 0.0:
             row = yielding_row(
-                model, settings, state, scratch, world, constraint, row, above, -_UNBOUNDED, 0.0
+                model, settings, state, scratch, world, constraint, row, dof, above, -_UNBOUNDED, 0.0
             )
         return row
     bound = model.constraint_max_impulse[world, constraint]

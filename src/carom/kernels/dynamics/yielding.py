@@ -62,6 +62,7 @@ def yielding_row(
     world: Int32,
     constraint: Int32,
     row: Int32,
+    dof: Int32,
     error: real,
     lower: real,
     upper: real,
@@ -71,7 +72,6 @@ def yielding_row(
     `error` is by how much the joint is beyond its limit, with its sign; 0 for friction.
     """
     tree = model.constraint[constraint].tree
-    dof = model.link[model.constraint[constraint].link].first_dof
     place = dof - model.tree[tree].first_dof
     inverse_mass = inverse_mass_entry(model, scratch, world, tree, place, place)
     if inverse_mass <= MIN_INVERSE_MASS:

@@ -30,7 +30,7 @@ from carom.kernels.mechanism.sweep import (
     sweep_positions,
 )
 from carom.kernels.structs import MechanismBatch, MechanismSizes, MechanismTable, SweepTable
-from carom.kernels.types import Int32, Reals, Vector3, func, kernel
+from carom.kernels.types import Int32, Matrix3, Reals, Vector3, func, kernel
 
 
 @func
@@ -117,6 +117,96 @@ def inverse_derivatives_kernel(
     inverse_derivatives(
         sizes, mechanism, sweep, batch.question, first, batch.question, changes, batch.answer, start
     )
+    note_overflow(batch.answer, start, 3 * count * count)
+
+
+@func
+def put_vector(numbers: Reals, first: Int32, v: Vector3):
+    """Write a vector from `first` on."""
+    numbers[first] = v[0]
+    numbers[first + 1] = v[1]
+    numbers[first + 2] = v[2]
+
+
+@func
+def turn_base(count: Int32, turn: Matrix3, answer: Reals, start: Int32):
+    """Turn what a matrix has of a free base, rows and columns, from the axes of the base to the world's."""
+    for row in range(count):
+        for part in range(2):
+            place = start + row * count + 3 * part
+            put_vector(answer, place, turn * vector_at(answer, place))
+    for part in range(2):
+        first = start + 3 * part * count
+        for column in range(count):
+            turned = turn * Vector3(
+                answer[first + column], answer[first + count + column], answer[first + 2 * count + column]
+            )
+            answer[first + column] = turned[0]
+            answer[first + count + column] = turned[1]
+            answer[first + 2 * count + column] = turned[2]
+
+
+@func
+def put_in_world_axes(
+    sizes: MechanismSizes, sweep: SweepTable, question: Reals, first: Int32, answer: Reals, start: Int32
+):
+    """Give a free base coordinates along the axes of the world; `inverse_derivatives` was called."""
+    count = sizes.dofs
+    size = count * count
+    rates = rates_of(sizes, first)
+    changes = rates + count
+    for row in range(count):
+        place = start + row * count
+        # Vectors of the world turn the other way for a base that turns.
+        moved = vector_at(answer, place)
+        for part in range(2):
+            own = place + 3 * part
+            moved += wp.cross(vector_at(answer, own + size), vector_at(question, rates + 3 * part))
+            moved += wp.cross(vector_at(answer, own + 2 * size), vector_at(question, changes + 3 * part))
+        put_vector(answer, place, moved)
+    for part in range(2):
+        pushed = sweep.subtree[0].torque
+        if part == 1:
+            pushed = sweep.subtree[0].force
+        place = start + 3 * part * count
+        answer[place + 1] += pushed[2]
+        answer[place + 2] -= pushed[1]
+        answer[place + count] -= pushed[2]
+        answer[place + count + 2] += pushed[0]
+        answer[place + 2 * count] += pushed[1]
+        answer[place + 2 * count + 1] -= pushed[0]
+    turn = base_rotation(question, first)
+    for matrix in range(3):
+        turn_base(count, turn, answer, start + matrix * size)
+
+
+@kernel
+def step_derivatives_kernel(
+    sizes: MechanismSizes,
+    mechanism: MechanismTable,
+    sweep: SweepTable,
+    batch: MechanismBatch,
+    varied: Int32,
+    first_world: Int32,
+):
+    """As `inverse_derivatives_kernel`, but along the axes of the world for a free base, as steps move it.
+
+    A question of each world follows that of the one before. Rates and accelerations in questions are along
+    the axes of the base.
+    """
+    world = first_world + wp.tid()
+    if varied == 1:
+        take_parameters(sizes, mechanism, batch, world)
+    count = sizes.dofs
+    first = world * question_length(sizes)
+    start = world * 3 * count * count
+    changes = rates_of(sizes, first) + count
+    sweep_positions(sizes, mechanism, batch.question, first)
+    inverse_derivatives(
+        sizes, mechanism, sweep, batch.question, first, batch.question, changes, batch.answer, start
+    )
+    if sizes.base_dofs > 0:
+        put_in_world_axes(sizes, sweep, batch.question, first, batch.answer, start)
     note_overflow(batch.answer, start, 3 * count * count)
 
 

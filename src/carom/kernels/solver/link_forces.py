@@ -22,7 +22,7 @@ from carom.kernels.solver.user_constraints import (
 )
 from carom.kernels.structs import Contacts, Model, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.codes import USER_COUPLING, USER_GEAR, USER_TENDON
+from carom.layouts.codes import USER_BASE_FRICTION, USER_COUPLING, USER_GEAR, USER_TENDON
 from carom.layouts.contacts import THERE
 
 
@@ -107,7 +107,7 @@ def gather_user_forces(
         if ends[2] == tree:
             add_joint_force(model, scratch, world, ends[3], -slope * size)
         return
-    if users.user_kind[user] >= USER_TENDON:
+    if users.user_kind[user] >= USER_TENDON and users.user_kind[user] != USER_BASE_FRICTION:
         return
     force, torque = user_wrench(settings, model, state, scratch, users, world, user)
     point_a, point_b = held_points(state, users, world, user)

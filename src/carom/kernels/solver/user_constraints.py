@@ -8,10 +8,11 @@ from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
-from carom.kernels.tendons.compliance import write_holding_row
+from carom.kernels.tendons.compliance import inverse_mass_of, write_compliant_row, write_holding_row
 from carom.kernels.tendons.rows import add_path_rows
 from carom.kernels.types import Index4, Int32, Matrix3, Quaternion, Vector3, func, real
 from carom.layouts.codes import (
+    USER_BASE_FRICTION,
     USER_COUPLING,
     USER_GEAR,
     USER_POINT_TO_POINT,
@@ -38,6 +39,8 @@ def world_frame(state: State, world: Int32, tree: Int32, link: Int32, local: Qua
 @func
 def user_row_count(kind: Int32) -> Int32:
     """Number of rows of a user constraint."""
+    if kind == USER_BASE_FRICTION:
+        return Int32(6)
     if kind == USER_GEAR or kind == USER_COUPLING or kind > USER_TENDON:
         return Int32(1)
     if kind == USER_POINT_TO_POINT or kind == USER_TENDON:
@@ -123,7 +126,7 @@ def add_user_rows(
     """Add the rows of one user constraint; returns the next free row and block.
 
     Each row of a point-to-point, fixed or prismatic constraint stops the motion of a relative to b along or
-    about an axis, and corrects a part of the error.
+    about an axis, and corrects a part of the error. Those of the friction of a free body only stop it.
     """
     pair_rows.user_first_row[world, user] = row
     if users.user_kind[user] == USER_GEAR:
@@ -134,7 +137,8 @@ def add_user_rows(
             settings, model, state, scratch, users, pair_rows, world, user, row, block
         )
         return row, block
-    if users.user_kind[user] >= USER_TENDON:
+    is_friction = users.user_kind[user] == USER_BASE_FRICTION
+    if users.user_kind[user] >= USER_TENDON and not is_friction:
         row, block = add_path_rows(settings, model, state, scratch, users, pair_rows, world, user, row, block)
         return row, block
     ends = user_ends(users, user)
@@ -153,10 +157,17 @@ def add_user_rows(
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
-        write_holding_row(
-            settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
-            error, size, real(0.5) if axis >= 0 else real(1.0), real(1.0),
-        )  # fmt: skip
+        if is_friction:
+            bound = settings.time_step * users.user_range[user][2]
+            write_compliant_row(
+                settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
+                real(0.0), real(0.0), real(1.0), inverse_mass_of(users, user, axis >= 0), -bound, bound,
+            )  # fmt: skip
+        else:
+            write_holding_row(
+                settings, model, scratch, users, pair_rows, world, user, row, ends[2], inverse_mass, velocity,
+                error, size, real(0.5) if axis >= 0 else real(1.0), real(1.0),
+            )  # fmt: skip
         row += 1
     return row, block
 

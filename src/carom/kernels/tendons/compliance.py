@@ -13,6 +13,12 @@ def is_compliant(users: UserConstraints, user: Int32) -> bool:
 
 
 @func
+def inverse_mass_of(users: UserConstraints, user: Int32, is_turn: bool) -> real:
+    """The inverse mass for which rows of a constraint yield, along or about axes; 0 for that at the time."""
+    return users.user_inverse_inertia[user] if is_turn else users.user_impedance[user][3]
+
+
+@func
 def free_change(
     model: Model, scratch: Scratch, pair_rows: PairRows, world: Int32, tree: Int32, start: Int32
 ) -> real:
@@ -41,6 +47,7 @@ def write_compliant_row(
     error: real,
     size: real,
     half: real,
+    yielding: real,
     lower: real,
     upper: real,
 ):
@@ -48,8 +55,8 @@ def write_compliant_row(
 
     `velocity` is that after the free motion, `error` the row's own, and `size` that of all rows together.
     `tree_b` is -1 if the second tree has no part of its own in the Jacobian. `half` is 0.5 for an angle and
-    otherwise 1, since MuJoCo's error is half the angle, but what it yields is as for the whole one. The
-    impulse is from `lower` to `upper`.
+    otherwise 1, since MuJoCo's error is half the angle, but what it yields is as for the whole one: as the
+    inverse mass `yielding`, or that of the row if it is 0. The impulse is from `lower` to `upper`.
     """
     h = settings.time_step
     start = pair_rows.row_start[world, row]
@@ -62,12 +69,8 @@ def write_compliant_row(
     stiffness, damping = spring_and_damper(settings, reference, impedance)
     d = impedance_at(reference, impedance, size)
     change = before - h * (damping * before + stiffness * d * error) - velocity
-    yielding = impedance[3] + 0.0
-    if half < 1.0:
-        yielding = users.user_inverse_inertia[user]
-    if yielding <= 0.0:
-        yielding = inverse_mass
-    softness = yielding * (1.0 - d) / (d * half * half)
+    estimated = yielding if yielding > 0.0 else inverse_mass
+    softness = estimated * (1.0 - d) / (d * half * half)
     write_row(pair_rows, world, row, inverse_mass, change, softness, lower, upper, 0.0)
 
 
@@ -97,7 +100,7 @@ def write_holding_row(
     if is_compliant(users, user):
         write_compliant_row(
             settings, model, scratch, users, pair_rows, world, user, row, tree_b, inverse_mass, velocity,
-            error, size, half, -bound, bound,
+            error, size, half, inverse_mass_of(users, user, half < 1.0), -bound, bound,
         )  # fmt: skip
     else:
         change = -velocity - erp * error * settings.joint_erp / settings.time_step

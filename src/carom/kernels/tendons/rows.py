@@ -110,7 +110,7 @@ def add_tendon_rows(
     if is_compliant(users, user):
         write_compliant_row(
             settings, model, scratch, users, pair_rows, world, user, row, _WORLD, inverse_mass, rate, error,
-            error, real(1.0), lower, upper,
+            error, real(1.0), users.user_impedance[user][3], lower, upper,
         )  # fmt: skip
     else:
         write_row(pair_rows, world, row, inverse_mass, change, 0.0, lower, upper, 0.0)

@@ -58,3 +58,9 @@ extern "C" CAROM_EXPORT void carom_take_rows(
     }
     *done = 1;
 }
+
+// Copy blocks of memory, none of which overlaps its target.
+extern "C" CAROM_EXPORT void carom_copy_blocks(const Block* blocks, int64_t count) {
+    for (int64_t i = 0; i < count; ++i)
+        __builtin_memcpy(blocks[i].target, blocks[i].source, blocks[i].size);
+}

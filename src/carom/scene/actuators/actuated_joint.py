@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
-from carom.layouts.codes import WITH_FRICTION, ActivationDynamics
+from carom.layouts.codes import DRIVEN, ActivationDynamics
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -43,7 +43,7 @@ def actuated_joint(body: Body, spec: ActuatorSpec) -> int:
     """
     for joint, link in enumerate(body.spec.links):
         if link.joint_name == spec.joint:
-            if body.joint_types[joint] not in WITH_FRICTION:
+            if body.joint_types[joint] not in DRIVEN:
                 raise DescriptionError(
                     f"actuator {spec.name!r}: joint {spec.joint!r} is {link.joint_type.value}; actuators are "
                     "built for revolute and prismatic joints only"

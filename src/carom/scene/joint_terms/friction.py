@@ -24,10 +24,10 @@ def friction_of(body: Body, joint: int) -> JointConstraint | None:
 
 
 def set_friction(body: Body, joint: int, friction: float) -> None:
-    """Set the friction of a joint [N m or N].
+    """Set the friction of a joint [N m or N]; of a spherical one, that about each axis of the link.
 
     Raises:
-        ValueError: It is negative, or the joint is neither revolute nor prismatic.
+        ValueError: It is negative, or the joint is not revolute, prismatic or spherical.
     """
     if not 0.0 <= friction < float("inf"):
         raise ValueError(f"friction_loss is {friction}: it must be at least 0 and finite")

@@ -19,6 +19,7 @@ from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
 from carom.formats.mjcf.compiled.shapes.geom import Geom, read_geom
 from carom.formats.mjcf.compiled.shapes.meshes import Meshes
 from carom.formats.mjcf.compiled.site import read_site
+from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.mjcf.frames import read_pose
 from carom.formats.robot.context import MissingFile, shown
@@ -78,6 +79,9 @@ class BodyReader:
         child_class = attributes.get("childclass", scope.child_class)
         # Poses of its contents are given in the body's frame, or in the world frame if all poses are.
         into = inverse(local) if context.compiler.global_frames else IDENTITY
+        if not is_top:
+            # MuJoCo has the centre of a body of which nothing states mass there, and weights it so.
+            body.inertia.centre = np.array(local.position)
         self._read_content(element, replace(scope, child_class=child_class, into=into), body, is_top=is_top)
         return body
 
@@ -186,9 +190,7 @@ class BodyReader:
         first, last = compiler.group_range
         masses = [geom.mass for geom in geoms if geom.mass is not None and first <= geom.group <= last]
         if compiler.from_geoms == ALWAYS or (stated is None and compiler.from_geoms != NEVER):
-            body.inertia = inertia_of(masses)
-            if stated is not None and not masses:
-                body.inertia = BodyInertia.none()
+            body.inertia = inertia_of(masses, body.inertia)
         elif stated is not None:
             body.inertia = stated
         problem = bounded(body.inertia, compiler)
@@ -229,10 +231,8 @@ def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None
     attributes: Attributes = scope.attributes(element)
     body.free_damping = first_number(scope, element, attributes, "damping")
     body.free_armature = first_number(scope, element, attributes, "armature")
-    unbuilt = [
-        name
-        for name in ("frictionloss", "stiffness")
-        if any(context.singles(element, name, attributes.get(name, "")))
-    ]
-    if unbuilt:
-        context.leave_out(element, "the body moves without them", "free bodies have no such terms", *unbuilt)
+    body.free_friction = first_number(scope, element, attributes, "frictionloss")
+    if body.free_friction:
+        body.free_compliance = read_compliance(scope, element, attributes, "friction")
+    if any(context.singles(element, "stiffness", attributes.get("stiffness", ""))):
+        context.leave_out(element, "the body moves without it", "free bodies have no such terms", "stiffness")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from carom.description import ContactParameters
-from carom.description.compliance import ContactCompliance
+from carom.description.compliance import Compliance, ContactCompliance
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.xml_element import Element
@@ -20,7 +20,10 @@ _EQUAL_RANK = 1000
 def read_contact(
     scope: Scope, element: Element, earlier: ContactParameters, options: Mapping[str, Any]
 ) -> ContactParameters:
-    """Friction and compliance of a body: those of its first geom that collides; others are reported."""
+    """Friction and compliance of a body: those of its first geom that collides; others are reported.
+
+    An option can override what geoms say of both.
+    """
     context, attributes = scope.context, scope.attributes(element)
     values = context.singles(element, "friction", attributes.get("friction", ""))
     sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
@@ -30,6 +33,14 @@ def read_contact(
     )
     if not collides:
         return earlier
+    compliance = read_compliance(scope, element, attributes)
+    weight = context.number(element, attributes, "solmix", 1.0)
+    margin = context.number(element, attributes, "margin", 0.0)
+    if options.get("flag.override", False):
+        sliding, _, spinning, rolling, _ = options["o_friction"]
+        compliance = Compliance(*options["o_solref"], *options["o_solimp"])
+        # The margins of two bodies add up, and their weights count.
+        weight, margin = 1.0, 0.5 * options["o_margin"]
     priority = int(context.number(element, attributes, "priority", 0.0))
     found = ContactParameters(
         friction_rank=max(1, _EQUAL_RANK + priority),
@@ -37,9 +48,9 @@ def read_contact(
         spinning_friction=spinning if dimensions > 3 else None,
         rolling_friction=rolling if dimensions > 4 else None,
         compliance=ContactCompliance(
-            read_compliance(scope, element, attributes),
-            context.number(element, attributes, "solmix", 1.0),
-            context.number(element, attributes, "margin", 0.0),
+            compliance,
+            weight,
+            margin,
             _pyramids(options),
         ),
     )

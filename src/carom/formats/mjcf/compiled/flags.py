@@ -27,6 +27,8 @@ def switch_off(model: CompiledModel) -> None:
     model.robots = [_robot(placed, off) for placed in model.robots]
     if "contact" in off:
         model.paired = []
+    if "frictionloss" in off:
+        model.frictions = []
     if "equality" in off:
         model.ties = [replace(it, enabled=False) for it in model.ties]
         model.couplings = [replace(it, enabled=False) for it in model.couplings]

@@ -48,8 +48,8 @@ class GeomMass:
     frame: Pose = IDENTITY
 
 
-def inertia_of(geoms: Iterable[GeomMass]) -> BodyInertia:
-    """The inertia of all geoms of a body together."""
+def inertia_of(geoms: Iterable[GeomMass], without: BodyInertia) -> BodyInertia:
+    """The inertia of all geoms of a body together; `without` if they have no mass."""
     parts = []
     for geom in geoms:
         turn = np.array(rotation_matrix(geom.frame.orientation))
@@ -57,7 +57,7 @@ def inertia_of(geoms: Iterable[GeomMass]) -> BodyInertia:
         parts.append((geom.mass, centre, geom.mass * turned_tensor(turn, geom.shape.tensor)))
     mass = sum(part[0] for part in parts)
     if mass == 0.0:
-        return BodyInertia.none()
+        return without
     middle = np.asarray(sum(m * centre for m, centre, _ in parts)) / mass
     tensor = np.zeros((3, 3))
     for m, centre, own in parts:

@@ -104,6 +104,7 @@ class InverseMasses:
     Attributes:
         bodies: Inverse mass and inverse inertia of each body, by name.
         joints: Inverse mass of each joint, by name.
+        free: Inverse mass and inverse inertia of the frame of a free body; 0 of one that is not free.
     """
 
     def __init__(self, root: CompiledBody) -> None:
@@ -124,6 +125,8 @@ class InverseMasses:
             part.body.name: (_mean(linear), _mean(angular))
             for part, (linear, angular) in zip(tree.parts, of_bodies, strict=True)
         }
+        own = of_dofs[:6] if root.is_free else np.zeros(6)
+        self.free: tuple[float, float] = (_mean(own[:3]), _mean(own[3:]))
         self.joints: dict[str, float] = {name: _mean(of_dofs[dofs]) for name, dofs in tree.joints.items()}
 
     def along(self, shares: Iterable[tuple[str, float]]) -> float:

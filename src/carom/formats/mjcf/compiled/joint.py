@@ -48,9 +48,6 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
         described = JointType.CONTINUOUS
     damping = first_number(scope, element, attributes, "damping")
     friction = first_number(scope, element, attributes, "frictionloss")
-    if kind == "ball" and friction > 0.0:
-        context.leave_out(element, "it has no friction", "friction of balls is not built", "frictionloss")
-        friction = 0.0
     reference = 0.0 if kind == "ball" else _position(scope, element, attributes, "ref", kind)
     bounds = _actuator_range(scope, element, attributes)
     joint = Joint(

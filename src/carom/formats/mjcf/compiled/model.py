@@ -74,6 +74,8 @@ class CompiledBody:
         is_free: It has a free joint.
         free_damping: Damping of its free joint, along and about all axes [N s/m, N m s/rad].
         free_armature: Armature of its free joint [kg, kg m²].
+        free_friction: Greatest force and torque of dry friction along and about each of its axes [N, N m].
+        free_compliance: How that friction yields.
         is_mocap: It is moved by users only.
         inertia: Its mass.
         collisions: Its shapes that collide.
@@ -90,6 +92,8 @@ class CompiledBody:
     is_free: bool = False
     free_damping: float = 0.0
     free_armature: float = 0.0
+    free_friction: float = 0.0
+    free_compliance: Compliance | None = None
     is_mocap: bool = False
     inertia: BodyInertia = field(default_factory=BodyInertia.none)
     collisions: list[Collision] = field(default_factory=list)
@@ -222,6 +226,21 @@ class FileTie:
 
 
 @dataclass(frozen=True, slots=True)
+class FileFriction:
+    """Dry friction of a free body.
+
+    Attributes:
+        body: Name of the body.
+        friction: Greatest force along each axis of the world, and torque about each of its own [N, N m].
+        compliance: How it yields.
+    """
+
+    body: str
+    friction: float
+    compliance: Compliance
+
+
+@dataclass(frozen=True, slots=True)
 class FilePart:
     """A part of the path of a tendon.
 
@@ -312,6 +331,7 @@ class CompiledModel:
         actuators: In the order of `ctrl`.
         couplings: Of joints, by `<equality>`.
         ties: Of bodies, by `<equality>`.
+        frictions: Of free bodies.
         equality_count: Number of all constraints in `<equality>`.
         tendons: By name; those that are not simulated have no robot.
         tendon_couplings: Of tendons, by `<equality>`.
@@ -335,6 +355,7 @@ class CompiledModel:
     actuators: list[FileActuator] = field(default_factory=list)
     couplings: list[FileCoupling] = field(default_factory=list)
     ties: list[FileTie] = field(default_factory=list)
+    frictions: list[FileFriction] = field(default_factory=list)
     equality_count: int = 0
     sensors: list[SensorSpec] = field(default_factory=list)
     tendons: dict[str, FileTendon] = field(default_factory=dict)

@@ -8,9 +8,15 @@ from carom.formats.mjcf.compiled.context import CompiledContext
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
 
-_SCALARS = ("timestep", "density", "viscosity", "impratio")
+_SCALARS = ("timestep", "density", "viscosity", "impratio", "o_margin")
 _VECTORS = ("gravity", "wind", "magnetic")
 _WORDS = ("integrator", "cone", "solver", "jacobian")
+_OF_ALL_CONTACTS = {
+    "o_friction": (1.0, 1.0, 0.005, 0.0001, 0.0001),
+    "o_solref": (0.02, 1.0),
+    "o_solimp": (0.9, 0.95, 0.001, 0.5, 2.0),
+}
+"""What contacts have by default where an option overrides what geoms say."""
 _INTEGRATORS = {
     "RK4": "steps are of first order in time",
     "implicit": "what rotations do to velocities is not implicit",
@@ -18,6 +24,8 @@ _INTEGRATORS = {
 DEFAULTS: dict[str, Any] = {
     "timestep": 0.002,
     "gravity": (0.0, 0.0, -9.81),
+    "o_margin": 0.0,
+    **_OF_ALL_CONTACTS,
     # Not MuJoCo's: with less, errors of constraints that yield do not become less; see `Scene.apply_options`.
     "solver_residual_threshold": 1e-11,
 }
@@ -39,6 +47,10 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     for name in _VECTORS:
         if name in attributes:
             options[name] = tuple(context.numbers(element, name, attributes[name], 3, 3))
+    for name, usual in _OF_ALL_CONTACTS.items():
+        if name in attributes:
+            stated = context.numbers(element, name, attributes[name], 0, len(usual))
+            options[name] = (*stated, *usual[len(stated) :])
     for name in _WORDS:
         if name in attributes:
             options[name] = attributes[name]
@@ -57,3 +69,8 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
             if text not in ("enable", "disable"):
                 raise context.error(flags, f"{name}={shown(text)} must be enable or disable")
             options[f"flag.{name}"] = text == "enable"
+    sliding, other, _, rolling, last = options.get("o_friction", _OF_ALL_CONTACTS["o_friction"])
+    if options.get("flag.override") and (sliding != other or rolling != last):
+        context.leave_out(
+            element, "friction is as along the first axis", "friction has no directions", "o_friction"
+        )

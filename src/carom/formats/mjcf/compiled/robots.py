@@ -34,14 +34,14 @@ def robot_of_body(body: CompiledBody) -> PlacedRobot:
     """The robot whose root is a body of the world.
 
     A body with joints hangs from a massless link, fixed in the world, with the frame of the world. A free
-    body with damping or armature is fixed to a massless link with its frame.
+    body with damping, armature or friction is fixed to a massless link with its frame.
     """
     maker = _Maker()
     if body.joints:
         maker.links.append(Link(WORLD, MASSLESS))
         maker.add(body, 0)
         pose = IDENTITY
-    elif body.free_damping != 0.0 or body.free_armature != 0.0:
+    elif body.free_damping != 0.0 or body.free_armature != 0.0 or body.free_friction != 0.0:
         # These are of the motion of the body's frame, not of its centre of mass: so that frame is the base.
         maker.links.append(Link(f"{body.name}@free", MASSLESS))
         maker.add(body, 0, IDENTITY)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from carom.description.compliance import Compliance
 from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inverse_masses import InverseMasses
-from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel
+from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FileFriction
 from carom.formats.mjcf.defaults import Attributes
 from carom.formats.xml_element import Element
 
@@ -30,6 +30,10 @@ def weigh(model: CompiledModel, world: CompiledBody) -> None:
         weights = model.weights[root.name] = InverseMasses(root)
         model.body_weights |= weights.bodies
         model.joint_weights |= weights.joints
+        if root.free_compliance is not None:
+            mass, inertia = weights.free
+            yielding = replace(root.free_compliance, inverse_mass=mass, inverse_inertia=inertia)
+            model.frictions.append(FileFriction(root.name, root.free_friction, yielding))
         pending = [root]
         while pending:
             body = pending.pop()

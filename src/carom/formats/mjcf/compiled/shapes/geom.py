@@ -188,13 +188,12 @@ def _primitive(kind: str, size: Vector3) -> Geometry:
         case "box":
             return Box((x, y, z))
         case _:
-            return ConvexHull(ellipsoid_points((x, y, z)))
+            return ConvexHull(ellipsoid_points((x, y, z)), margin=0.0)
 
 
 def _geometries(mesh: MeshAsset) -> tuple[Geometry, Geometry]:
     """The shape of a mesh that collides, its hull, and the one that is seen."""
+    hull = ConvexHull(mesh.vertices, margin=0.0)
     if mesh.file is not None and mesh.file.suffix.lower() != ".msh":
-        whole = Mesh(mesh.file, mesh.scale)
-        return (whole if mesh.is_one_piece else ConvexHull(mesh.vertices)), whole
-    hull = ConvexHull(mesh.vertices)
+        return hull, Mesh(mesh.file, mesh.scale)
     return hull, TriangleMesh(mesh.vertices, mesh.triangles) if len(mesh.triangles) else hull

@@ -1,0 +1,66 @@
+"""Questions about the motion of a body in a step, to the kernel of its derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.algorithms.sweeps import sweeps_of
+from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.linearization.turns import rotation_of
+from carom.native.kernels import step_derivatives_kernel
+
+if TYPE_CHECKING:
+    from carom.linearization.taken_step import TakenStep
+    from carom.linearization.tangent import TangentSpace
+    from carom.scene.body import Body
+
+# Answers (k, 3, n, n) to questions (k, numbers) about a body: derivatives of the forces that its motion takes
+# by positions, velocities and accelerations; those of a free base along axes of the world.
+Ask = Callable[["Body", np.ndarray], np.ndarray]
+
+_GRAVITY = 3
+
+
+def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray) -> np.ndarray:
+    """Questions (k, numbers) about the motion of a body before a step with some accelerations.
+
+    Args:
+        body: The body.
+        taken: The step.
+        own: Its dofs in the tangent space.
+        accelerations: (k, dofs), those of a free base in world axes.
+    """
+    first, count = body.first_position, BASE_POSITIONS + sum(body.position_count)
+    size = own.stop - own.start
+    behind = _GRAVITY + count + size
+    found = np.empty((len(accelerations), behind + size))
+    found[:, :_GRAVITY] = taken.gravity
+    found[:, _GRAVITY : _GRAVITY + count] = taken.position[first : first + count]
+    found[:, _GRAVITY + count : behind] = taken.velocity[own]
+    found[:, behind:] = accelerations
+    if not body.fixed_base:
+        turn = rotation_of(taken.position[first + 3 : first + BASE_POSITIONS])
+        # Two vectors each, angular and linear, of velocity and acceleration.
+        for start in (_GRAVITY + count, behind):
+            both = found[:, start : start + BASE_VELOCITIES]
+            both[:] = (both.reshape(-1, 2, 3) @ turn).reshape(-1, BASE_VELOCITIES)
+    return found
+
+
+def questions_of_step(space: TangentSpace, taken: TakenStep) -> list[np.ndarray]:
+    """Two questions (2, numbers) about each body: with accelerations of free motion, and of the solver."""
+    accelerations = (taken.ends - taken.velocity) / taken.time_step
+    return [
+        motion_questions(body, taken, slice(first, first + size), accelerations[:, first : first + size])
+        for body, (first, size) in zip(space.bodies, space.places, strict=True)
+    ]
+
+
+def ask_lone(body: Body, questions: np.ndarray) -> np.ndarray:
+    """The answers about a body of a lone world."""
+    sweeps = sweeps_of(body)
+    found = sweeps.answers(step_derivatives_kernel, 3 * sweeps.dofs**2, 0, questions=questions)
+    return found.reshape(-1, 3, sweeps.dofs, sweeps.dofs)

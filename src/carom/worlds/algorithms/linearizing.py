@@ -1,0 +1,215 @@
+"""Steps of many worlds linearised: the part of `Worlds` that finds derivatives of a step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom.checks import Array, finite
+from carom.engine.engine import Engine
+from carom.engine.presence import any_absent
+from carom.linearization.chosen import Chosen as Parts
+from carom.linearization.chosen import chosen_parts
+from carom.linearization.exact import StepFactors, step_factors
+from carom.linearization.free_motion import FreeMotion
+from carom.linearization.linearized_step import refuse_substeps
+from carom.linearization.motion_questions import Ask, questions_of_step
+from carom.linearization.stepping import Copies
+from carom.linearization.taken_step import StateBefore, TakenStep
+from carom.native.kernels import step_derivatives_kernel
+from carom.scene.body import Body
+from carom.world.world import World
+from carom.worlds.algorithms.mechanics import MechanicsBatch
+from carom.worlds.checks import Mask
+from carom.worlds.chosen import world_numbers
+from carom.worlds.devices import CPU
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LinearizedSteps:
+    """What a step does to small changes in n worlds; see `LinearizedStep`, which has the same names.
+
+    Attributes:
+        A: By the state, (n, nx, nx).
+        B: By the controls, (n, nx, nu).
+        E: By the parameters, (n, nx, np).
+        states: Names of the entries of x.
+        controls: Names of the entries of u.
+        parameters: Names of the entries of p.
+        rows: Of each world, the names of the solver's rows and whether they hold or are at a bound.
+    """
+
+    A: Array
+    B: Array
+    E: Array
+    states: tuple[str, ...]
+    controls: tuple[str, ...]
+    parameters: tuple[str, ...]
+    rows: tuple[tuple[tuple[str, str], ...], ...]
+
+
+class Linearizing:
+    """Base class of `Worlds`: derivatives of a step."""
+
+    count: int
+    device: str
+    halted: Mask
+    _scene: World
+    _engine: Engine
+    _thread_count: int | None
+    _linearizer: _Linearizer | None = None
+
+    def linearize(
+        self,
+        controls: Sequence[str] = ("torques",),
+        *,
+        parameters: Sequence[str] = (),
+        smoothing: float = 0.0,
+        where: ArrayLike | None = None,
+    ) -> LinearizedSteps:
+        """What the next step would do to small changes in n worlds; see `World.linearize`.
+
+        The worlds do not change. Each is linearised as a lone world with its state and its parameters.
+
+        Args:
+            controls: As in `World.linearize`.
+            parameters: Likewise.
+            smoothing: Likewise.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: There is no such control or parameter; a world is halted.
+            NotImplementedError: Something in a step has no exact derivatives, worlds are on a GPU, or bodies
+                are absent.
+            carom.errors.SimulationError: A velocity is not finite.
+        """
+        parts, factors = self._factors(controls, parameters, smoothing, where)
+        count, width = parts.control_count, len(parts.states)
+        by_state = np.zeros((len(factors), width, width))
+        by_input = np.zeros((len(factors), width, len(parts.inputs)))
+        for place, taken in enumerate(factors):
+            by_state[place], by_input[place] = taken.matrices()
+        return LinearizedSteps(
+            *(by_state, by_input[:, :, :count], by_input[:, :, count:]),
+            *(parts.states, parts.controls, parts.parameters),
+            tuple(taken.rows for taken in factors),
+        )
+
+    def step_vjp(
+        self,
+        cotangents: ArrayLike,
+        controls: Sequence[str] = ("torques",),
+        *,
+        parameters: Sequence[str] = (),
+        smoothing: float = 0.0,
+        where: ArrayLike | None = None,
+    ) -> tuple[Array, Array, Array]:
+        """The vector-Jacobian products of the next step in n worlds; see `World.step_vjp`.
+
+        Args:
+            cotangents: The gradients by the states after the step, (n, nx).
+            controls: As in `linearize`, like all that follow.
+            parameters: Likewise.
+            smoothing: Likewise.
+            where: Likewise.
+
+        Returns:
+            The gradients by state (n, nx), controls (n, nu) and parameters (n, np).
+
+        Raises:
+            ValueError, NotImplementedError, carom.errors.SimulationError: As `linearize`.
+        """
+        parts, factors = self._factors(controls, parameters, smoothing, where)
+        count, shape = parts.control_count, (len(factors), len(parts.states))
+        given = finite(cotangents, "cotangents")
+        if given.shape != shape:
+            raise ValueError(f"cotangents must have shape {shape}, not {given.shape}")
+        by_state, by_input = np.zeros(shape), np.zeros((len(factors), len(parts.inputs)))
+        for place, taken in enumerate(factors):
+            by_state[place], by_input[place] = taken.pulled_back(given[place])
+        return by_state, by_input[:, :count], by_input[:, count:]
+
+    def _factors(
+        self,
+        controls: Sequence[str],
+        parameters: Sequence[str],
+        smoothing: float,
+        where: ArrayLike | None,
+    ) -> tuple[Parts, list[StepFactors]]:
+        if self.device != CPU:
+            raise NotImplementedError(f"steps on {self.device!r} cannot be linearised: use device={CPU!r}")
+        if not smoothing >= 0.0:
+            raise ValueError(f"smoothing must be at least 0, not {smoothing}")
+        worlds = world_numbers(where, self.count)
+        halted = worlds[self.halted[worlds]]
+        if len(halted):
+            raise ValueError(f"world {halted[0]} is halted, so it has no next step")
+        if any_absent(self._engine.arrays):
+            raise NotImplementedError("steps cannot be linearised where bodies are absent")
+        refuse_substeps(self._scene)
+        parts = chosen_parts(self._scene, controls, parameters)
+        parts.refuse_inertial(self._engine.arrays.model.numpy, "exact")
+        if not len(worlds):
+            return parts, []
+        if self._linearizer is None or not self._linearizer.follow():
+            self._linearizer = _Linearizer(self._scene, self._engine, self._thread_count or 1)
+        return parts, self._linearizer.factors(parts, worlds, smoothing)
+
+
+class _Linearizer:
+    """A copy of the worlds of an engine that takes the steps which are linearised."""
+
+    def __init__(self, scene: World, engine: Engine, threads: int) -> None:
+        self._scene, self._engine = scene, engine
+        self._threads = threads
+        self._copies = Copies.of_engine(engine, scene.parameters, threads)
+        self._made_for = self._now()
+        self._mechanics: dict[Body, MechanicsBatch] = {}
+
+    def _now(self) -> tuple[Any, ...]:
+        return (
+            self._engine.changes,
+            self._engine.contact_arrays.user_count,
+            *self._engine.arrays.used.values(),
+        )
+
+    def follow(self) -> bool:
+        """Take the present state and parameters; False if a new copy is needed."""
+        return self._made_for == self._now() and self._copies.follow(self._engine, 0.0)
+
+    def factors(self, parts: Parts, worlds: np.ndarray, smoothing: float) -> list[StepFactors]:
+        """Perform a step of some worlds, and find the factors of its derivatives."""
+        space, copies = parts.space, self._copies
+        before = StateBefore(space, copies)
+        copies.step(worlds)
+        taken = [TakenStep(self._scene.parameters, space, copies, before, world) for world in worlds.tolist()]
+        questions = [questions_of_step(space, step) for step in taken]
+        # Answers of all worlds about each body.
+        answers = [
+            self._ask(body, np.concatenate([asked[place] for asked in questions]), np.repeat(worlds, 2))
+            for place, body in enumerate(space.bodies)
+        ]
+        found: list[StepFactors] = []
+        for number, (world, step) in enumerate(zip(worlds.tolist(), taken, strict=True)):
+            own = [each[2 * number : 2 * number + 2] for each in answers]
+            motion = FreeMotion(space, step, own, self._ask_of(world))
+            found.append(step_factors(space, parts.inputs, step, motion, smoothing))
+        return found
+
+    def _ask_of(self, world: int) -> Ask:
+        def ask(body: Body, questions: np.ndarray) -> np.ndarray:
+            return self._ask(body, questions, np.full(len(questions), world))
+
+        return ask
+
+    def _ask(self, body: Body, questions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
+        if body not in self._mechanics:
+            self._mechanics[body] = MechanicsBatch(body, self._engine, self._threads)
+        mechanics = self._mechanics[body]
+        size = 3 * mechanics.dofs**2
+        found = mechanics.sweep(step_derivatives_kernel, questions, worlds, size, "derivative")
+        return found.reshape(len(questions), 3, mechanics.dofs, mechanics.dofs)
