@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom.engine.program import Plan
-from carom.layouts.programs import LANES, KernelCall, LaneMotion, LaneRows
+from carom.layouts.programs import LANES, KernelCall, LaneMotion, LaneRows, WorldCall
 from carom.model.builder import WorldArrays
-from carom.native.kernels import free_motion_kernel, lane_motion_kernel
+from carom.native.kernels import continued_motion_kernel, free_motion_kernel, lane_motion_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import array_view
 from carom.native.zeros import zeros
@@ -97,9 +97,11 @@ class LaneWork:
                 rows["tree"],
             ],
         )
-        *_, self.record.prepared = structs.launch(free_motion_kernel, first_world=0, prepared=0).addresses(
-            "prepared"
+        self.record.free_motion = free_motion_kernel.address
+        *call, first_world, substeps = structs.launch(continued_motion_kernel, first_world=0).addresses(
+            "first_world", "substeps"
         )
+        self.record.continued = WorldCall(KernelCall(*call), first_world, substeps)
         self.record.motion = KernelCall(*self._motion.addresses())
         terms = self._wide["model"]["tree_joint_terms"].array
         self.record.joint_terms, self.record.tree_count = terms.ctypes.data, rows["tree"]

@@ -92,10 +92,7 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
     if not plan.coupled:
         whole = _launch(structs, step_kernel, substeps=1)
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
-    motion = [
-        _launch(structs, kernel, **({"prepared": 0} if kernel is free_motion_kernel else {}))
-        for kernel in (SOFT_MOTION if plan.soft else MOTION)
-    ]
+    motion = [_launch(structs, kernel) for kernel in (SOFT_MOTION if plan.soft else MOTION)]
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, watch_kernel)]

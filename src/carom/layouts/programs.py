@@ -88,7 +88,8 @@ class LaneMotion:
         joint_terms: For each tree and lane: whether it has joint terms. All lanes have to be alike.
         tree_count: Number of trees.
         motion: The kernel.
-        prepared: Argument of `free_motion_kernel`: 1 if it is to continue with the results.
+        free_motion: The kernel of single worlds that computes their free motion from the beginning.
+        continued: The launch in its place that continues with the results.
     """
 
     gathered: Read[LaneRows]
@@ -98,7 +99,8 @@ class LaneMotion:
     joint_terms: Read[Double]
     tree_count: Int64
     motion: KernelCall
-    prepared: At[Int32]
+    free_motion: KernelFunction
+    continued: WorldCall
 
 
 @c_record()

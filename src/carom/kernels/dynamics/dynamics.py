@@ -9,7 +9,6 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.dynamics.quarantine import report_fault
-from carom.kernels.maths.lanes import in_some_world
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Vector3, func, real
@@ -133,12 +132,10 @@ def link_bias_forces(model: Model, state: State, scratch: Scratch, world: Int32,
         force = mass * com_acceleration
         torque = about_com * alpha + wp.cross(omega, spin)
 
-        if in_some_world(linear_damping != 0.0):
-            drag = com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
-            force = wp.where(linear_damping != 0.0, force + drag, force)
-        if in_some_world(angular_damping != 0.0):
-            drag = spin * damping_rate(angular_damping, wp.length(omega))
-            torque = wp.where(angular_damping != 0.0, torque + drag, torque)
+        if linear_damping != 0.0:
+            force += com_velocity * (mass * damping_rate(linear_damping, wp.length(com_velocity)))
+        if angular_damping != 0.0:
+            torque += spin * damping_rate(angular_damping, wp.length(omega))
 
         if purpose != CONSTRAINT_FEEDBACK:
             force -= external_force(model, state, mass, world, link)

@@ -47,7 +47,10 @@ def write_row(
     for (int k = count - 1; k >= 0; --k) {
         auto* row = rows + k * blocks;
         const auto* entries = row->c;
-        const auto inverse = wp::where(entries[k] >= least_pivot, 1.0 / entries[k], 0.0 * least_pivot);
+        decltype(least_pivot) inverse = 0.0;
+        const auto is_sound = entries[k] >= least_pivot;
+        if (is_sound)
+            inverse = wp::where(is_sound, 1.0 / entries[k], inverse);
         dof[k].inverse_pivot = inverse;
         for (int i = 0; i < k; ++i)
             if (entries[i] != 0.0) {

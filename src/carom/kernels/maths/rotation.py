@@ -43,10 +43,14 @@ def rotation_matrix(q: Quaternion) -> Matrix3:
 @func
 def canonical(q: Quaternion) -> Quaternion:
     """Return `q` or `-q`, the same rotation: the one that conversion from the rotation matrix gives."""
-    largest = wp.where(wp.abs(q[1]) > wp.abs(q[0]), q[1], q[0])
-    largest = wp.where(wp.abs(q[2]) > wp.abs(largest), q[2], largest)
-    lead = wp.where(q[3] * q[3] <= 0.25, largest, q[3])
-    return wp.where(lead < 0.0, Quaternion(-q[0], -q[1], -q[2], -q[3]), q)
+    lead = q[3]
+    if q[3] * q[3] <= 0.25:
+        lead = q[0]
+        if wp.abs(q[1]) > wp.abs(lead):
+            lead = q[1]
+        if wp.abs(q[2]) > wp.abs(lead):
+            lead = q[2]
+    return Quaternion(-q[0], -q[1], -q[2], -q[3]) if lead < 0.0 else q
 
 
 @func
@@ -69,9 +73,10 @@ def rotation_step(rate: Vector3, dt: real) -> Quaternion:
 @func
 def rotation_vector(turn: Quaternion) -> Vector3:
     """The axis of a rotation times its angle, which is at most π."""
-    is_long = turn[3] < 0.0
     axis = Vector3(turn[0], turn[1], turn[2])
-    axis = wp.where(is_long, -axis, axis)
-    cosine = wp.where(is_long, -turn[3], turn[3])
+    cosine = turn[3]
+    if cosine < 0.0:
+        axis = -axis
+        cosine = -cosine
     sine = wp.length(axis)
-    return wp.where(sine < 1.0e-12, 2.0 * axis, axis * (2.0 * wp.atan2(sine, cosine) / sine))
+    return 2.0 * axis if sine < 1.0e-12 else axis * (2.0 * wp.atan2(sine, cosine) / sine)

@@ -29,22 +29,27 @@ def islands_kernel(
 
 @kernel
 def free_motion_kernel(
-    settings: Settings,
-    model: Model,
-    state: State,
-    scratch: Scratch,
-    pair_rows: PairRows,
-    prepared: Int32,
-    first_world: Int32,
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
 ):
-    """Update velocities for a substep without constraints.
+    """Update velocities for a substep without constraints."""
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        free_motion(
+            model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
+        )
 
-    `prepared` is 1 if `lane_motion_kernel` has accelerated the trees of more than one link. Those with
-    force-torque sensors need more of its intermediate results than there are for one world.
+
+@kernel
+def continued_motion_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
+):
+    """As `free_motion_kernel`, after `lane_motion_kernel` has accelerated the trees of more than one link.
+
+    Those with force-torque sensors need more of its intermediate results than there are for one world.
     """
     world = first_world + wp.tid()
     for tree in range(settings.tree_count):
-        if prepared != 0 and has_several_links(model, tree) and model.tree[tree].sensor_count == 0:
+        if has_several_links(model, tree) and model.tree[tree].sensor_count == 0:
             continue_free_motion(model, settings, state, scratch, world, tree)
         else:
             free_motion(

@@ -13,9 +13,12 @@ namespace {
 // The parts of a program.
 enum { BEGINNING, DETECTION, MOTION, END, ABANDONED };
 
-bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status) {
+// With `lanes`, free motion continues with the results that these handed over.
+bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status,
+             const LaneMotion* lanes = nullptr) {
     for (int64_t i = from; i < to; ++i) {
-        const WorldCall& launch = program.launches[i];
+        const bool is_continued = lanes && program.launches[i].call.function == lanes->free_motion;
+        const WorldCall& launch = is_continued ? lanes->continued : program.launches[i];
         *launch.first_world = world;
         if (launch.substeps)
             *launch.substeps = substeps;
@@ -30,7 +33,7 @@ int32_t* status_of(const Run& run, int world) {
     return reinterpret_cast<int32_t*>(run.program->status + world * run.program->status_stride);
 }
 
-bool take_step(const Run& run, int world, int step) {
+bool take_step(const Run& run, int world, int step, const LaneMotion* lanes = nullptr) {
     const Program& program = *run.program;
     const int64_t* ends = program.part_ends;
     int32_t* status = status_of(run, world);
@@ -38,7 +41,7 @@ bool take_step(const Run& run, int world, int step) {
     const int64_t round_end = substeps > 0 ? ends[MOTION] : ends[DETECTION];
     bool well = run.first_substep > 0 || perform(program, 0, ends[BEGINNING], world, substeps, status);
     for (int k = run.first_substep; well && k < run.end_substep && k < rounds; ++k)
-        well = perform(program, ends[BEGINNING], round_end, world, substeps, status);
+        well = perform(program, ends[BEGINNING], round_end, world, substeps, status, lanes);
     if (well && run.end_substep >= rounds)
         well = perform(program, ends[MOTION], ends[END], world, substeps, status);
     if (!well) {
@@ -76,17 +79,15 @@ void take_through_steps_together(const Run& run, int first) {
         status_of(run, first + lane)[status::STEPS_DONE] = 0;
     }
     for (int step = 0; step < run.step_count; ++step) {
-        const bool is_prepared = run.due[step] == 1 && prepare_motion(*run.lanes, first);
-        *run.lanes->prepared = is_prepared;
+        const LaneMotion* lanes = run.due[step] == 1 && prepare_motion(*run.lanes, first) ? run.lanes : nullptr;
         for (int lane = 0; lane < LANES; ++lane) {
             if (!is_going[lane])
                 continue;
-            if (is_prepared)
-                hand_over_motion(*run.lanes, lane);
-            is_going[lane] = take_step(run, first + lane, step);
+            if (lanes)
+                hand_over_motion(*lanes, lane);
+            is_going[lane] = take_step(run, first + lane, step, lanes);
         }
     }
-    *run.lanes->prepared = 0;
 }
 
 }  // namespace
