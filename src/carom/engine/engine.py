@@ -233,11 +233,20 @@ class Engine:
             self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
 
     def _make_lanes(self, plan: Plan) -> None:
-        """Let several worlds move at once, if they can: also after rows have moved within the same arrays."""
+        """Let several worlds move at once, if they can: also after rows have moved within the same arrays.
+
+        Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
+        """
         together = self._make_program is self.step_program and can_move_together(self.arrays, plan)
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
-                stepper.move_together(LaneWork(self.arrays, workspace.structs) if together else None)
+                is_able = together and workspace.world_count == 1
+                stepper.move_together(LaneWork(self.arrays, workspace.structs) if is_able else None)
+
+    @property
+    def steps_in_lanes(self) -> int:
+        """How many steps of several worlds have begun together so far."""
+        return sum(one.steps_in_lanes for one in self._steppers if isinstance(one, Interpreter))
 
     def step_addresses(self) -> tuple[int, int, int]:
         """Addresses of the arguments of a step (0 if there are none), of the first status, of the time step.

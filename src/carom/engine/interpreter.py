@@ -62,6 +62,7 @@ class Interpreter(Stepper):
         # The memory that a run points to has to be kept alive.
         self._kept = (status, worlds, due, counter)
         self._lane_work: LaneWork | None = None
+        self._earlier_in_lanes = 0
         self._asked = Run(
             ctypes.addressof(self._record),
             worlds.ctypes.data,
@@ -89,8 +90,14 @@ class Interpreter(Stepper):
 
     def move_together(self, work: LaneWork | None) -> None:
         """Compute the free motion of several worlds at once in all later runs, or of one at a time."""
+        self._earlier_in_lanes = self.steps_in_lanes
         self._lane_work = work
         self._asked.lanes = None if work is None else ctypes.addressof(work.record)
+
+    @property
+    def steps_in_lanes(self) -> int:
+        """How many steps of several worlds have begun together so far."""
+        return self._earlier_in_lanes + (0 if self._lane_work is None else self._lane_work.steps_begun)
 
     def ask(self, **asked: int) -> None:  # noqa: D102
         for name, value in asked.items():

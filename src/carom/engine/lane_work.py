@@ -51,9 +51,9 @@ class _Wide(NamedTuple):
 
 def can_move_together(arrays: WorldArrays, plan: Plan) -> bool:
     """Whether several worlds can move at once, and have trees of several links, which then take less time."""
-    trees, count = arrays.model.numpy, arrays.used["tree"]
-    has_articulated = bool((trees["tree_link_count"][:count] > 1).any())
-    return arrays.world_count >= LANES and plan.coupled and not plan.soft and has_articulated
+    if arrays.world_count < LANES or not plan.coupled or plan.soft:
+        return False
+    return bool((arrays.model.numpy["tree_link_count"][: arrays.used["tree"]] > 1).any())
 
 
 class LaneWork:
@@ -97,6 +97,8 @@ class LaneWork:
                 rows["tree"],
             ],
         )
+        self._steps_begun = zeros((1,), np.dtype(np.int64))
+        self.record.steps_begun = self._steps_begun.ctypes.data
         self.record.free_motion = free_motion_kernel.address
         *call, first_world, substeps = structs.launch(continued_motion_kernel, first_world=0).addresses(
             "first_world", "substeps"
@@ -105,6 +107,11 @@ class LaneWork:
         self.record.motion = KernelCall(*self._motion.addresses())
         terms = self._wide["model"]["tree_joint_terms"].array
         self.record.joint_terms, self.record.tree_count = terms.ctypes.data, rows["tree"]
+
+    @property
+    def steps_begun(self) -> int:
+        """How many steps of `LANES` worlds have begun together."""
+        return int(self._steps_begun[0])
 
     def poses(self) -> np.ndarray:
         """Poses of links that were computed last, (links, 7, `LANES`)."""

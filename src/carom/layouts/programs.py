@@ -87,6 +87,7 @@ class LaneMotion:
         scattered_count: The same of `scattered`.
         joint_terms: For each tree and lane: whether it has joint terms. All lanes have to be alike.
         tree_count: Number of trees.
+        steps_begun: How many steps of `LANES` worlds have begun so.
         motion: The kernel.
         free_motion: The kernel of single worlds that computes their free motion from the beginning.
         continued: The launch in its place that continues with the results.
@@ -98,6 +99,7 @@ class LaneMotion:
     scattered_count: Int32
     joint_terms: Read[Double]
     tree_count: Int64
+    steps_begun: At[Int64]
     motion: KernelCall
     free_motion: KernelFunction
     continued: WorldCall

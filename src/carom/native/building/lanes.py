@@ -4,8 +4,8 @@ Warp's `float64` becomes `lanes::Lane` (`lanes.h`): one number of each world, in
 Comparisons of such numbers give a `lanes::Mask`, with which `wp.where` chooses in each lane for itself.
 
 A branch on a mask is taken if it is true in some lane. Warp gives each variable that a branch changes a new
-name in it, and chooses between both with `wp.where` after it; so branches that only change variables are right
-in each lane. Others, which store something, return or loop, would take all worlds the same way, and are
+name in it, and chooses between both with `wp.where` after it; so branches that only change variables are
+right in each lane. Others, which store something, return or loop, would take all worlds the same way, and are
 refused; `kernels.maths.lanes.in_some_world` allows them.
 """
 
@@ -34,7 +34,7 @@ _CALL = re.compile(r"(?<![\w:])(\w+)\(")
 
 
 class BranchOnNumbers(Exception):
-    """A kernel for lanes depends on a comparison of numbers, in which worlds may differ, by more than values."""
+    """By more than values, a kernel for lanes depends on a comparison of numbers, which worlds differ in."""
 
 
 def in_lanes(source: str) -> str:

@@ -84,6 +84,7 @@ bool prepare_motion(const LaneMotion& lanes, int first) {
     if (!are_alike(lanes))
         return false;
     run(lanes.motion);
+    ++*lanes.steps_begun;
     return true;
 }
 
