@@ -12,6 +12,7 @@ import numpy as np
 from carom.engine.can_collide import can_collide, can_sleep
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
+from carom.engine.lane_work import LaneWork, can_move_together
 from carom.engine.parameters import EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
@@ -19,6 +20,7 @@ from carom.engine.quick_scene import QuickScene
 from carom.engine.settings import EngineSettings
 from carom.engine.threads import Threads
 from carom.engine.workspace import Workspace
+from carom.layouts.programs import LANES
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
 from carom.native.kernels import link_poses_kernel
@@ -219,6 +221,7 @@ class Engine:
             self._loaded_for = None
             self._load_steps(bound, plan)
             self._loaded_for = loading_for
+        self._make_lanes(plan)
         self._prepared_for = self._constraint_counts()
 
     def _load_steps(self, bound: list[KernelStructs], plan: Plan) -> None:
@@ -228,6 +231,22 @@ class Engine:
         whole = self._steppers[0].program.whole
         if whole is not None and len(self._all_worlds) == 1:
             self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
+
+    def _make_lanes(self, plan: Plan) -> None:
+        """Let several worlds move at once, if they can: also after rows have moved within the same arrays.
+
+        Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
+        """
+        together = self._make_program is self.step_program and can_move_together(self.arrays, plan)
+        for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
+            if isinstance(stepper, Interpreter):
+                is_able = together and workspace.world_count == 1
+                stepper.move_together(LaneWork(self.arrays, workspace.structs) if is_able else None)
+
+    @property
+    def steps_in_lanes(self) -> int:
+        """How many steps of several worlds have begun together so far."""
+        return sum(one.steps_in_lanes for one in self._steppers if isinstance(one, Interpreter))
 
     def step_addresses(self) -> tuple[int, int, int]:
         """Addresses of the arguments of a step (0 if there are none), of the first status, of the time step.
@@ -482,7 +501,8 @@ class Engine:
         self._worlds[:count] = worlds
         if self._counter is not None:
             self._counter[0] = 0
-            scalars["chunk"] = max(1, count // (len(interpreters) * _CHUNKS_PER_THREAD))
+            chunk = count // (len(interpreters) * _CHUNKS_PER_THREAD)
+            scalars["chunk"] = LANES * max(1, chunk // LANES)
         for interpreter in interpreters:
             interpreter.ask(world_count=count, **scalars)
         try:

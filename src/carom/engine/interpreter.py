@@ -13,6 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
+from carom.engine.lane_work import LaneWork
 from carom.engine.program import Program
 from carom.layouts.programs import Program as ProgramRecord
 from carom.layouts.programs import Run
@@ -60,11 +61,14 @@ class Interpreter(Stepper):
         self.program = Program([], [], [], [], [])
         # The memory that a run points to has to be kept alive.
         self._kept = (status, worlds, due, counter)
+        self._lane_work: LaneWork | None = None
+        self._earlier_in_lanes = 0
         self._asked = Run(
             ctypes.addressof(self._record),
             worlds.ctypes.data,
             due.ctypes.data,
             None if counter is None else counter.ctypes.data,
+            None,
             world_count=len(worlds),
             step_count=1,
             chunk=len(worlds),
@@ -83,6 +87,17 @@ class Interpreter(Stepper):
             *call, record.first_world, record.substeps = launch.addresses("first_world", "substeps")
             record.call.function, record.call.bounds, record.call.arguments = call
         self.program = program
+
+    def move_together(self, work: LaneWork | None) -> None:
+        """Compute the free motion of several worlds at once in all later runs, or of one at a time."""
+        self._earlier_in_lanes = self.steps_in_lanes
+        self._lane_work = work
+        self._asked.lanes = None if work is None else ctypes.addressof(work.record)
+
+    @property
+    def steps_in_lanes(self) -> int:
+        """How many steps of several worlds have begun together so far."""
+        return self._earlier_in_lanes + (0 if self._lane_work is None else self._lane_work.steps_begun)
 
     def ask(self, **asked: int) -> None:  # noqa: D102
         for name, value in asked.items():

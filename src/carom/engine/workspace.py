@@ -29,6 +29,7 @@ class Workspace:
     Nothing in it persists from one step to the next. If worlds are stepped in parallel, each has its own.
 
     Attributes:
+        world_count: As given.
         scratch: Workspace of single trees.
         pairs: Workspace of collision detection.
         pair_rows: Workspace of the solver.
@@ -40,6 +41,7 @@ class Workspace:
     """
 
     def __init__(self, world_count: int = 1) -> None:
+        self.world_count: int = world_count
         self.scratch: ArrayTable = ArrayTable(Scratch, world_count, ENTRY_VIEWS)
         self.pairs: ArrayTable = ArrayTable(Pairs, world_count)
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)

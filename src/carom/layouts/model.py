@@ -310,6 +310,9 @@ class Scratch:
     tree: Rows[TreeScratch]
     link: Rows[LinkScratch]
     link_pose: TransformRows  # like `State.link_pose`, but for other coordinates or of the last substep
+    link_pose_free: (
+        TransformRows  # like `State.link_pose`: by `lane_motion_kernel`, until the substep takes it
+    )
     dof: Rows[DofScratch]
     position_start: RealRows  # at the start of the step, like the next three
     link_pose_start: TransformRows

@@ -1,10 +1,12 @@
 """Kernels as native code calls them, and steps of worlds as programs of them."""
 
-from carom.layouts.records import Anything, At, Bytes, Int32, Int64, KernelFunction, Read, c_record
+from carom.layouts.records import Anything, At, Bytes, Double, Int32, Int64, KernelFunction, Read, c_record
 
 # More launches than in any program, and the number of its parts.
 MAX_LAUNCHES = 32
 PROGRAM_PARTS = 5
+# Worlds that move at once.
+LANES = 4
 
 
 @c_record()
@@ -52,6 +54,58 @@ class Program:
 
 
 @c_record()
+class LaneRows:
+    """Numbers in rows of the arrays of single worlds, and the same of several worlds side by side.
+
+    Attributes:
+        lone: The first number of the first world.
+        world_stride: Bytes from one world to the next.
+        row_stride: Bytes from one row to the next.
+        wide: The first number of all lanes.
+        wide_stride: Bytes from one row of these to the next.
+        rows: Number of rows.
+        numbers: Numbers in each.
+    """
+
+    lone: Bytes
+    world_stride: Int64
+    row_stride: Int64
+    wide: Bytes
+    wide_stride: Int64
+    rows: Int32
+    numbers: Int32
+
+
+@c_record()
+class LaneMotion:
+    """Free motion of `LANES` worlds at once.
+
+    Attributes:
+        gathered: What it is computed from.
+        scattered: Its results, which each world takes in its step.
+        gathered_count: Number of entries of `gathered`.
+        scattered_count: The same of `scattered`.
+        joint_terms: For each tree and lane: whether it has joint terms. All lanes have to be alike.
+        tree_count: Number of trees.
+        steps_begun: How many steps of `LANES` worlds have begun so.
+        motion: The kernel.
+        free_motion: The kernel of single worlds that computes their free motion from the beginning.
+        continued: The launch in its place that continues with the results.
+    """
+
+    gathered: Read[LaneRows]
+    scattered: Read[LaneRows]
+    gathered_count: Int32
+    scattered_count: Int32
+    joint_terms: Read[Double]
+    tree_count: Int64
+    steps_begun: At[Int64]
+    motion: KernelCall
+    free_motion: KernelFunction
+    continued: WorldCall
+
+
+@c_record()
 class Run:
     """Steps of worlds that are to be performed.
 
@@ -66,6 +120,7 @@ class Run:
         resumed: 1: continue after the steps that each world has already done.
         first_substep: If it is not 0, the step has already begun.
         end_substep: The step is ended only after its last substep.
+        lanes: Free motion of several worlds at once; null if worlds move one at a time.
         repeatable: 1: a step that fails is undone completely, whatever the reason, for another attempt.
     """
 
@@ -73,6 +128,7 @@ class Run:
     worlds: Read[Int32]
     due: Read[Int32]
     counter: At[Int32]
+    lanes: Read[LaneMotion]
     world_count: Int32
     step_count: Int32
     chunk: Int32

@@ -7,9 +7,10 @@ So damping and springs are stable however stiff they are, and constraints count 
 import warp as wp
 
 from carom.kernels.dynamics.kinematics import load_quaternion
+from carom.kernels.maths.lanes import in_some_world
 from carom.kernels.maths.rotation import rotation_vector
-from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Quaternion, Vector3, func
+from carom.kernels.structs import Model, Scratch, State
+from carom.kernels.types import Int32, Quaternion, Vector3, func, real
 from carom.layouts.codes import PLANAR, SPHERICAL
 
 
@@ -59,23 +60,30 @@ def base_stretch(model: Model, state: State, world: Int32, tree: Int32):
 
 
 @func
-def add_joint_terms(
-    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
-):
-    """Add the forces of damping and springs to `dof_force`, and the joints' terms to the mass matrix."""
-    h = settings.time_step
+def add_joint_terms(model: Model, h: real, state: State, scratch: Scratch, world: Int32, tree: Int32):
+    """Add the forces of damping and springs to `dof_force`, and the joints' terms to the mass matrix.
+
+    `h` is the time of a substep.
+    """
     first_of_tree = model.tree[tree].first_dof
     blocks = (model.tree[tree].dof_count + 3) // 4
     matrix = model.tree[tree].first_block
     base = model.tree[tree].first_link
     first_of_base = model.link[base].first_dof
-    if model.link[base].dof_count > 0 and model.dof_stiffness[world, first_of_base] > 0.0:
-        angle, distance = base_stretch(model, state, world, tree)
-        for axis in range(3):
-            turning = first_of_base + axis
-            scratch.dof[world, turning].force -= model.dof_stiffness[world, turning] * angle[axis]
-            moving = first_of_base + 3 + axis
-            scratch.dof[world, moving].force -= model.dof_stiffness[world, moving] * distance[axis]
+    if model.link[base].dof_count > 0:
+        if in_some_world(model.dof_stiffness[world, first_of_base] > 0.0):
+            angle, distance = base_stretch(model, state, world, tree)
+            for axis in range(3):
+                turning = first_of_base + axis
+                stiffness = model.dof_stiffness[world, turning]
+                scratch.dof[world, turning].force -= wp.where(
+                    stiffness > 0.0, stiffness * angle[axis], real(0.0)
+                )
+                moving = first_of_base + 3 + axis
+                stiffness = model.dof_stiffness[world, moving]
+                scratch.dof[world, moving].force -= wp.where(
+                    stiffness > 0.0, stiffness * distance[axis], real(0.0)
+                )
     for i in range(model.link[base].dof_count):
         dof = first_of_base + i
         yielding = model.dof_implicit_damping[world, dof] + h * model.dof_stiffness[world, dof]

@@ -47,15 +47,19 @@ def write_row(
     for (int k = count - 1; k >= 0; --k) {
         auto* row = rows + k * blocks;
         const auto* entries = row->c;
-        const auto inverse = entries[k] >= least_pivot ? 1.0 / entries[k] : 0.0;
+        decltype(least_pivot) inverse = 0.0;
+        const auto is_sound = entries[k] >= least_pivot;
+        if (is_sound)
+            inverse = wp::where(is_sound, 1.0 / entries[k], inverse);
         dof[k].inverse_pivot = inverse;
         for (int i = 0; i < k; ++i)
             if (entries[i] != 0.0) {
+                const auto is_linked = entries[i] != 0.0;
                 const auto factor = -entries[i] * inverse;
                 auto* target = rows + i * blocks;
                 #pragma clang loop vectorize(disable)
                 for (int b = 0; b <= i / 4; ++b)
-                    target[b] = wp::add(target[b], wp::mul(factor, row[b]));
+                    target[b] = wp::where(is_linked, wp::add(target[b], wp::mul(factor, row[b])), target[b]);
             }
         // Last: the steps above need the row as it was.
         #pragma clang loop vectorize(disable)
@@ -112,10 +116,11 @@ def solve_rows(matrix: Vector4Rows, start: Int32, dofs: DofRows, first: Int32, w
             row[b] = {};
         for (int j = 0; j < i; ++j)
             if (factor[j] != 0.0) {
+                const auto is_linked = factor[j] != 0.0;
                 const auto* source = rows + j * blocks;
                 #pragma clang loop vectorize(disable)
                 for (int b = 0; b <= i / 4; ++b)
-                    row[b] = wp::add(row[b], wp::mul(-factor[j], source[b]));
+                    row[b] = wp::where(is_linked, wp::add(row[b], wp::mul(-factor[j], source[b])), row[b]);
             }
         // Column i of the rows above is not filled yet, so the diagonal is summed separately.
         auto diagonal = dof[i].inverse_pivot;

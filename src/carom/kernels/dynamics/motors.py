@@ -8,6 +8,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import load_quaternion
 from carom.kernels.dynamics.rows import add_row, axis_effective_masses, dof_effective_mass
+from carom.kernels.maths.lanes import in_some_world
 from carom.kernels.maths.min_max import within_bounds
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.maths.runs import subtract_products
@@ -54,12 +55,14 @@ def explicit_pd(model: Model, state: State, world: Int32, tree: Int32):
             dof = model.link[link].first_dof
             drive = state.dof_pd[world, dof]
             bound = drive[PD_MAX_FORCE]
-            if not bound <= 0.0:
+            if in_some_world(not bound <= 0.0):
                 position = state.position[world, model.link[link].first_position]
                 force = drive[PD_KP] * (drive[PD_POSITION] - position) + drive[PD_KD] * (
                     drive[PD_VELOCITY] - state.dof_velocity[world, dof]
                 )
-                state.dof_torque[world, dof] += unless_nan(within_bounds(force, -bound, bound), bound)
+                force = unless_nan(within_bounds(force, -bound, bound), bound)
+                torque = state.dof_torque[world, dof]
+                state.dof_torque[world, dof] = wp.where(bound <= 0.0, torque, torque + force)
 
 
 @func

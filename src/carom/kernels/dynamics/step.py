@@ -3,12 +3,7 @@
 import warp as wp
 
 from carom.kernels.dynamics.actuators import advance_activations
-from carom.kernels.dynamics.dynamics import (
-    generalized_forces,
-    link_bias_forces,
-    link_inertias,
-    update_velocities,
-)
+from carom.kernels.dynamics.dynamics import update_velocities
 from carom.kernels.dynamics.feedback import (
     FIRST,
     clear_constraint_forces,
@@ -16,9 +11,8 @@ from carom.kernels.dynamics.feedback import (
     measure_joint_wrenches,
 )
 from carom.kernels.dynamics.integration import integrate_positions
-from carom.kernels.dynamics.joint_terms import add_joint_terms
-from carom.kernels.dynamics.kinematics import forward_kinematics, motion_subspaces
-from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, invert, solve
+from carom.kernels.dynamics.lane_motion import accelerate_tree
+from carom.kernels.dynamics.mass_matrix import invert
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
 from carom.kernels.dynamics.step_ends import begin_step, end_step
@@ -31,7 +25,6 @@ from carom.kernels.solver.joint_solver import (
 )
 from carom.kernels.structs import Model, Pairs, Scratch, Settings, State
 from carom.kernels.types import Int32, func, kernel
-from carom.layouts.codes import FREE_MOTION
 from carom.layouts.status import STATUS, WELL
 
 
@@ -41,16 +34,7 @@ def move_tree(
 ):
     """As `free_motion`, for a tree that is awake, with any number of links."""
     explicit_pd(model, state, world, tree)
-    forward_kinematics(model, state, state.link_pose, world, tree)
-    motion_subspaces(model, state.link_pose, scratch, world, tree)
-    link_inertias(model, scratch, world, tree)
-    link_bias_forces(model, state, scratch, world, tree, FREE_MOTION)
-    generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
-    composite_inertia(model, scratch, world, tree)
-    if model.tree_joint_terms[world, tree] != 0.0:
-        add_joint_terms(model, settings, state, scratch, world, tree)
-    factorise(model, scratch, world, tree)
-    solve(model, scratch, world, tree)
+    accelerate_tree(model, settings.time_step, state, scratch, world, tree)
     if model.tree[tree].sensor_count > 0:
         measure_joint_wrenches(model, settings, state, scratch, world, tree, FIRST)
         clear_constraint_forces(model, state, scratch, world, tree)
@@ -72,6 +56,23 @@ def free_motion(
         move_tree(model, settings, state, scratch, world, tree, pushed)
     if has_woken(state, world, tree):
         # Gravity and forces act on a tree from the substep after its waking up.
+        stop(model, state, world, tree)
+    clear_delta_velocities(model, scratch, world, tree)
+
+
+@func
+def continue_free_motion(
+    model: Model, settings: Settings, state: State, scratch: Scratch, world: Int32, tree: Int32
+):
+    """As `free_motion`, for a tree of more than one link after `lane_motion_kernel`."""
+    if is_left_out(state, world, tree):
+        return
+    explicit_pd(model, state, world, tree)
+    base = model.tree[tree].first_link
+    for link in range(base, base + model.tree[tree].link_count):
+        state.link_pose[world, link] = scratch.link_pose_free[world, link]
+    update_velocities(model, settings, state, scratch, world, tree)
+    if has_woken(state, world, tree):
         stop(model, state, world, tree)
     clear_delta_velocities(model, scratch, world, tree)
 

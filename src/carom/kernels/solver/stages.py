@@ -2,7 +2,8 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.step import free_motion, move_or_stop
+from carom.kernels.dynamics.lane_motion import has_several_links
+from carom.kernels.dynamics.step import continue_free_motion, free_motion, move_or_stop
 from carom.kernels.solver.islands import build_islands, may_be_pushed
 from carom.kernels.solver.link_forces import gather_link_forces
 from carom.kernels.solver.solver import solve_island
@@ -36,6 +37,24 @@ def free_motion_kernel(
         free_motion(
             model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
         )
+
+
+@kernel
+def continued_motion_kernel(
+    settings: Settings, model: Model, state: State, scratch: Scratch, pair_rows: PairRows, first_world: Int32
+):
+    """As `free_motion_kernel`, after `lane_motion_kernel` has accelerated the trees of more than one link.
+
+    Those with force-torque sensors need more of its intermediate results than there are for one world.
+    """
+    world = first_world + wp.tid()
+    for tree in range(settings.tree_count):
+        if has_several_links(model, tree) and model.tree[tree].sensor_count == 0:
+            continue_free_motion(model, settings, state, scratch, world, tree)
+        else:
+            free_motion(
+                model, settings, state, scratch, world, tree, may_be_pushed(model, pair_rows, world, tree)
+            )
 
 
 @kernel

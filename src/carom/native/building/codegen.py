@@ -20,8 +20,10 @@ from typing import Any
 import warp as wp
 from warp._src.context import ModuleBuilder
 
+from carom.layouts.programs import LANES
 from carom.native.building.cache import MANIFEST
 from carom.native.building.headers import HEADER, header
+from carom.native.building.lanes import in_lanes
 from carom.native.building.manifest import (
     fixed_layouts,
     kernel_entry,
@@ -29,6 +31,7 @@ from carom.native.building.manifest import (
     merge_layouts,
     struct_layouts,
 )
+from carom.native.kernel_modules import LANE_MODULES
 
 # Code is generated for blocks of one thread, which makes a kernel a plain C function.
 _BLOCK_SIZE = 1
@@ -86,7 +89,10 @@ def generate(modules: Sequence[str], digest: str, folder: Path) -> None:
                 )
             kernels[kernel.key] = kernel_entry(kernel, name)
         merge_layouts(structs, struct_layouts(built))
-        source += layout_assertions(built)
+        if name in LANE_MODULES:
+            source = in_lanes(source) + layout_assertions(built, LANES)
+        else:
+            source += layout_assertions(built)
         (folder / f"{name}.cpp").write_text(source, encoding="utf-8", newline="\n")
     merge_layouts(structs, fixed_layouts(kernel["dimensions"] for kernel in kernels.values()))
     manifest = {

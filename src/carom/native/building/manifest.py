@@ -89,12 +89,15 @@ def fixed_layouts(dimensions: Iterable[int]) -> dict[str, Layout]:
     return layouts
 
 
-def layout_assertions(kernels: Iterable[Any]) -> str:
-    """C++ that compiles only if all layouts of a module's kernels are those of the manifest."""
+def layout_assertions(kernels: Iterable[Any], lanes: int = 1) -> str:
+    """C++ that compiles only if all layouts of a module's kernels are those of the manifest.
+
+    With several `lanes`, structs of numbers have so many in place of each, as in `engine.lane_work`.
+    """
     kernels = sorted(kernels, key=lambda kernel: kernel.key)
     lines = []
     for struct in _structs(kernels):
-        lines.extend(_assertions(struct.native_name, struct.ctype))
+        lines.extend(_assertions(struct.native_name, _widened(struct, lanes)))
     for kernel in kernels:
         lines.extend(_assertions(f"wp_args_{kernel.key}", _argument_block(kernel)))
     lines.extend(_assertions("wp::array_t<double>", array_t))
@@ -160,6 +163,18 @@ def _ctype(kind: Any) -> Any:
     if is_array(kind):
         return array_t
     return kind.ctype if isinstance(kind, Struct) else type_ctype(kind)
+
+
+def _widened(struct: Any, lanes: int) -> Any:
+    """The C struct with so many numbers in place of each; that of trees has none that lanes read."""
+    if lanes == 1 or struct.key == "TreeModel":
+        return struct.ctype
+    kinds = {name: type_name(variable.type) for name, variable in struct.vars.items()}
+    fields = [
+        (name, c_type * lanes if "float64" in kinds[name] and not kinds[name].startswith("array") else c_type)
+        for name, c_type in struct.ctype._fields_
+    ]
+    return type("Wide", (ctypes.Structure,), {"_fields_": fields})
 
 
 def _layout(block: Any, fields: dict[str, str]) -> Layout:
