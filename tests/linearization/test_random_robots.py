@@ -94,3 +94,10 @@ def test_many_worlds_in_different_states_are_exact():
         exact = assert_exact(worlds.extract(number), controls=CONTROLS, parameters=GAINS)
         for name in ("A", "B", "E"):
             assert_array_equal(getattr(found, name)[number], getattr(exact, name))
+
+
+def test_a_world_in_which_nothing_can_move_has_no_state():
+    world = World()
+    world.load(random_tree(1, 3, fixed_base=True, joint_types=[JointType.FIXED]))
+    step = world.linearize()
+    assert (step.A.shape, step.B.shape, step.states, step.rows) == ((0, 0), (0, 0), (), ())

@@ -31,6 +31,7 @@ class StepSpace:
     states: Int32
     columns: Int32
     most_rows: Int32
+    most_of_joints: Int32  # of these, rows that the kernels add
     constraints: Int32  # joint constraints
     users: Int32  # user constraints
     smoothing: real

@@ -61,7 +61,8 @@ class StepKernels:
         self._struct.users = users
         kinds = engine.contact_arrays.users.numpy["user_kind"][:users]
         others = int(np.isin(kinds, TIES, invert=True).sum())
-        self._fixed_rows = _rows_of_joints(copies) + users - others + _MOST_ROWS * others
+        self._struct.most_of_joints = _rows_of_joints(copies) + users - others
+        self._fixed_rows = self._struct.most_of_joints + _MOST_ROWS * others
         self._contacts = 0
         self._made_for: list[Any] = []
         self._settings: Any = None
@@ -172,7 +173,7 @@ _COUNTED = ("constraint", "actuator")
 
 
 def _rows_of_joints(copies: Copies) -> int:
-    """At most so many rows are those of joints."""
+    """At most so many rows are those of joints, motors of spherical joints included."""
     arrays = copies.engine.arrays
     model, count = arrays.model.numpy, arrays.used["constraint"]
     kinds, links = model["constraint_kind"][:count], model["constraint_link"][:count]

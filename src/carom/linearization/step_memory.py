@@ -154,4 +154,4 @@ def places_for(space: Any, worlds: int) -> int:
     """How many of some worlds to linearise together."""
     n, rows, columns = space.dofs, space.most_rows, space.columns
     each = 16 * n * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 4)
-    return max(1, min(worlds, _MOST_NUMBERS // each))
+    return max(1, min(worlds, _MOST_NUMBERS // max(each, 1)))

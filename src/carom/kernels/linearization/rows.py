@@ -24,19 +24,20 @@ def status_of(impulse: real, lower: real, upper: real) -> Int32:
 
 @func
 def make_room(space: StepSpace, steps: StepBatch, place: Int32):
-    """Set all to 0 that is not of the rows which are there."""
+    """Set the rows to 0 that may be added to those which are there."""
     there = steps.row_count[place]
     room = space.most_rows
     first = place * room + there
-    left = room - there
+    left = wp.min(room - there, space.most_of_joints)
     clear(steps.jacobian, first * space.dofs, left * space.dofs)
     clear(steps.through, first * space.dofs, left * space.dofs)
     clear(steps.side, first * space.columns, left * space.columns)
-    clear(steps.alpha, first * room, left * room)
-    clear(steps.beta, first * room, left * room)
     for row in range(there):
         clear(steps.alpha, (place * room + row) * room + there, left)
         clear(steps.beta, (place * room + row) * room + there, left)
+    for row in range(left):
+        clear(steps.alpha, (first + row) * room, there + left)
+        clear(steps.beta, (first + row) * room, there + left)
 
 
 @func
