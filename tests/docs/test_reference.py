@@ -39,7 +39,7 @@ INTERNAL: dict[str, set[str]] = {
             "update_link_poses",
             "update_link_velocities",
         ),
-        *("update_soft_poses",),
+        *("update_soft_poses", "kept_linearization"),
         *(f"{name}_memory" for name in ("position", "velocity", "motor", "pd", "joint_torque", "link_pose")),
         *(f"{name}_memory" for name in ("motor_impulse", "link_velocity", "link_force", "joint_reaction")),
     },

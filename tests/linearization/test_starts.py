@@ -1,5 +1,7 @@
 """Steps linearised at states of one's choice, and vector-Jacobian products."""
 
+import gc
+import weakref
 from typing import Any
 
 import numpy as np
@@ -113,3 +115,12 @@ def test_wrong_lengths_are_named():
         world.step_vjp(np.zeros(3))
     with pytest.raises(ValueError, match="steps must be at least 1"):
         world.step_vjp(np.zeros(18), steps=0)
+
+
+def test_what_is_kept_for_the_next_call_does_not_keep_a_world():
+    world = driven_panda()
+    world.linearize()
+    gone = weakref.ref(world)
+    del world
+    gc.collect()
+    assert gone() is None

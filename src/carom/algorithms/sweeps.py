@@ -59,6 +59,7 @@ class Sweeps:
     Attributes:
         dofs: Number of velocity coordinates, those of a free base included.
         links: Number of links, the base included.
+        structs: The structs of the mechanism, that of sweeps last.
     """
 
     def __init__(self, body: Body) -> None:
@@ -69,6 +70,7 @@ class Sweeps:
         self.links: int = len(self._ends)
         self._given: int = self._mechanism.coordinates + (BASE_POSITIONS if self._mechanism.free else 0)
         self._table: Any = sweep_table(body, self._mechanism, self._ends)
+        self.structs: list[Any] = [*self._mechanism.structs, self._table]
         self._length = 3 + BASE_POSITIONS + self._mechanism.coordinates + 2 * self.dofs
         self._launches: dict[Any, tuple[np.ndarray, np.ndarray, Callable[[], None]]] = {}
 
@@ -152,7 +154,7 @@ class Sweeps:
         answer = put_zeros(batch, "answer", count * size)
         for name in ("mass", "moment", "inertia", "armature"):
             put_zeros(batch, name, 0)
-        launch = Launch(kernel, count, [*self._mechanism.structs, self._table, batch, *numbers, 0])
+        launch = Launch(kernel, count, [*self.structs, batch, *numbers, 0])
         return question, answer, launch.brief_function
 
 

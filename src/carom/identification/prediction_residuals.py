@@ -154,7 +154,8 @@ class PredictionResiduals:
             if row == rows - 1:
                 break
             slopes = self._drive(state, p, window.start + row)
-            by_state, by_input = step_derivatives(world, space, inputs, copies, 0.0).matrices()
+            found_step = step_derivatives(world, space, inputs, copies, 0.0)
+            by_state, by_input = found_step.by_state[0], found_step.by_input[0]
             driven = np.zeros((width, len(p)))
             driven[:, : len(fitted)] = by_input[:, len(self._controls) :]
             for name, place in self._unknowns.delays.items():

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -53,9 +52,6 @@ class Chosen:
                 )
 
 
-_kept: WeakKeyDictionary[World, tuple[Any, dict[Any, Chosen]]] = WeakKeyDictionary()
-
-
 def chosen_parts(world: World, controls: Sequence[str], parameters: Sequence[str]) -> Chosen:
     """The parts of a world that calls have chosen.
 
@@ -65,9 +61,9 @@ def chosen_parts(world: World, controls: Sequence[str], parameters: Sequence[str
     world.prepare()
     bodies = [(body, body.name, body.spec, body.fixed_base) for body in world.bodies.values()]
     key = made_for(world), world.parameters.substep_time, bodies
-    known = _kept.get(world)
+    known: tuple[Any, dict[Any, Chosen]] | None = world.kept_linearization.get(Chosen)
     if known is None or known[0] != key or len(known[1]) >= _MOST_KEPT:
-        known = _kept[world] = key, {}
+        known = world.kept_linearization[Chosen] = key, {}
     choice = tuple((it,) if isinstance(it, str) else tuple(it) for it in (controls, parameters))
     found = known[1].get(choice)
     if found is None:

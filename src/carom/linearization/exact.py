@@ -1,172 +1,231 @@
-"""The derivatives of one step, by the implicit function theorem over the rows that hold at its end."""
+"""The derivatives of one step, by the implicit function theorem over the rows that hold at its end.
+
+Kernels find what follows from inertia, joints and ties between joints, and solve for the impulses; the host
+adds forces on links, parameters of inertia, contacts and other user constraints where there are any.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
 from carom.layouts.contacts import THERE
+from carom.layouts.linearization import FOUND, OVERFLOWED, REDUNDANT
+from carom.linearization.ball_rows import add_ball_motor, ball_motors
 from carom.linearization.contact_rows import ContactRows
-from carom.linearization.free_motion import FreeMotion
-from carom.linearization.joint_rows import JointRows, bounded_control
-from carom.linearization.motion_questions import ask_lone, questions_of_step
+from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
+from carom.linearization.motion_questions import Ask, ask_lone
 from carom.linearization.pair_rows import Places
-from carom.linearization.row_solver import RowSolver, row_solver
+from carom.linearization.row_names import RowNames, raise_problem
 from carom.linearization.rows import Rows
-from carom.linearization.stepping import Copies
-from carom.linearization.taken_step import StateBefore, TakenStep
-from carom.linearization.user_rows import UserRows
+from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
+from carom.linearization.taken_step import TakenStep
+from carom.linearization.user_rows import TIES, UserRows
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
+    from carom.linearization.step_memory import StepMemory
+    from carom.linearization.stepping import Copies
     from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
-# At most so many rows has a contact or a user constraint, and a constraint of a joint.
-_MOST_ROWS, _BALL_ROWS = 6, 3
+# Singular values of the rows' equations below this share of the greatest one are those of redundant rows.
+_REDUNDANT = 1e-7
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class StepFactors:
-    """A step that has been performed, and the factors of its derivatives.
-
-    Columns are changes of positions, of velocities, of activations (nx in all), then of inputs. The
-    velocities after the step are v + h M⁻¹ forces + M⁻¹ Jᵀ λ.
+class StepDerivatives:
+    """Derivatives of the step of some worlds.
 
     Attributes:
-        rows: Names and status of all rows.
-        states: Number of states, nx.
-        response: h M⁻¹, (n, n).
-        forces: Derivatives of forces at constant impulses, (n, columns).
-        free_forces: The same without impulses; the same array if there are no rows.
-        solver: What finds the impulses of the rows; None without rows.
-        moving: 1 where a velocity is below the greatest one, else 0, (n,).
-        turned, moved: Derivatives of positions after the step by those before it and by the velocities
-            after it, (n, n).
-        acted, driven: Those of activations by themselves, (a,), and by inputs, (a, inputs).
+        by_state: Of the state after the step by that before it, (m, nx, nx).
+        by_input: By inputs, (m, nx, inputs).
+        rows: Of each world, names and status of all rows.
     """
 
-    rows: tuple[tuple[str, str], ...]
-    states: int
-    response: np.ndarray
-    forces: np.ndarray
-    free_forces: np.ndarray
-    solver: RowSolver | None
-    moving: np.ndarray
-    turned: np.ndarray
-    moved: np.ndarray
-    acted: np.ndarray
-    driven: np.ndarray
+    by_state: np.ndarray
+    by_input: np.ndarray
+    rows: list[tuple[tuple[str, str], ...]]
 
-    def matrices(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the state after the step by that before it (nx, nx), and by inputs (nx, inputs)."""
-        dofs, width = len(self.moving), self.states
-        velocities = self.response @ self.forces
-        _add_identity(velocities, dofs)
-        if self.solver is not None:
-            free = velocities
-            if self.free_forces is not self.forces:
-                free = self.response @ self.free_forces
-                _add_identity(free, dofs)
-            velocities = velocities + self.solver.changes(free, velocities)
-        velocities *= self.moving[:, None]
-        found = np.zeros((width, velocities.shape[1]))
-        found[:dofs] = self.moved @ velocities
-        found[:dofs, :dofs] += self.turned
-        found[dofs : 2 * dofs] = velocities
-        if len(self.acted):
-            found[2 * dofs :, 2 * dofs : width] = np.diag(self.acted)
-            found[2 * dofs :, width:] = self.driven
-        return found[:, :width], found[:, width:]
-
-    def pulled_back(self, cotangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """A cotangent (nx,) times `matrices`, (nx,) and (inputs,), without making these."""
-        dofs, width = len(self.moving), self.states
-        given = self.moving * (cotangent[dofs : 2 * dofs] + cotangent[:dofs] @ self.moved)
-        found = np.zeros(self.forces.shape[1])
-        if self.solver is not None:
-            of_free, given, found = self.solver.pulled_back(given)
-            found = found + (of_free @ self.response) @ self.free_forces
-            found[dofs : 2 * dofs] += of_free
-        found = found + (given @ self.response) @ self.forces
-        found[dofs : 2 * dofs] += given
-        found[:dofs] += cotangent[:dofs] @ self.turned
-        if len(self.acted):
-            found[2 * dofs : width] += cotangent[2 * dofs :] * self.acted
-            found[width:] += cotangent[2 * dofs :] @ self.driven
-        return found[:width], found[width:]
+    def pulled_back(self, cotangents: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Cotangents of the states after the step (m, nx), as those before it, and of inputs (m, inputs)."""
+        given = cotangents[:, None]
+        return (given @ self.by_state)[:, 0], (given @ self.by_input)[:, 0]
 
 
-def _add_identity(velocities: np.ndarray, dofs: int) -> None:
-    """Add 1 to the derivatives of velocities by themselves."""
-    velocities[np.arange(dofs), np.arange(dofs, 2 * dofs)] += 1.0
-
-
-def step_factors(
-    space: TangentSpace, inputs: Sequence[Input], taken: TakenStep, motion: FreeMotion, smoothing: float
-) -> StepFactors:
-    """Differentiate a step that has been performed.
+class StepLinearizer:
+    """Linearises steps of the worlds of `copies`.
 
     Args:
-        space: The tangent space of the world.
+        space: The tangent space.
         inputs: Controls and parameters.
-        taken: The step.
-        motion: Its free motion.
-        smoothing: Softness of all rows, relative to their own.
-
-    Raises:
-        NotImplementedError: Something in the step has no exact derivatives.
+        copies: The worlds, which take the steps.
+        mechanisms: Mechanisms of their bodies.
+        ask: For each world what answers questions about motions.
+        threads: Number of threads.
     """
-    contacts, users = int(taken.contacts["count_contacts"][THERE]), taken.user_count
-    constraints = taken.constraint_count
-    rows = Rows(space, inputs, _MOST_ROWS * (contacts + users) + _BALL_ROWS * constraints)
-    if contacts or users:
-        places = Places(space, motion)
-        UserRows(space, taken, places, rows).add_all(users)
-        ContactRows(space, taken, places, motion, rows).add_all()
-    total = motion.effective @ (taken.solved - taken.free_velocity) - rows.generalized_impulses()
-    JointRows(space, taken, rows, total).add_all(constraints)
-    dofs, active = len(space), len(space.activations)
-    free_forces = forces = motion.force_derivatives(0, active, inputs)
-    solver = None
-    if len(rows):
-        forces = motion.force_derivatives(1, active, inputs)
-        of_after = np.zeros((len(rows), dofs))
+
+    def __init__(
+        self,
+        space: TangentSpace,
+        inputs: Sequence[Input],
+        copies: Copies,
+        mechanisms: Mechanisms,
+        ask: Callable[[int], Ask],
+        threads: int,
+    ) -> None:
+        self._space, self._inputs, self._copies = space, inputs, copies
+        self._ask = ask
+        self._kernels = StepKernels(space, inputs, copies, mechanisms, threads)
+        self._names = RowNames(space)
+        torques = [(given.row, column) for column, given in enumerate(inputs) if given.kind == "torques"]
+        self._width = 2 * len(space) + len(space.activations)
+        pushed = np.array(torques, dtype=np.int64).reshape(-1, 2)
+        self._pushed = pushed[:, 0], self._width + pushed[:, 1]
+        arrays, contact_arrays = copies.engine.arrays, copies.engine.contact_arrays
+        self._ball_motors = ball_motors(arrays.model.numpy, arrays.used["constraint"])
+        kinds = contact_arrays.users.numpy["user_kind"][: contact_arrays.user_count]
+        self._has_pairs = bool(np.isin(kinds, TIES, invert=True).any())
+        self._of_motion = of_motion(inputs)
+
+    def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
+        """Whether it was made for these."""
+        return self._kernels.suit(space, inputs, copies)
+
+    def step(self, parameters: Any, worlds: np.ndarray | None, smoothing: float) -> StepDerivatives:
+        """Perform a step of some worlds, None for all, and differentiate it.
+
+        Args:
+            parameters: Parameters of their engine.
+            worlds: Numbers of the worlds, (m,).
+            smoothing: Softness of all rows, relative to their own.
+
+        Raises:
+            NotImplementedError: Something in the step has no exact derivatives.
+            ValueError: Derivatives are not finite.
+            carom.errors.SimulationError: A velocity is not finite.
+        """
+        copies = self._copies
+        wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
+        copies.step(worlds)
+        numbers = np.arange(copies.count) if worlds is None else worlds
+        engine = copies.engine
+        contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
+        memory = self._kernels.prepare(len(numbers), int(contacts.max()), smoothing)
+        hosted = self._has_pairs or self._of_motion or len(self._ball_motors) > 0
+        hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
+        found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
+        names: list[tuple[tuple[str, str], ...]] = []
+        for first in range(0, len(numbers), memory.places):
+            some = numbers[first : first + memory.places]
+            on_host = hosted or len(self._space.activations) > 0 or bool(np.count_nonzero(contacts[some]))
+            names += self._find(memory, parameters, some, wrench, on_host)
+            found[first : first + len(some)] = memory.step[: len(some)]
+        return StepDerivatives(found[:, :, : self._width], found[:, :, self._width :], names)
+
+    def _find(
+        self, memory: StepMemory, parameters: Any, worlds: np.ndarray, wrench: np.ndarray, on_host: bool
+    ) -> list[tuple[tuple[str, str], ...]]:
+        count, kernels = len(worlds), self._kernels
+        memory.world[:count] = worlds
+        memory.problem.fill(FOUND)
+        memory.row_count.fill(0)
+        memory.force[:count] = 0.0
+        memory.force[:count, :, self._pushed[0], self._pushed[1]] = 1.0
+        pairs: list[list[tuple[str, str]]] = [[]] * count
+        taken: list[TakenStep] = []
+        if on_host:
+            kernels.find_motion(count)
+            self._check(memory, worlds)
+            taken = [
+                TakenStep(parameters, self._space, self._copies, wrench, memory.velocity[place], world)
+                for place, world in enumerate(worlds.tolist())
+            ]
+            pairs = [
+                self._add_host(memory, place, *it)
+                for place, it in enumerate(zip(taken, worlds.tolist(), strict=True))
+            ]
+            kernels.solve(count)
+        else:
+            kernels.find(count)
+        self._check(memory, worlds)
+        dofs, width = len(self._space), self._width
+        if len(self._space.activations):
+            for step, own in zip(memory.step, taken, strict=False):
+                acted, driven = _activations(self._space, own, self._inputs)
+                step[2 * dofs :, 2 * dofs : width] = np.diag(acted)
+                step[2 * dofs :, width:] = driven
+        return [self._names(memory, place, own) for place, own in enumerate(pairs)]
+
+    def _check(self, memory: StepMemory, worlds: np.ndarray) -> None:
+        """Solve equations of rows that are redundant, and raise errors."""
+        if not np.count_nonzero(memory.problem):
+            return
+        for place in np.flatnonzero(memory.problem[: len(worlds)]).tolist():
+            problem = int(memory.problem[place])
+            if problem == OVERFLOWED:
+                raise ValueError(f"in world {worlds[place]} a derivative is not finite")
+            if problem != REDUNDANT:
+                raise_problem(problem, self._space, int(memory.problem_dof[place]))
+            rows = int(memory.row_count[place])
+            system = memory.square("system", place, rows)
+            memory.square("solution", place, rows)[:] = np.linalg.pinv(system, rcond=_REDUNDANT)
+            memory.problem[place] = FOUND
+            self._kernels.resume(place)
+
+    def _add_host(
+        self, memory: StepMemory, place: int, taken: TakenStep, world: int
+    ) -> list[tuple[str, str]]:
+        """Add what the host adds to forces and rows of a place; returns the names of rows."""
+        space, inputs, dofs = self._space, self._inputs, len(self._space)
+        motion = FreeMotion(space, taken, memory.inverse[place], self._ask(world))
+        force = memory.force[place]
+        motion.add_forces(force[:, :, :dofs], force[:, :, dofs : 2 * dofs])
+        if self._of_motion:
+            motion.add_inputs(force[:, :, self._width :], inputs)
+        contacts = int(taken.contacts["count_contacts"][THERE])
+        if not (contacts or self._has_pairs or self._ball_motors):
+            return []
+        rows = Rows(space, inputs, memory.rows)
+        if contacts or self._has_pairs:
+            places = Places(space, motion)
+            UserRows(space, taken, places, rows).add_all(taken.user_count)
+            ContactRows(space, taken, places, motion, rows).add_all()
+        for constraint in self._ball_motors:
+            add_ball_motor(space, taken, rows, constraint)
+        count = len(rows)
+        memory.row_count[place] = count
+        alpha = rows.matrix(rows.alpha)
         for row, hessian in rows.hessians.items():
-            forces[:, :dofs] += rows.impulses[row] / taken.time_step * hessian
-            of_after[row] = taken.solved @ hessian
-        solver = row_solver(rows, motion.inverse, of_after, smoothing)
-    bound = taken.model["tree_max_velocity"][space.trees]
-    return StepFactors(
-        tuple(rows.names),
-        2 * dofs + active,
-        taken.time_step * motion.inverse,
-        forces,
-        free_forces,
-        solver,
-        (np.abs(taken.solved) < bound).astype(float),
-        *space.integration(taken.after, taken.time_step),
-        *_activations(space, taken, inputs),
-    )
+            force[1, :, :dofs] += rows.impulses[row] / taken.time_step * hessian
+            # The rates of rows change as their Jacobians turn.
+            rows.sides[:, :dofs] -= np.outer(alpha[:, row], taken.solved @ hessian)
+        memory.jacobian[place, :count] = rows.jacobian
+        memory.through[place, :count] = rows.by_free_velocity
+        memory.side[place, :count] = rows.sides
+        memory.alpha[place, :count, :count] = alpha
+        memory.beta[place, :count, :count] = rows.matrix(rows.beta)
+        memory.row_impulse[place, :count] = rows.impulses
+        return rows.names
 
 
 def step_derivatives(
     world: World, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
-) -> StepFactors:
+) -> StepDerivatives:
     """Perform a step of a copy of a world, and differentiate it; the copy is at its end afterwards.
 
-    Arguments and errors are those of `step_factors`.
+    Arguments and errors are those of `StepLinearizer.step`.
     """
-    copies.apply_forces()
-    before = StateBefore(space, copies)
-    copies.step()
-    taken = TakenStep(world.parameters, space, copies, before)
-    answers = [ask_lone(*it) for it in zip(space.bodies, questions_of_step(space, taken), strict=True)]
-    return step_factors(space, inputs, taken, FreeMotion(space, taken, answers, ask_lone), smoothing)
+    kept = copies.linearizer
+    if kept is None or not kept.suits(space, inputs, copies):
+        kept = copies.linearizer = StepLinearizer(
+            space, inputs, copies, lone_mechanisms, lambda _: ask_lone, 1
+        )
+    return kept.step(world.parameters, None, smoothing)
 
 
 def _activations(
@@ -187,8 +246,9 @@ def _activations(
             continue
         share = {INTEGRATOR: 0.0, FILTER: h / constant, FILTER_EXACT: -np.expm1(-h / constant)}[int(dynamics)]
         kept[column] = 1.0 - share
+        least, most = (model[f"actuator_control_{side}"][actuator] for side in ("lower", "upper"))
+        within = bool(least <= taken.control[actuator] <= most)
         for number, given in enumerate(inputs):
-            of_control = given.kind == "actuators" and given.row == actuator
-            if of_control and bounded_control(taken, actuator)[1]:
+            if given.kind == "actuators" and given.row == actuator and within:
                 driven[column, number] = h if dynamics == INTEGRATOR else share
     return kept, driven

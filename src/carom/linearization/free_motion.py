@@ -1,4 +1,4 @@
-"""Derivatives of the equations of motion of the bodies in a step, at a given acceleration."""
+"""Derivatives of the equations of motion in a step: forces on links, springs, and inputs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
-from carom.layouts.codes import PD_KD, PD_KP, PD_MAX_FORCE, PD_POSITION, PD_VELOCITY
 from carom.linearization.inputs import INERTIAL
 from carom.linearization.motion_questions import Ask, motion_questions
 from carom.linearization.spatial import Spatial, link_forces
@@ -25,44 +24,27 @@ _PARTS = 10
 _ANGULAR, _LINEAR = slice(0, 3), slice(3, 6)
 
 
+# Inputs that change how forces lead to motion, apart from torques.
+_OF_MOTION = ("armature", "stiffness", "damping", "masses", "inertias", INERTIAL)
+
+
 class FreeMotion:
-    """The equations of motion of all bodies, M (v⁺ - v) / h = forces + Jᵀ λ / h, and their derivatives.
+    """What the host adds to the equations of motion M (v⁺ - v) / h = forces + Jᵀ λ / h of a linearised step.
+
+    A kernel has written what follows from inertia, joint springs and damping.
 
     Attributes:
-        effective: Effective mass matrix M, with armature, damping and springs, (n, n).
-        inverse: Its inverse; zeros where nothing can move.
+        inverse: Inverse of the effective mass matrix M, with armature, damping and springs; zeros where
+            nothing can move.
     """
 
-    def __init__(self, space: TangentSpace, taken: TakenStep, answers: list[np.ndarray], ask: Ask) -> None:
-        """Take the answers to `questions_of_step`; `ask` answers further questions."""
+    def __init__(self, space: TangentSpace, taken: TakenStep, inverse: np.ndarray, ask: Ask) -> None:
+        """Take a step and M⁻¹; `ask` answers questions about motions."""
         self._space = space
         self._taken = taken
         self._ask = ask
         self._spatial: list[Spatial] | None = None
-        count, h, dofs = len(space), taken.time_step, space.dofs
-        for body in space.bodies:
-            if taken.model["dof_stiffness"][body.rows.first["dof"]] != 0.0:
-                raise NotImplementedError(
-                    f"body {body.name!r} has a spring at its free base, which has no exact derivatives"
-                )
-        self._stiffness, self._damping = (
-            taken.model["dof_stiffness"][dofs],
-            taken.model["dof_implicit_damping"][dofs],
-        )
-        self._yielding = self._damping + h * self._stiffness
-        self.effective: np.ndarray = np.zeros((count, count))
-        self.inverse: np.ndarray = np.zeros((count, count))
-        # Derivatives by positions and by velocities, with the accelerations of free motion and of the solver.
-        self._by_state = np.zeros((2, count, 2 * count))
-        for found, (first, size) in zip(answers, space.places, strict=True):
-            own, own_v = slice(first, first + size), slice(count + first, count + first + size)
-            self._by_state[:, own, own] = -found[:, 0]
-            self._by_state[:, own, own_v] = -found[:, 1]
-            effective = found[0, 2].copy()
-            effective.ravel()[:: size + 1] += h * self._yielding[own]
-            self.effective[own, own] = effective
-            self.inverse[own, own] = _inverse(effective)
-        self._add_forces(self._by_state[:, :, :count], self._by_state[:, :, count:])
+        self.inverse: np.ndarray = inverse
 
     def _stretched(self) -> tuple[np.ndarray, np.ndarray]:
         """How far springs are stretched, and the derivatives by positions."""
@@ -81,26 +63,8 @@ class FreeMotion:
                 self._spatial.append(Spatial(body, taken.link_pose[links], columns))
         return self._spatial
 
-    def force_derivatives(self, end: int, activations: int, inputs: Sequence[Input]) -> np.ndarray:
-        """Derivatives of the forces, less those that the motion takes, at constant impulses.
-
-        Args:
-            end: With the accelerations of free motion (0) or those of the solver (1).
-            activations: Number of activations, by which they are 0.
-            inputs: The inputs.
-
-        Returns:
-            By positions, velocities, activations and inputs, (n, nx + inputs).
-        """
-        count = len(self._space)
-        width = 2 * count + activations
-        found = np.zeros((count, width + len(inputs)))
-        found[:, : 2 * count] = self._by_state[end]
-        self._put_input_forces(found[:, width:], self._taken.ends[end], inputs)
-        return found
-
-    def _add_forces(self, by_q: np.ndarray, by_v: np.ndarray) -> None:
-        """Add the derivatives of forces that do not depend on accelerations, (2, n, n)."""
+    def add_forces(self, by_q: np.ndarray, by_v: np.ndarray) -> None:
+        """Add derivatives of forces on links, and of springs of joints with several positions, (2, n, n)."""
         space, taken = self._space, self._taken
         for place, (body, (first, size)) in enumerate(zip(space.bodies, space.places, strict=True)):
             own = slice(first, first + size)
@@ -123,25 +87,29 @@ class FreeMotion:
             )
             by_q[:, own, own] += pushed_q
             by_v[:, own, own] += pushed_v
-        if self._stiffness.any():
-            by_q -= self._stiffness[:, None] * self._stretched()[1]
-        diagonal = np.arange(len(space))
-        by_v[:, diagonal, diagonal] -= self._yielding + taken.model["dof_damping"][space.dofs]
-        drive = taken.drive
-        if drive is not None:
-            pushed = _explicit_pd(taken.joint_position, taken.velocity, drive)
-            by_q[:, diagonal, diagonal] -= pushed * drive[:, PD_KP]
-            by_v[:, diagonal, diagonal] -= pushed * drive[:, PD_KD]
+        several = space.several
+        stiffness = taken.model["dof_stiffness"][space.dofs[several]]
+        if stiffness.any():
+            by_q[:, several] -= stiffness[:, None] * self._stretched()[1][several]
+
+    def add_inputs(self, found: np.ndarray, inputs: Sequence[Input]) -> None:
+        """Put the derivatives of forces, less those of motion, by inputs into (2, n, inputs).
+
+        The first are with the accelerations of free motion, the second with those of the solver. Torques are
+        left out.
+        """
+        for part, end in zip(found, self._taken.ends, strict=True):
+            self._put_inputs(part, end, inputs)
 
     def mass_input_derivatives(self, response: np.ndarray, inputs: Sequence[Input]) -> np.ndarray:
         """Derivatives of M response by inputs, (n, inputs), for a constant `response` (n,)."""
         velocity, h = self._taken.velocity, self._taken.time_step
         found = np.zeros((2, len(self._space), len(inputs)))
         for part, end in zip(found, (velocity, velocity + h * response), strict=True):
-            self._put_input_forces(part, end, inputs)
+            self._put_inputs(part, end, inputs)
         return found[0] - found[1]
 
-    def _put_input_forces(self, found: np.ndarray, after: np.ndarray, inputs: Sequence[Input]) -> None:
+    def _put_inputs(self, found: np.ndarray, after: np.ndarray, inputs: Sequence[Input]) -> None:
         """Put the derivatives of the forces, less those that the motion takes, by inputs into (n, inputs)."""
         space, taken, h = self._space, self._taken, self._taken.time_step
         accelerations = (after - taken.velocity) / h
@@ -149,9 +117,7 @@ class FreeMotion:
         stretch: np.ndarray | None = None
         for column, given in enumerate(inputs):
             row = given.row
-            if given.kind == "torques":
-                found[row, column] = 1.0
-            elif given.kind == "armature":
+            if given.kind == "armature":
                 found[row, column] = -accelerations[row]
             elif given.kind == "stiffness":
                 stretch = self._stretched()[0] if stretch is None else stretch
@@ -217,23 +183,21 @@ def _six(matrix: np.ndarray) -> np.ndarray:
     return matrix[(0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)]
 
 
-def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Inverse of an effective mass matrix, with zeros where nothing can move."""
-    moving = np.diag(matrix) > 0.0
-    if moving.all():
-        return np.linalg.inv(matrix)
-    found = np.zeros_like(matrix)
-    found[np.ix_(moving, moving)] = np.linalg.inv(matrix[np.ix_(moving, moving)])
-    return found
+def needs_host(space: TangentSpace, model: dict[str, np.ndarray], wrench: np.ndarray) -> bool:
+    """Whether `FreeMotion.add_forces` adds anything in one of the worlds of a model."""
+    # Of small arrays this takes less time than `any`.
+    count = np.count_nonzero
+    names = ("tree_linear_damping", "tree_angular_damping", "link_gravity_compensation")
+    if count(wrench) or any(count(model[name]) for name in names):
+        return True
+    if not len(space.several):
+        return False
+    return bool(count(model["dof_stiffness"][:, space.dofs[space.several]]))
 
 
-def _explicit_pd(positions: np.ndarray, velocities: np.ndarray, drive: np.ndarray) -> np.ndarray:
-    """1 where explicit PD control is within its greatest force, else 0."""
-    bound = drive[:, PD_MAX_FORCE]
-    force = drive[:, PD_KP] * (drive[:, PD_POSITION] - positions) + drive[:, PD_KD] * (
-        drive[:, PD_VELOCITY] - velocities
-    )
-    return np.where((bound > 0.0) & (np.abs(force) < bound), 1.0, 0.0)
+def of_motion(inputs: Sequence[Input]) -> bool:
+    """Whether `FreeMotion.add_inputs` adds anything."""
+    return any(it.kind in _OF_MOTION for it in inputs)
 
 
 def _regressor(

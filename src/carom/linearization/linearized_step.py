@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
 from carom.linearization.chosen import Chosen, chosen_parts
-from carom.linearization.exact import StepFactors, step_derivatives
+from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start
 from carom.linearization.stepping import copy_of, differences
 
@@ -84,7 +84,7 @@ def linearize(
         by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE, given)
     else:
         taken = performed(world, chosen, steps, smoothing, given)
-        by_state, by_input, rows = *_chained(taken), taken[-1].rows
+        by_state, by_input, rows = *_chained(taken), taken[-1].rows[0]
     seen, fed = _outputs(world, space, chosen.inputs[:count], steps, outputs, given)
     return LinearizedStep(
         A=by_state,
@@ -115,8 +115,8 @@ def refuse_substeps(world: World) -> None:
 
 def performed(
     world: World, chosen: Chosen, steps: int, smoothing: float, start: GivenState
-) -> list[StepFactors]:
-    """The factors of some steps, one after the other, from a given start."""
+) -> list[StepDerivatives]:
+    """The derivatives of some steps, one after the other, from a given start."""
     refuse_substeps(world)
     copies = copy_of(world)
     start.write(copies.engine.arrays.state.numpy)
@@ -125,11 +125,11 @@ def performed(
     return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
 
 
-def _chained(taken: list[StepFactors]) -> tuple[np.ndarray, np.ndarray]:
+def _chained(taken: list[StepDerivatives]) -> tuple[np.ndarray, np.ndarray]:
     """Derivatives of the last state by the first and by inputs."""
-    by_state, by_input = taken[0].matrices()
-    for factors in taken[1:]:
-        stepped, driven = factors.matrices()
+    by_state, by_input = taken[0].by_state[0], taken[0].by_input[0]
+    for found in taken[1:]:
+        stepped, driven = found.by_state[0], found.by_input[0]
         by_state, by_input = stepped @ by_state, stepped @ by_input + driven
     return by_state, by_input
 
@@ -150,16 +150,17 @@ def step_vjp(
     count = chosen.control_count
     given = start.checked(chosen.space, chosen.inputs[:count])
     pulled = vector(cotangent, len(chosen.states), "cotangent")
-    found = pulled_back(performed(world, chosen, steps, smoothing, given), pulled)
+    found = _pulled_back(performed(world, chosen, steps, smoothing, given), pulled)
     return found[0], found[1][:count], found[1][count:]
 
 
-def pulled_back(taken: list[StepFactors], cotangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _pulled_back(taken: list[StepDerivatives], cotangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A cotangent of the last state of some steps, as one of the first (nx,), and one of inputs."""
-    by_input = np.zeros(taken[0].forces.shape[1] - len(cotangent))
-    for factors in reversed(taken):
-        cotangent, driven = factors.pulled_back(cotangent)
-        by_input += driven
+    by_input = np.zeros(taken[0].by_input.shape[2])
+    for found in reversed(taken):
+        of_states, of_inputs = found.pulled_back(cotangent[None])
+        cotangent = of_states[0]
+        by_input += of_inputs[0]
     return cotangent, by_input
 
 

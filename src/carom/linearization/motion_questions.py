@@ -14,7 +14,6 @@ from carom.native.kernels import step_derivatives_kernel
 
 if TYPE_CHECKING:
     from carom.linearization.taken_step import TakenStep
-    from carom.linearization.tangent import TangentSpace
     from carom.scene.body import Body
 
 # Answers (k, 3, n, n) to questions (k, numbers) about a body: derivatives of the forces that its motion takes
@@ -48,15 +47,6 @@ def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np
             both = found[:, start : start + BASE_VELOCITIES]
             both[:] = (both.reshape(-1, 2, 3) @ turn).reshape(-1, BASE_VELOCITIES)
     return found
-
-
-def questions_of_step(space: TangentSpace, taken: TakenStep) -> list[np.ndarray]:
-    """Two questions (2, numbers) about each body: with accelerations of free motion, and of the solver."""
-    accelerations = (taken.ends - taken.velocity) / taken.time_step
-    return [
-        motion_questions(body, taken, slice(first, first + size), accelerations[:, first : first + size])
-        for body, (first, size) in zip(space.bodies, space.places, strict=True)
-    ]
 
 
 def ask_lone(body: Body, questions: np.ndarray) -> np.ndarray:

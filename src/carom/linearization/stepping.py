@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from copy import deepcopy
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from carom.native.block_copies import BlockCopies
 
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
+    from carom.linearization.exact import StepLinearizer
     from carom.linearization.given_state import GivenState
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
@@ -44,6 +44,7 @@ class Copies:
         state: Fields of their states.
         model: Fields of their models.
         count: Number of worlds.
+        linearizer: What has linearised steps of them last.
     """
 
     def __init__(self, world: World, count: int) -> None:
@@ -69,6 +70,7 @@ class Copies:
         self.state: dict[str, np.ndarray] = engine.arrays.state.numpy
         self.model: dict[str, np.ndarray] = engine.arrays.model.numpy
         self.count = engine.arrays.world_count
+        self.linearizer: StepLinearizer | None = None
         self._forces: list[tuple[str, np.ndarray]] = []
         self._blocks: tuple[list[int], BlockCopies] | None = None
 
@@ -151,9 +153,6 @@ def _pairs(tables: Iterable[tuple[ArrayTable, ArrayTable]]) -> Iterator[tuple[np
                 yield other.array, own.array
 
 
-_kept: WeakKeyDictionary[World, tuple[tuple[object, ...], Copies]] = WeakKeyDictionary()
-
-
 def made_for(world: World) -> tuple[object, ...]:
     """What is the same as long as a copy can follow its world."""
     counts = world.contact_arrays.user_count, *world.arrays.used.values()
@@ -164,11 +163,11 @@ def copy_of(world: World) -> Copies:
     """One copy of a world, in its present state; it is kept for the next call."""
     world.prepare()
     now = made_for(world)
-    kept = _kept.get(world)
+    kept: tuple[tuple[object, ...], Copies] | None = world.kept_linearization.get(Copies)
     if kept is not None and kept[0] == now and kept[1].follow(world.engine, world.unspent_time):
         return kept[1]
     copies = Copies(world, 1)
-    _kept[world] = made_for(world), copies
+    world.kept_linearization[Copies] = made_for(world), copies
     return copies
 
 

@@ -6,33 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.layouts.codes import PD_MAX_FORCE
 from carom.linearization.fields import Fields
 from carom.linearization.stepping import Copies
 
 if TYPE_CHECKING:
     from carom.engine.parameters import EngineParameters
     from carom.linearization.tangent import TangentSpace
-
-
-class StateBefore:
-    """What a step starts from, as copies, of all worlds of an engine: first axis worlds.
-
-    Attributes:
-        position, velocity, motor, drive, activation, control, link_wrench: See `TakenStep`.
-    """
-
-    __slots__ = ("activation", "control", "drive", "link_wrench", "motor", "position", "velocity")
-
-    def __init__(self, space: TangentSpace, copies: Copies) -> None:
-        state = copies.engine.arrays.state.numpy
-        self.position: np.ndarray = state["position"].copy()
-        self.velocity: np.ndarray = state["dof_velocity"][:, space.dofs]
-        self.motor: np.ndarray = state["dof_motor"][:, space.dofs]
-        self.drive: np.ndarray = state["dof_pd"][:, space.dofs]
-        self.activation: np.ndarray = state["actuator_activation"].copy()
-        self.control: np.ndarray = state["actuator_control"].copy()
-        self.link_wrench: np.ndarray = state["link_wrench"].copy()
 
 
 class TakenStep:
@@ -48,9 +27,7 @@ class TakenStep:
         velocity: Velocities of the dofs before it, (n,).
         free_velocity: Those after free motion.
         solved: Those of the solver, before they are limited to the greatest velocity.
-        after: Those after it.
         motor: Settings of motors, (n, 8).
-        drive: Settings of explicit PD control, (n, 8); None if there is none.
         link_pose: Poses of links before it.
         link_wrench: Forces and torques applied to them.
         angular, linear: Motion subspaces, (n, 3), linear ones at the centre of mass of the base.
@@ -68,10 +45,20 @@ class TakenStep:
         parameters: EngineParameters,
         space: TangentSpace,
         copies: Copies,
-        before: StateBefore,
+        wrench: np.ndarray,
+        velocities: np.ndarray,
         world: int = 0,
     ) -> None:
-        """Read the step that one of the worlds of `copies` has performed from a state."""
+        """Read the step that one of the worlds of `copies` has performed.
+
+        Args:
+            parameters: Parameters of the engine.
+            space: The tangent space.
+            copies: The worlds.
+            wrench: Forces and torques applied to links, (worlds, links, 6).
+            velocities: Velocities before the step, after free motion, and of the solver, (3, n).
+            world: Which of the worlds.
+        """
         arrays, contact_arrays = copies.engine.arrays, copies.engine.contact_arrays
         self.time_step: float = parameters.substep_time
         self.parameters: EngineParameters = parameters
@@ -83,22 +70,19 @@ class TakenStep:
         self.user_count: int = contact_arrays.user_count
         self.constraint_count: int = arrays.used["constraint"]
         self.gravity: np.ndarray = self.model["gravity_vector"][0]
-        self.position: np.ndarray = before.position[world]
-        self.velocity: np.ndarray = before.velocity[world]
-        self.joint_position: np.ndarray = space.scalars(self.position)
-        self.motor: np.ndarray = before.motor[world]
-        drive = before.drive[world]
-        self.drive: np.ndarray | None = drive if (drive[:, PD_MAX_FORCE] > 0.0).any() else None
-        self.activation: np.ndarray = before.activation[world]
-        self.control: np.ndarray = before.control[world]
-        self.link_wrench: np.ndarray = before.link_wrench[world]
-        self._pair_rows = copies.pair_rows(world)
         scratch = copies.scratch(world)
-        self.after: np.ndarray = self.state["dof_velocity"][space.dofs]
-        self.free_velocity: np.ndarray = self.velocity + self.time_step * scratch["dof_force"][space.dofs]
-        deltas = 4 * self.model["tree_first_delta"][space.trees] + space.places_in_tree
-        self.solved: np.ndarray = self.free_velocity + scratch["delta_velocity"].ravel()[deltas]
-        self.ends: np.ndarray = np.stack([self.free_velocity, self.solved])
+        self.position: np.ndarray = scratch["position_start"]
+        self.velocity: np.ndarray = velocities[0]
+        self.joint_position: np.ndarray = space.scalars(self.position)
+        # What a step does not change.
+        self.motor: np.ndarray = self.state["dof_motor"][space.dofs]
+        self.control: np.ndarray = self.state["actuator_control"]
+        self.activation: np.ndarray = scratch["actuator_start"]
+        self.link_wrench: np.ndarray = wrench[world]
+        self._pair_rows = copies.pair_rows(world)
+        self.free_velocity: np.ndarray = velocities[1]
+        self.solved: np.ndarray = velocities[2]
+        self.ends: np.ndarray = velocities[1:]
         self.angular: np.ndarray = scratch["dof_angular"][space.dofs]
         self.linear: np.ndarray = scratch["dof_linear"][space.dofs]
         self.link_pose: np.ndarray = self.state["link_pose"]

@@ -1,4 +1,4 @@
-"""The tangent space of the states of a world: names, moving along it, differences, and integration."""
+"""The tangent space of the states of a world: names, moving along it, and differences."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES, UNFILTERED, JointCode
+from carom.layouts.linearization import BALL_DOF, BASE_DOF, PLANE_DOF, SCALAR_DOF
 from carom.linearization.turns import (
     cross,
     inverse,
     left_derivative,
     multiplied,
     quaternion_of,
-    turned_by,
     vector_of,
 )
 
@@ -45,6 +45,7 @@ class TangentSpace:
         coordinates: Number of all coordinates, and length of `World.position`, which may have spare rows.
         rates: Likewise of `World.velocity`.
         dof_of_row: The dofs by their rows of `World.velocity`.
+        several: The dofs of joints with several positions, and of bases.
         column_of_actuator: The columns of activations by rows of actuators.
     """
 
@@ -114,9 +115,24 @@ class TangentSpace:
         self.column_of_actuator: dict[int, int] = {row: column for column, row in enumerate(active)}
         self._positions = np.array([row for row, _ in self._scalars], dtype=np.int64)
         self._columns = np.array([dof for _, dof in self._scalars], dtype=np.int64)
+        self.several: np.ndarray = np.setdiff1d(np.arange(len(rows)), self._columns)
 
     def __len__(self) -> int:
         return len(self.dofs)
+
+    def firsts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of each dof its row of positions (-1 if it has none), what it is the first of, and a plane's hand.
+
+        The second are codes of `carom.layouts.linearization`.
+        """
+        positions, kinds, hands = np.full(len(self), -1), np.full(len(self), SCALAR_DOF), np.zeros(len(self))
+        positions[self._columns] = self._positions
+        for kind, joints in ((BASE_DOF, self._bases), (BALL_DOF, self._balls)):
+            for _, dof in joints:
+                kinds[dof] = kind
+        for _, dof, hand in self._planes:
+            kinds[dof], hands[dof] = PLANE_DOF, hand
+        return positions, kinds, hands
 
     def scalars(self, positions: np.ndarray) -> np.ndarray:
         """Positions (n,) of the dofs of joints that have one, and 0 for others."""
@@ -165,34 +181,6 @@ class TangentSpace:
                 angle = 0.5 * hand * (positions[world, q] + others[world, q])
                 changes[world, dof + 1 : dof + 3] = _plane_turn(angle).T @ change[world, 1:]
         return changes
-
-    def integration(self, velocity: np.ndarray, time_step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of the positions after a step by those before it and by the velocities after it.
-
-        Args:
-            velocity: The velocities after the step, (n,).
-            time_step: Its duration [s].
-
-        Returns:
-            Two matrices (n, n).
-        """
-        by_position, by_velocity = np.eye(len(self)), time_step * np.eye(len(self))
-        for _, dof in self._bases:
-            own = slice(dof, dof + 3)
-            turn = time_step * velocity[own]
-            by_position[own, own], derivative = turned_by(turn)
-            by_velocity[own, own] = time_step * derivative
-        for _, dof in self._balls:
-            own = slice(dof, dof + 3)
-            turn = -time_step * velocity[own]
-            by_position[own, own], derivative = turned_by(turn)
-            by_velocity[own, own] = time_step * derivative
-        for _, dof, hand in self._planes:
-            own = slice(dof + 1, dof + 3)
-            by_position[own, own] = _plane_turn(-hand * time_step * velocity[dof])
-            slid = hand * time_step * np.array([-velocity[dof + 2], velocity[dof + 1]])
-            by_position[own, dof], by_velocity[own, dof] = slid, time_step * slid
-        return by_position, by_velocity
 
     def stretch(self, positions: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """By how much springs of joints are stretched (n,), and the derivatives by changes, (n, n).

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import sin, sqrt
-
 import numpy as np
 
 _SMALL = 1e-6
@@ -73,22 +71,6 @@ def rotation_of(quaternion: np.ndarray) -> np.ndarray:
             [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
         ]
     )
-
-
-def turned_by(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The rotation matrix of a rotation vector (3,), and `left_derivative` of it."""
-    x, y, z = vector.tolist()
-    angle = sqrt(x * x + y * y + z * z)
-    if angle < _SERIES:
-        sine, versine, rest = 1.0 - angle**2 / 6.0, 0.5 - angle**2 / 24.0, 1.0 / 6.0
-    else:
-        sine = sin(angle) / angle
-        half = sin(0.5 * angle) / angle
-        versine, rest = 2.0 * half * half, (1.0 - sine) / angle**2
-    outer = np.array([[x * x, x * y, x * z], [x * y, y * y, y * z], [x * z, y * z, z * z]])
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    cosine = 1.0 - versine * angle**2
-    return cosine * _UNIT + sine * skew + versine * outer, sine * _UNIT + versine * skew + rest * outer
 
 
 def left_derivative(vector: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Rows of user constraints, linearised."""
+"""Rows of user constraints, linearised, except those between joints."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ _PARALLEL = 1e-6
 # Lengths below this count as 0.
 _LEAST = 1e-300
 _NONE = np.zeros(3)
+# Those whose rows are added by a kernel.
+TIES = (UserConstraintKind.GEAR, UserConstraintKind.COUPLING)
 
 
 class UserRows:
@@ -43,16 +45,13 @@ class UserRows:
             if not enabled[user] or any(tree >= 0 and absent[tree] for tree in (first[user], second[user])):
                 continue
             kind = UserConstraintKind(kinds[user])
+            if kind in TIES:
+                continue
             if kind >= UserConstraintKind.TENDON:
                 raise NotImplementedError(f"{_described(kind)} have no exact derivatives")
             if users["user_impedance"][user][1] > 0.0:
                 raise NotImplementedError("compliant constraints have no exact derivatives")
-            if kind == UserConstraintKind.GEAR:
-                self._add_gear(user)
-            elif kind == UserConstraintKind.COUPLING:
-                self._add_coupling(user)
-            else:
-                self._add_pose(user, kind)
+            self._add_pose(user, kind)
 
     def _add(self, user: int, number: int, kind: UserConstraintKind, jacobian: np.ndarray) -> int | None:
         """Add a row; returns its number if it holds."""
@@ -63,47 +62,6 @@ class UserRows:
         name = f"{_described(kind)} {user}"
         row = self._rows.add(name, status, jacobian, impulse, float(holds), 1.0 - float(holds))
         return row if holds else None
-
-    def _dof(self, link: int) -> int:
-        return self._space.dof_of_row[int(self._taken.model["link_first_dof"][link])]
-
-    def _add_gear(self, user: int) -> None:
-        taken, users = self._taken, self._taken.users
-        jacobian = np.zeros(len(self._space))
-        ratio = float(users["user_gear_ratio"][user])
-        jacobian[self._dof(int(users["user_link_a"][user]))] += 1.0
-        jacobian[self._dof(int(users["user_link_b"][user]))] += ratio
-        row = self._add(user, 0, UserConstraintKind.GEAR, jacobian)
-        if row is None:
-            return
-        angle = jacobian.copy()
-        auxiliary = int(users["user_gear_auxiliary"][user])
-        if auxiliary >= 0:
-            self._rows.by_free_velocity[row][self._dof(auxiliary)] = 1.0
-            angle[self._dof(auxiliary)] -= 1.0
-        gain = float(users["user_erp"][user]) * taken.parameters.erp / taken.time_step
-        self._rows.by_position[row] = -gain * angle
-
-    def _add_coupling(self, user: int) -> None:
-        taken, users = self._taken, self._taken.users
-        jacobian = np.zeros(len(self._space))
-        follower = self._dof(int(users["user_link_a"][user]))
-        jacobian[follower] = 1.0
-        hessian: np.ndarray | None = None
-        if users["user_tree_b"][user] >= 0:
-            leader = self._dof(int(users["user_link_b"][user]))
-            x = float(taken.joint_position[leader])
-            c = users["user_polynomial"][user]
-            slope = c[0] + x * (2.0 * c[1] + x * (3.0 * c[2] + x * 4.0 * c[3]))
-            jacobian[leader] -= slope
-            hessian = np.zeros((len(self._space), len(self._space)))
-            hessian[leader, leader] = -(2.0 * c[1] + x * (6.0 * c[2] + x * 12.0 * c[3]))
-        row = self._add(user, 0, UserConstraintKind.COUPLING, jacobian)
-        if hessian is not None and hessian.any():
-            self._rows.set_hessian(len(self._rows) - 1, hessian)
-        if row is not None:
-            gain = float(users["user_erp"][user]) * taken.parameters.erp / taken.time_step
-            self._rows.by_position[row] = -gain * jacobian
 
     def _add_pose(self, user: int, kind: UserConstraintKind) -> None:
         taken, users, places = self._taken, self._taken.users, self._places

@@ -15,6 +15,7 @@ KERNEL_MODULES = _modules(
         "dynamics.step_ends",
     ),
     *("images.draw", "inverse_kinematics.many_searches", "inverse_kinematics.search"),
+    *("linearization.motion", "linearization.solution"),
     *("mechanism.derivatives", "mechanism.dynamics", "mechanism.link_motion", "mechanism.many_bodies"),
     *("mechanism.momentum", "mechanism.motion", "mechanism.stable_pd"),
     *("queries.closest", "queries.contact_report", "queries.rays", "queries.touching"),
@@ -43,6 +44,7 @@ _WHOLE_WORLDS = _modules(
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),
     *("mechanism.derivatives", "mechanism.link_motion", "mechanism.momentum"),
+    *("linearization.motion", "linearization.solution"),
 )
 CUDA_MODULES = (
     *PARALLEL_MODULES,

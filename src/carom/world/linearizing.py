@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from numpy.typing import ArrayLike
 
@@ -15,6 +15,15 @@ if TYPE_CHECKING:
 
 class Linearizing:
     """Linearisation of a world's steps."""
+
+    _kept_linearization: dict[Any, Any] | None = None
+
+    @property
+    def kept_linearization(self) -> dict[Any, Any]:
+        """What is kept for the next call of `linearize`, by its type. It refers to bodies of the world."""
+        if self._kept_linearization is None:
+            self._kept_linearization = {}
+        return self._kept_linearization
 
     def linearize(
         self,
@@ -32,10 +41,12 @@ class Linearizing:
     ) -> LinearizedStep:
         """What the next steps would do to small changes of state, controls and parameters.
 
-        The world does not change. The derivatives are those of what a step computes, by the implicit function
-        theorem over the rows of the solver (motors, limits, friction of joints, actuators) that hold at its
-        end, as if its sweeps had converged: docs/solver.md says more. Applied forces and torques, which a
-        world forgets after a step, act in all of these steps; so do changes of controls.
+        The world does not change. Its present state and controls count, unless others are given:
+        `linearize(positions=q, velocities=v, control_values=u)` linearises at the state (q, v) and controls
+        u. The derivatives are those of what a step computes, by the implicit function theorem over the rows
+        of the solver (motors, limits, friction of joints, actuators) that hold at its end, as if its sweeps
+        had converged: docs/solver.md says more. Applied forces and torques, which a world forgets after a
+        step, act in all of these steps; so do changes of controls.
 
         Args:
             controls: Kinds of controls, or full names of some: "torques" (of all dofs of joints),
@@ -89,8 +100,9 @@ class Linearizing:
     ) -> tuple[Array, Array, Array]:
         """The vector-Jacobian product of the next steps, for reverse differentiation.
 
-        It takes the gradient of a number by the state after the steps back to what the steps start from. The
-        matrices of `linearize` are not made: of n dofs and r rows, a step takes n² and r³ operations more.
+        It takes the gradient of a number by the state after the steps back to what the steps start from:
+        products with the matrices of each step, from the last one to the first, which are not multiplied
+        with each other.
 
         Args:
             cotangent: The gradient by the state after the steps, (nx,), in the order of

@@ -180,6 +180,31 @@ def put_in_world_axes(
         turn_base(count, turn, answer, start + matrix * size)
 
 
+@func
+def step_derivatives(
+    sizes: MechanismSizes,
+    mechanism: MechanismTable,
+    sweep: SweepTable,
+    batch: MechanismBatch,
+    number: Int32,
+):
+    """Answer a question by its number: as `inverse_derivatives_kernel`, along the axes of the world.
+
+    Rates and accelerations of a free base in questions are along the axes of the base.
+    """
+    count = sizes.dofs
+    first = number * question_length(sizes)
+    start = number * 3 * count * count
+    changes = rates_of(sizes, first) + count
+    sweep_positions(sizes, mechanism, batch.question, first)
+    inverse_derivatives(
+        sizes, mechanism, sweep, batch.question, first, batch.question, changes, batch.answer, start
+    )
+    if sizes.base_dofs > 0:
+        put_in_world_axes(sizes, sweep, batch.question, first, batch.answer, start)
+    note_overflow(batch.answer, start, 3 * count * count)
+
+
 @kernel
 def step_derivatives_kernel(
     sizes: MechanismSizes,
@@ -189,25 +214,11 @@ def step_derivatives_kernel(
     varied: Int32,
     first_world: Int32,
 ):
-    """As `inverse_derivatives_kernel`, but along the axes of the world for a free base, as steps move it.
-
-    A question of each world follows that of the one before. Rates and accelerations in questions are along
-    the axes of the base.
-    """
+    """As `inverse_derivatives_kernel`, but along the axes of the world for a free base, as steps move it."""
     world = first_world + wp.tid()
     if varied == 1:
         take_parameters(sizes, mechanism, batch, world)
-    count = sizes.dofs
-    first = world * question_length(sizes)
-    start = world * 3 * count * count
-    changes = rates_of(sizes, first) + count
-    sweep_positions(sizes, mechanism, batch.question, first)
-    inverse_derivatives(
-        sizes, mechanism, sweep, batch.question, first, batch.question, changes, batch.answer, start
-    )
-    if sizes.base_dofs > 0:
-        put_in_world_axes(sizes, sweep, batch.question, first, batch.answer, start)
-    note_overflow(batch.answer, start, 3 * count * count)
+    step_derivatives(sizes, mechanism, sweep, batch, world)
 
 
 @func

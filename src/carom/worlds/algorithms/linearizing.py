@@ -14,12 +14,10 @@ from carom.engine.engine import Engine
 from carom.engine.presence import any_absent
 from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
-from carom.linearization.exact import StepFactors, step_factors
-from carom.linearization.free_motion import FreeMotion
+from carom.linearization.exact import StepDerivatives, StepLinearizer
 from carom.linearization.linearized_step import refuse_substeps
-from carom.linearization.motion_questions import Ask, questions_of_step
+from carom.linearization.motion_questions import Ask
 from carom.linearization.stepping import Copies
-from carom.linearization.taken_step import StateBefore, TakenStep
 from carom.native.kernels import step_derivatives_kernel
 from carom.scene.body import Body
 from carom.world.world import World
@@ -87,16 +85,12 @@ class Linearizing:
                 are absent.
             carom.errors.SimulationError: A velocity is not finite.
         """
-        parts, factors = self._factors(controls, parameters, smoothing, where)
-        count, width = parts.control_count, len(parts.states)
-        by_state = np.zeros((len(factors), width, width))
-        by_input = np.zeros((len(factors), width, len(parts.inputs)))
-        for place, taken in enumerate(factors):
-            by_state[place], by_input[place] = taken.matrices()
+        parts, found = self._derivatives(controls, parameters, smoothing, where)
+        count = parts.control_count
         return LinearizedSteps(
-            *(by_state, by_input[:, :, :count], by_input[:, :, count:]),
+            *(found.by_state, found.by_input[:, :, :count], found.by_input[:, :, count:]),
             *(parts.states, parts.controls, parts.parameters),
-            tuple(taken.rows for taken in factors),
+            tuple(found.rows),
         )
 
     def step_vjp(
@@ -123,23 +117,21 @@ class Linearizing:
         Raises:
             ValueError, NotImplementedError, carom.errors.SimulationError: As `linearize`.
         """
-        parts, factors = self._factors(controls, parameters, smoothing, where)
-        count, shape = parts.control_count, (len(factors), len(parts.states))
+        parts, found = self._derivatives(controls, parameters, smoothing, where)
+        count, shape = parts.control_count, found.by_state.shape[:2]
         given = finite(cotangents, "cotangents")
         if given.shape != shape:
             raise ValueError(f"cotangents must have shape {shape}, not {given.shape}")
-        by_state, by_input = np.zeros(shape), np.zeros((len(factors), len(parts.inputs)))
-        for place, taken in enumerate(factors):
-            by_state[place], by_input[place] = taken.pulled_back(given[place])
+        by_state, by_input = found.pulled_back(given)
         return by_state, by_input[:, :count], by_input[:, count:]
 
-    def _factors(
+    def _derivatives(
         self,
         controls: Sequence[str],
         parameters: Sequence[str],
         smoothing: float,
         where: ArrayLike | None,
-    ) -> tuple[Parts, list[StepFactors]]:
+    ) -> tuple[Parts, StepDerivatives]:
         if self.device != CPU:
             raise NotImplementedError(f"steps on {self.device!r} cannot be linearised: use device={CPU!r}")
         if not smoothing >= 0.0:
@@ -154,10 +146,11 @@ class Linearizing:
         parts = chosen_parts(self._scene, controls, parameters)
         parts.refuse_inertial(self._engine.arrays.model.numpy, "exact")
         if not len(worlds):
-            return parts, []
+            width, inputs = len(parts.states), len(parts.inputs)
+            return parts, StepDerivatives(np.zeros((0, width, width)), np.zeros((0, width, inputs)), [])
         if self._linearizer is None or not self._linearizer.follow():
             self._linearizer = _Linearizer(self._scene, self._engine, self._thread_count or 1)
-        return parts, self._linearizer.factors(parts, worlds, smoothing)
+        return parts, self._linearizer.find(parts, worlds, smoothing)
 
 
 class _Linearizer:
@@ -181,24 +174,19 @@ class _Linearizer:
         """Take the present state and parameters; False if a new copy is needed."""
         return self._made_for == self._now() and self._copies.follow(self._engine, 0.0)
 
-    def factors(self, parts: Parts, worlds: np.ndarray, smoothing: float) -> list[StepFactors]:
-        """Perform a step of some worlds, and find the factors of its derivatives."""
-        space, copies = parts.space, self._copies
-        before = StateBefore(space, copies)
-        copies.step(worlds)
-        taken = [TakenStep(self._scene.parameters, space, copies, before, world) for world in worlds.tolist()]
-        questions = [questions_of_step(space, step) for step in taken]
-        # Answers of all worlds about each body.
-        answers = [
-            self._ask(body, np.concatenate([asked[place] for asked in questions]), np.repeat(worlds, 2))
-            for place, body in enumerate(space.bodies)
-        ]
-        found: list[StepFactors] = []
-        for number, (world, step) in enumerate(zip(worlds.tolist(), taken, strict=True)):
-            own = [each[2 * number : 2 * number + 2] for each in answers]
-            motion = FreeMotion(space, step, own, self._ask_of(world))
-            found.append(step_factors(space, parts.inputs, step, motion, smoothing))
-        return found
+    def find(self, parts: Parts, worlds: np.ndarray, smoothing: float) -> StepDerivatives:
+        """Perform a step of some worlds, and differentiate it."""
+        copies = self._copies
+        kept = copies.linearizer
+        if kept is None or not kept.suits(parts.space, parts.inputs, copies):
+            kept = copies.linearizer = StepLinearizer(
+                *(parts.space, parts.inputs, copies),
+                *(self._structs_of, self._ask_of, self._threads),
+            )
+        return kept.step(self._scene.parameters, worlds, smoothing)
+
+    def _structs_of(self, body: Body) -> tuple[list[list[Any]], Any]:
+        return self._mechanics_of(body).sweep_structs()
 
     def _ask_of(self, world: int) -> Ask:
         def ask(body: Body, questions: np.ndarray) -> np.ndarray:
@@ -207,9 +195,12 @@ class _Linearizer:
         return ask
 
     def _ask(self, body: Body, questions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
-        if body not in self._mechanics:
-            self._mechanics[body] = MechanicsBatch(body, self._engine, self._threads)
-        mechanics = self._mechanics[body]
+        mechanics = self._mechanics_of(body)
         size = 3 * mechanics.dofs**2
         found = mechanics.sweep(step_derivatives_kernel, questions, worlds, size, "derivative")
         return found.reshape(len(questions), 3, mechanics.dofs, mechanics.dofs)
+
+    def _mechanics_of(self, body: Body) -> MechanicsBatch:
+        if body not in self._mechanics:
+            self._mechanics[body] = MechanicsBatch(body, self._engine, self._threads)
+        return self._mechanics[body]

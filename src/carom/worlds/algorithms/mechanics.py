@@ -23,7 +23,7 @@ from carom.native.kernels import (
 from carom.native.launch import Launch
 from carom.native.tables import put_array, put_zeros
 from carom.scene.body import Body
-from carom.worlds.algorithms.varied import VariedParameters
+from carom.worlds.algorithms.varied import NodeParameters, VariedParameters
 
 _POINT = 3
 _JACOBIAN_ROWS = 6
@@ -47,7 +47,6 @@ class MechanicsBatch:
         self._varied = VariedParameters(engine, body, ends)
         self._make: Callable[[], Mechanism] = lambda: Mechanism(nodes, ends, free=not body.fixed_base)
         self._mechanisms = [self._make() for _ in range(threads)]
-        self._armed: list[Mechanism] = []
         self._calls = WorldCalls(threads)
         self.dofs: int = self._mechanisms[0].dofs
         """Number of velocity coordinates, those of a free base included."""
@@ -100,6 +99,21 @@ class MechanicsBatch:
             tables=self._sweep_tables,
         )
 
+    def sweep_structs(self) -> tuple[list[list[Any]], NodeParameters | None]:
+        """The structs of the mechanism and of its sweeps on each thread, and parameters if worlds differ."""
+        found = self._varied()
+        mechanisms = self._mechanisms if found is None else self._armed_mechanisms
+        tables = self._sweep_tables
+        return [[*each.structs, table] for each, table in zip(mechanisms, tables, strict=True)], found
+
+    @cached_property
+    def _armed_mechanisms(self) -> list[Mechanism]:
+        """Those into which kernels write the parameters of worlds."""
+        armed = [self._make() for _ in self._mechanisms]
+        for each in armed:
+            each.structs[0].has_armature = 1
+        return armed
+
     @cached_property
     def _sweep_tables(self) -> list[Any]:
         return [sweep_table(self._body, each, self._ends) for each in self._mechanisms]
@@ -150,9 +164,4 @@ class MechanicsBatch:
                 put_array(batch, name, getattr(found, name)[worlds])
         if found is None:
             return self._mechanisms
-        if not self._armed:
-            # Kernels write the parameters of worlds into these.
-            self._armed = [self._make() for _ in self._mechanisms]
-            for each in self._armed:
-                each.structs[0].has_armature = 1
-        return self._armed
+        return self._armed_mechanisms

@@ -1,0 +1,90 @@
+"""Linearised rows of a step: adding one, its status, and derivatives of its right side by inputs."""
+
+import warp as wp
+
+from carom.kernels.linearization.matrices import clear
+from carom.kernels.structs import StepBatch, StepSpace
+from carom.kernels.types import Int32, func, real
+from carom.layouts.linearization import ROW_HOLDS, ROW_LOWER, ROW_UPPER
+
+# Impulses this near to a bound, relative to it, are at it: clamping rounds.
+NEAR = wp.constant(real(1.0e-9))
+
+
+@func
+def status_of(impulse: real, lower: real, upper: real) -> Int32:
+    """Whether a row holds, or at which bound its impulse is."""
+    status = Int32(ROW_HOLDS)
+    if impulse <= lower + NEAR * wp.abs(lower):
+        status = Int32(ROW_LOWER)
+    elif impulse >= upper - NEAR * wp.abs(upper):
+        status = Int32(ROW_UPPER)
+    return status
+
+
+@func
+def make_room(space: StepSpace, steps: StepBatch, place: Int32):
+    """Set the rows to 0 that may be added to those which are there."""
+    there = steps.row_count[place]
+    room = space.most_rows
+    first = place * room + there
+    left = wp.min(room - there, space.most_of_joints)
+    clear(steps.jacobian, first * space.dofs, left * space.dofs)
+    clear(steps.through, first * space.dofs, left * space.dofs)
+    clear(steps.side, first * space.columns, left * space.columns)
+    for row in range(there):
+        clear(steps.alpha, (place * room + row) * room + there, left)
+        clear(steps.beta, (place * room + row) * room + there, left)
+    for row in range(left):
+        clear(steps.alpha, (first + row) * room, there + left)
+        clear(steps.beta, (first + row) * room, there + left)
+
+
+@func
+def add_row(
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    kind: Int32,
+    status: Int32,
+    number: Int32,
+    alpha: real,
+    beta: real,
+) -> Int32:
+    """Add a row without Jacobian and right side; returns its number among the rows of all worlds."""
+    count = steps.row_count[place]
+    row = place * space.most_rows + count
+    steps.row_kind[row] = kind
+    steps.row_status[row] = status
+    steps.row_dof[row] = number
+    steps.alpha[row * space.most_rows + count] = alpha
+    steps.beta[row * space.most_rows + count] = beta
+    steps.row_count[place] = count + 1
+    return row
+
+
+@func
+def add_row_of_dof(
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    kind: Int32,
+    status: Int32,
+    dof: Int32,
+    alpha: real,
+    beta: real,
+) -> Int32:
+    """As `add_row`, for a row on one dof."""
+    row = add_row(space, steps, place, kind, status, dof, alpha, beta)
+    steps.jacobian[row * space.dofs + dof] = 1.0
+    return row
+
+
+@func
+def set_input(space: StepSpace, steps: StepBatch, row: Int32, first: Int32, number: Int32, derivative: real):
+    """Add to a row's derivatives by the inputs that are `number`, of the list that begins with `first`."""
+    given = first + 0
+    while given >= 0:
+        if space.input_number[given] == number:
+            steps.side[row * space.columns + space.states + given] += derivative * space.input_scale[given]
+        given = space.input_next[given]

@@ -1,0 +1,194 @@
+"""Launches of the kernels that linearise a step, for a body after the other, then for all rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.algorithms.sweeps import sweeps_of
+from carom.engine.world_calls import WorldCalls
+from carom.layouts.codes import BASE_POSITIONS, ConstraintKind
+from carom.layouts.mechanism import MechanismBatch
+from carom.linearization.step_memory import StepMemory, places_for, step_space
+from carom.linearization.user_rows import TIES
+from carom.native.kernels import motion_of_step_kernel, solution_of_step_kernel
+from carom.native.launch import Launch
+from carom.native.tables import put_array, put_zeros
+
+if TYPE_CHECKING:
+    from carom.linearization.inputs import Input
+    from carom.linearization.stepping import Copies
+    from carom.linearization.tangent import TangentSpace
+    from carom.scene.body import Body
+
+# At most so many rows has a contact, or a user constraint.
+_MOST_ROWS = 6
+_GRAVITY = 3
+_PARAMETERS = ("mass", "moment", "inertia", "armature")
+# The structs of the mechanism of a body on each thread, and parameters that differ between worlds, or None.
+Mechanisms = Callable[["Body"], tuple[list[list[Any]], Any]]
+
+
+def lone_mechanisms(body: Body) -> tuple[list[list[Any]], Any]:
+    """The mechanism of a body of a lone world."""
+    return [sweeps_of(body).structs], None
+
+
+class StepKernels:
+    """Launches for the worlds of `copies`.
+
+    Attributes:
+        memory: What the kernels read and write.
+    """
+
+    def __init__(
+        self,
+        space: TangentSpace,
+        inputs: Sequence[Input],
+        copies: Copies,
+        mechanisms: Mechanisms,
+        threads: int,
+    ) -> None:
+        self._space, self._inputs, self._copies = space, inputs, copies
+        self._mechanisms = mechanisms
+        self._threads = threads
+        self._calls = WorldCalls(threads) if threads > 1 or copies.count > 1 else None
+        engine = copies.engine
+        self._struct = step_space(space, inputs, {name: engine.arrays.used[name] for name in _COUNTED})
+        users = engine.contact_arrays.user_count
+        self._struct.users = users
+        kinds = engine.contact_arrays.users.numpy["user_kind"][:users]
+        others = int(np.isin(kinds, TIES, invert=True).sum())
+        self._struct.most_of_joints = _rows_of_joints(copies) + users - others
+        self._fixed_rows = self._struct.most_of_joints + _MOST_ROWS * others
+        self._contacts = 0
+        self._made_for: list[Any] = []
+        self._settings: Any = None
+        self._known_settings = b""
+        self._smoothing = 0.0
+        # Launches of each thread: of all bodies, and of the rows.
+        self._motion: list[list[Launch]] = []
+        self._solution: list[Launch] = []
+        self.memory: StepMemory | None = None
+
+    def suit(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
+        """Whether they are for these."""
+        return self._space is space and self._copies is copies and self._inputs == inputs
+
+    def prepare(self, worlds: int, contacts: int, smoothing: float) -> StepMemory:
+        """Make launches for at most so many worlds at a time and contacts in one.
+
+        Returns:
+            The memory, whose places may be fewer.
+        """
+        if self.memory is None or contacts > self._contacts:
+            self._contacts = 2 * contacts
+            self._struct.most_rows = self._fixed_rows + _MOST_ROWS * self._contacts
+            self.memory = None
+        self._struct.smoothing = smoothing
+        places = places_for(self._struct, worlds)
+        if self.memory is None or self.memory.places < places:
+            self.memory = StepMemory(self._struct, places)
+            self._made_for = []
+        self._renew(self.memory)
+        if smoothing != self._smoothing:
+            self._smoothing = smoothing
+            self._replace("space", self._struct)
+        settings = bytes(self._settings)
+        if settings != self._known_settings:
+            self._known_settings = settings
+            self._replace("settings", self._settings)
+        return self.memory
+
+    def _replace(self, name: str, struct: Any) -> None:
+        for launch in (*self._solution, *(it for own in self._motion for it in own)):
+            launch.replace(launch.kernel.indices[name], struct)
+
+    def _renew(self, memory: StepMemory) -> None:
+        """Make the launches if arrays have moved, or parameters of bodies have changed."""
+        engine = self._copies.engine
+        bodies = [self._mechanisms(body) for body in self._space.bodies]
+        tables = (
+            *(engine.arrays.state, engine.arrays.model),
+            *(engine.contact_arrays.users, engine.workspace.scratch),
+        )
+        now: list[Any] = [engine.changes, *(table.replacements for table in tables)]
+        for structs, varied in bodies:
+            now += [struct for own in structs for struct in own]
+            now.append(varied)
+        if now == self._made_for:
+            return
+        self._made_for = now
+        shared = engine.structs()
+        given = [shared[name] for name in ("settings", "model", "state", "scratch")]
+        of_memory = [self._struct, memory.batch]
+        self._settings = shared["settings"]
+        self._known_settings = bytes(self._settings)
+        self._smoothing = self._struct.smoothing
+        self._motion = [[] for _ in range(self._threads)]
+        for body, (first, size), (structs, varied) in zip(
+            self._space.bodies, self._space.places, bodies, strict=True
+        ):
+            batch = _batch(body, size, memory.places, varied)
+            numbers = [first, body.first_position, int(varied is not None), 0]
+            for launches, own in zip(self._motion, structs, strict=True):
+                launches.append(Launch(motion_of_step_kernel, 1, [*own, batch, *given, *of_memory, *numbers]))
+        self._solution = [
+            Launch(solution_of_step_kernel, 1, [*given, shared["users"], *of_memory, 0, 0])
+            for _ in range(self._threads)
+        ]
+
+    def find_motion(self, count: int) -> None:
+        """Linearise the motion of the bodies in the first `count` places."""
+        self._run(count, self._motion)
+
+    def solve(self, count: int) -> None:
+        """Add the rows of joints, and find the derivatives."""
+        self._run(count, [[it] for it in self._solution])
+
+    def find(self, count: int) -> None:
+        """Both."""
+        self._run(count, [[*motion, it] for motion, it in zip(self._motion, self._solution, strict=True)])
+
+    def resume(self, place: int) -> None:
+        """Find the derivatives of a place whose equations have been solved."""
+        launch, indices = self._solution[0], solution_of_step_kernel.indices
+        for name, number in (("resumed", 1), ("first_world", place)):
+            launch.replace(indices[name], number)
+        launch()
+        for name in ("resumed", "first_world"):
+            launch.replace(indices[name], 0)
+
+    def _run(self, count: int, launches: list[list[Launch]]) -> None:
+        if self._calls is not None:
+            self._calls.run(count, launches)
+            return
+        for launch in launches[0]:
+            launch()
+
+
+_COUNTED = ("constraint", "actuator")
+
+
+def _rows_of_joints(copies: Copies) -> int:
+    """At most so many rows are those of joints, motors of spherical joints included."""
+    arrays = copies.engine.arrays
+    model, count = arrays.model.numpy, arrays.used["constraint"]
+    kinds, links = model["constraint_kind"][:count], model["constraint_link"][:count]
+    return int(model["link_dof_count"][links[kinds != ConstraintKind.USER]].sum())
+
+
+def _batch(body: Body, dofs: int, places: int, varied: Any) -> Any:
+    """Questions and answers about a body in so many places, two in each."""
+    batch: Any = MechanismBatch()
+    length = _GRAVITY + BASE_POSITIONS + sum(body.position_count) + 2 * dofs
+    put_zeros(batch, "question", 2 * places * length)
+    put_zeros(batch, "answer", 6 * places * dofs * dofs)
+    for name in _PARAMETERS:
+        if varied is None:
+            put_zeros(batch, name, 0)
+        else:
+            put_array(batch, name, getattr(varied, name))
+    return batch

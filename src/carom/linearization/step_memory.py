@@ -1,0 +1,157 @@
+"""Memory of the kernels that linearise a step: structs over it, and it as matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.layouts.codes import (
+    MOTOR_KD,
+    MOTOR_KP,
+    MOTOR_MAX_IMPULSE,
+    MOTOR_POSITION,
+    MOTOR_VELOCITY,
+)
+from carom.layouts.linearization import (
+    INPUT_BIAS,
+    INPUT_BOUND,
+    INPUT_CONTROL,
+    INPUT_GAIN,
+    StepBatch,
+    StepSpace,
+)
+from carom.native.tables import put_array, put_zeros
+
+if TYPE_CHECKING:
+    from carom.linearization.inputs import Input
+    from carom.linearization.tangent import TangentSpace
+
+_OF_MOTORS = (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD, MOTOR_MAX_IMPULSE)
+# Numbers in the arrays of all worlds that are linearised together, at most.
+_MOST_NUMBERS = 1 << 23
+
+
+def step_space(space: TangentSpace, inputs: Sequence[Input], counts: dict[str, int]) -> Any:
+    """The struct of a tangent space and of inputs.
+
+    Args:
+        space: The tangent space.
+        inputs: The inputs.
+        counts: Number of joint constraints, and of actuators.
+    """
+    made: Any = StepSpace()
+    made.dofs, made.states = len(space), 2 * len(space) + len(space.activations)
+    made.columns = made.states + len(inputs)
+    made.constraints = counts["constraint"]
+    positions, firsts, hands = space.firsts()
+    of_row = np.full(space.rates[1], -1)
+    of_row[space.dofs] = np.arange(len(space))
+    column = np.full(counts["actuator"], -1)
+    column[space.activations] = np.arange(len(space.activations))
+    for name, values in (
+        *(("dof_row", space.dofs), ("dof_position", positions), ("dof_first", firsts)),
+        *(("dof_hand", hands), ("dof_tree", space.trees), ("dof_place", space.places_in_tree)),
+        *(("row_dof", of_row), ("actuator_column", column)),
+    ):
+        put_array(made, name, values)
+    _put_inputs(made, space, inputs, counts)
+    return made
+
+
+def _put_inputs(made: Any, space: TangentSpace, inputs: Sequence[Input], counts: dict[str, int]) -> None:
+    """Put the inputs of rows in lists, one for each dof, constraint and actuator."""
+    sizes = {"dof": len(space), **counts}
+    first = {axis: np.full(sizes[axis], -1) for axis in ("dof", "constraint", "actuator")}
+    following, numbers = np.full(len(inputs), -1), np.full(len(inputs), -1)
+    for column, given in enumerate(inputs):
+        if given.field == "dof_motor" and given.place[1] in _OF_MOTORS:
+            axis, row, number = "dof", space.dof_of_row[given.place[0]], given.place[1]
+        elif given.field == "constraint_upper":
+            axis, row, number = "constraint", given.place[0], INPUT_BOUND
+        elif given.field == "actuator_control":
+            axis, row, number = "actuator", given.place[0], INPUT_CONTROL
+        elif given.field in ("actuator_gain", "actuator_bias"):
+            base = INPUT_GAIN if given.field == "actuator_gain" else INPUT_BIAS
+            axis, row, number = "actuator", given.place[0], base + given.place[1]
+        else:
+            continue
+        numbers[column] = number
+        following[column], first[axis][row] = first[axis][row], column
+    for axis, rows in first.items():
+        put_array(made, f"{axis}_input", rows)
+    put_array(made, "input_next", following)
+    put_array(made, "input_number", numbers)
+    put_array(made, "input_scale", [given.scale for given in inputs])
+
+
+class StepMemory:
+    """The arrays of some worlds, each with a place of its own.
+
+    Attributes:
+        batch: The struct.
+        places: Number of places.
+        rows: Number of rows that each has room for.
+        world, problem, problem_dof, row_count: See `StepBatch`, (places,).
+        row_kind, row_status, row_dof: (places, rows).
+        velocity: (places, 3, n).
+        effective, inverse: (places, n, n).
+        force: (places, 2, n, columns).
+        row_impulse: (places, rows).
+        jacobian, through: (places, rows, n).
+        side: (places, rows, columns).
+        alpha, beta: (places, rows, rows).
+        step: (places, states, columns).
+    """
+
+    def __init__(self, space: Any, places: int) -> None:
+        """Make the arrays for the sizes of a `StepSpace`."""
+        n, rows, columns, states = space.dofs, space.most_rows, space.columns, space.states
+        self.batch: Any = StepBatch()
+        self.places, self.rows = places, rows
+        for name in ("impulse", "response", "rate", "system", "solution", "wanted", "change"):
+            put_zeros(self.batch, name, places * _sizes(space)[name])
+        self.world: np.ndarray = self._made("world")
+        self.problem: np.ndarray = self._made("problem")
+        self.problem_dof: np.ndarray = self._made("problem_dof")
+        self.row_count: np.ndarray = self._made("row_count")
+        self.row_kind: np.ndarray = self._made("row_kind", rows)
+        self.row_status: np.ndarray = self._made("row_status", rows)
+        self.row_dof: np.ndarray = self._made("row_dof", rows)
+        self.velocity: np.ndarray = self._made("velocity", 3, n)
+        self.effective: np.ndarray = self._made("effective", n, n)
+        self.inverse: np.ndarray = self._made("inverse", n, n)
+        self.force: np.ndarray = self._made("force", 2, n, columns)
+        self.row_impulse: np.ndarray = self._made("row_impulse", rows)
+        self.jacobian: np.ndarray = self._made("jacobian", rows, n)
+        self.through: np.ndarray = self._made("through", rows, n)
+        self.side: np.ndarray = self._made("side", rows, columns)
+        self.alpha: np.ndarray = self._made("alpha", rows, rows)
+        self.beta: np.ndarray = self._made("beta", rows, rows)
+        self.step: np.ndarray = self._made("step", states, columns)
+        self._square = places, rows * rows
+
+    def _made(self, name: str, *shape: int) -> np.ndarray:
+        count = self.places * int(np.prod(shape, dtype=np.int64))
+        return put_zeros(self.batch, name, count).reshape(self.places, *shape)
+
+    def square(self, name: str, place: int, rows: int) -> np.ndarray:
+        """`system` or `solution` of a place, (rows, rows)."""
+        found: np.ndarray = self.batch.memory[name]
+        return found.reshape(self._square)[place, : rows * rows].reshape(rows, rows)
+
+
+def _sizes(space: Any) -> dict[str, int]:
+    n, rows, columns = space.dofs, space.most_rows, space.columns
+    return {
+        **{"impulse": n, "response": n * rows, "rate": n * rows, "wanted": rows * columns},
+        **{"system": rows * rows, "solution": rows * rows, "change": 2 * n * columns},
+    }
+
+
+def places_for(space: Any, worlds: int) -> int:
+    """How many of some worlds to linearise together."""
+    n, rows, columns = space.dofs, space.most_rows, space.columns
+    each = 16 * n * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 4)
+    return max(1, min(worlds, _MOST_NUMBERS // max(each, 1)))
