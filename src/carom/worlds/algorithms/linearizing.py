@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -139,14 +139,19 @@ class Linearizing:
         parameters: Sequence[str],
         smoothing: float,
         where: ArrayLike | None,
+        start: Callable[[Engine], None] | None = None,
     ) -> tuple[Parts, list[StepFactors]]:
+        """What was chosen, and the factors of a step of each world.
+
+        `start` may give the copies that take the step another state and other parameters.
+        """
         if self.device != CPU:
             raise NotImplementedError(f"steps on {self.device!r} cannot be linearised: use device={CPU!r}")
         if not smoothing >= 0.0:
             raise ValueError(f"smoothing must be at least 0, not {smoothing}")
         worlds = world_numbers(where, self.count)
         halted = worlds[self.halted[worlds]]
-        if len(halted):
+        if len(halted) and start is None:
             raise ValueError(f"world {halted[0]} is halted, so it has no next step")
         if any_absent(self._engine.arrays):
             raise NotImplementedError("steps cannot be linearised where bodies are absent")
@@ -157,7 +162,7 @@ class Linearizing:
             return parts, []
         if self._linearizer is None or not self._linearizer.follow():
             self._linearizer = _Linearizer(self._scene, self._engine, self._thread_count or 1)
-        return parts, self._linearizer.factors(parts, worlds, smoothing)
+        return parts, self._linearizer.factors(parts, worlds, smoothing, start)
 
 
 class _Linearizer:
@@ -181,9 +186,17 @@ class _Linearizer:
         """Take the present state and parameters; False if a new copy is needed."""
         return self._made_for == self._now() and self._copies.follow(self._engine, 0.0)
 
-    def factors(self, parts: Parts, worlds: np.ndarray, smoothing: float) -> list[StepFactors]:
+    def factors(
+        self,
+        parts: Parts,
+        worlds: np.ndarray,
+        smoothing: float,
+        start: Callable[[Engine], None] | None = None,
+    ) -> list[StepFactors]:
         """Perform a step of some worlds, and find the factors of its derivatives."""
         space, copies = parts.space, self._copies
+        if start is not None:
+            start(copies.engine)
         before = StateBefore(space, copies)
         copies.step(worlds)
         taken = [TakenStep(self._scene.parameters, space, copies, before, world) for world in worlds.tolist()]
@@ -208,7 +221,7 @@ class _Linearizer:
 
     def _ask(self, body: Body, questions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
         if body not in self._mechanics:
-            self._mechanics[body] = MechanicsBatch(body, self._engine, self._threads)
+            self._mechanics[body] = MechanicsBatch(body, self._copies.engine, self._threads)
         mechanics = self._mechanics[body]
         size = 3 * mechanics.dofs**2
         found = mechanics.sweep(step_derivatives_kernel, questions, worlds, size, "derivative")
