@@ -19,6 +19,7 @@ import carom.torch  # noqa: E402
 from carom import World, Worlds  # noqa: E402
 from carom.description.actuator import ActivationDynamics, GeneralActuator  # noqa: E402
 from carom.errors import SimulationError, SimulationWarning  # noqa: E402
+from carom.layouts.codes import ABSENT, ASLEEP  # noqa: E402
 from carom.torch import State, Stepper  # noqa: E402
 
 ROBOTS = Path(__file__).parents[1] / "conformance" / "robots"
@@ -206,6 +207,22 @@ def test_mistakes_are_named():
         stepper(state.replaced(velocities=state.velocities + 1e200), torques, masses)
     # It is as before after that.
     assert torch.isfinite(stepper(state, torques, masses).velocities).all()
+
+
+@pytest.mark.parametrize(("activity", "word"), [(ASLEEP, "asleep"), (ABSENT, "absent")])
+def test_bodies_that_do_not_move_are_refused(activity: int, word: str):
+    worlds = differing(ball_on_plane(), 2)
+    worlds._engine.arrays.state.numpy["tree_activity"][1, worlds.bodies[1]._body.rows.tree] = activity
+    stepper = Stepper(worlds, [])
+    with pytest.raises(NotImplementedError, match=f"no derivatives where bodies are {word}"):
+        stepper(stepper.state())
+
+
+def test_steps_of_several_substeps_are_refused():
+    world = cartpole()
+    world.parameters.substeps = 3
+    with pytest.raises(NotImplementedError, match="substeps"):
+        Stepper(Worlds(world, 1))
 
 
 def test_second_derivatives_are_refused():
