@@ -43,7 +43,7 @@ FLOORS = (
     {"carom.camera"},
     {"carom.recording", "carom.world"},
     {"carom.worlds"},
-    {"carom.vector"},
+    {"carom.jax", "carom.torch", "carom.vector"},
     # The drop-in.
     {"pybullet._calls"},
     {"pybullet._maths"},

@@ -91,6 +91,16 @@ def test_the_cart_swings_up_the_pole_and_balances_it(example):
     assert pole[-1] < 1e-3
 
 
+def test_the_network_learns_to_push_by_gradients_through_the_contact(example):
+    pytest.importorskip("torch")
+    record = example("learn_push").main(iterations=8)
+    # Only pushed balls move, and those with further targets are to go further.
+    assert record["loss"][-1] < 0.4 * record["loss"][0]
+    ends = [path[-1] for path in record["after"]]
+    assert min(ends) > 0.4
+    assert len(record["after"]) == len(record["targets"]) == 6
+
+
 def test_the_mobile_manipulator_follows_the_circle_and_avoids_the_ball(example):
     pytest.importorskip("daqp")
     record = example("mobile_manipulator").main()

@@ -137,6 +137,24 @@ def draw_standing(record: Record) -> Any:
     return figure
 
 
+def draw_pushing(record: Record) -> Any:
+    """The loss, and the ways of the balls before and after learning."""
+    figure, (loss, ways) = pyplot.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
+    loss.semilogy(record["loss"])
+    loss.set_xlabel("iteration")
+    loss.set_ylabel("loss [m²]")
+    for number, (before, after) in enumerate(zip(record["before"], record["after"], strict=True)):
+        colour = f"C{number}"
+        ways.plot(before, ":", color=colour)
+        ways.plot(after, color=colour)
+        ways.plot(len(after) - 1, record["targets"][number], "x", color=colour)
+    ways.set_xlabel("step")
+    ways.set_ylabel("ball [m]")
+    for axis in (loss, ways):
+        axis.grid(alpha=0.3)
+    return figure
+
+
 FIGURE_OF = {
     "default_motors": draw_one({"default motor": "-", "motor off": "-"}),
     "control_modes": draw_one({"POSITION": "-", "VELOCITY": "-", "TORQUE": "-", "PD": "-"}),
@@ -144,6 +162,7 @@ FIGURE_OF = {
     "one_joint_pid": draw_one({"target": "k:", "PD": "-", "PID": "-"}),
     "panda_control": draw_panda,
     "swing_up": draw_one({"cart": "-", "pole": "-"}),
+    "learn_push": draw_pushing,
     "modern_api": draw_one({"path": "k:", "shoulder": "-"}),
     "camera": draw_camera,
     "dropping": draw_dropping,

@@ -14,6 +14,7 @@ from carom.errors import SimulationError
 from carom.layouts.contacts import OVERLAPS, THERE
 from carom.layouts.status import STATUS, WELL
 from carom.linearization.fields import Fields
+from carom.linearization.input_values import JOINT_TERMS
 from carom.native.block_copies import BlockCopies
 
 if TYPE_CHECKING:
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.native.tables import ArrayTable
     from carom.world.world import World
-
-# Parameters without effect in trees where all such terms are 0, unless this field says otherwise.
-_JOINT_TERMS = ("dof_armature", "dof_stiffness", "dof_implicit_damping")
 
 
 class _OwnRows(Engine):
@@ -115,7 +113,7 @@ class Copies:
             table = self.engine.table_of(given.table)
             table.numpy[given.field][(worlds, *given.place)] += given.scale * changes
             table.written(given.field)
-        if given.field in _JOINT_TERMS:
+        if given.field in JOINT_TERMS:
             self.engine.spread("model", "tree_joint_terms")
             self.model["tree_joint_terms"][:] = 1.0
             self.engine.arrays.model.written("tree_joint_terms")

@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _AXES = "xyz"
+_QUATERNION = ("qx", "qy", "qz", "qw")
+# Names of the coordinates of joints that have several.
+_PARTS: dict[int, tuple[str, ...]] = {JointCode.SPHERICAL: _QUATERNION, JointCode.PLANAR: ("angle", "x", "y")}
+# Quaternions are made unit if their squared norm is off by more: those of steps stay as they are.
+_UNIT = 1e-12
 
 
 class TangentSpace:
@@ -44,6 +49,9 @@ class TangentSpace:
         places_in_tree: Its place among the dofs of the tree, (n,).
         coordinates: Number of all coordinates, and length of `World.position`, which may have spare rows.
         rates: Likewise of `World.velocity`.
+        coordinate_rows: Rows of `World.position` of the coordinates that can change, (c,): seven of a free
+            base, (x, y, z) [m] and a quaternion (x, y, z, w), four of a spherical joint, and so on.
+        coordinate_names: Their names.
         dof_of_row: The dofs by their rows of `World.velocity`.
         several: The dofs of joints with several positions, and of bases.
         column_of_actuator: The columns of activations by rows of actuators.
@@ -62,10 +70,14 @@ class TangentSpace:
         self._planes: list[tuple[int, int, float]] = []
         self.actuators: list[str] = []
         active: list[int] = []
+        self.coordinate_names: list[str] = []
+        moving: list[int] = []
         for body in world.bodies.values() if bodies is None else bodies:
             label, first = body_label(world, body), len(rows)
             if not body.fixed_base:
                 self._bases.append((body.first_position, len(rows)))
+                moving += range(body.first_position, body.first_position + BASE_POSITIONS)
+                self.coordinate_names += [f"{label}.base.{end}" for end in (*_AXES, *_QUATERNION)]
                 rows += range(body.first_velocity, body.first_velocity + BASE_VELOCITIES)
                 labels += [
                     (f"{label}.base", f"{kind}.{axis}") for kind in ("turn", "shift") for axis in _AXES
@@ -88,6 +100,10 @@ class TangentSpace:
                 else:
                     self._scalars.append((position, len(rows)))
                 rows += range(body.velocity_index[joint], body.velocity_index[joint] + count)
+                moving += range(position, position + body.position_count[joint])
+                name = f"{label}.{body.spec.links[joint].joint_name}"
+                parts = _PARTS.get(kind)
+                self.coordinate_names += [f"{name}.{end}" for end in parts] if parts else [name]
                 ends = _AXES[:count] if count > 1 else ("",)
                 labels += [(f"{label}.{body.spec.links[joint].joint_name}", end) for end in ends]
             row = body.rows.first.get("actuator", 0)
@@ -99,6 +115,7 @@ class TangentSpace:
                 self.bodies.append(body)
                 self.places.append((first, len(rows) - first))
         self.dofs: np.ndarray = np.array(rows, dtype=np.int64)
+        self.coordinate_rows: np.ndarray = np.array(moving, dtype=np.int64)
         self.labels: list[tuple[str, str]] = labels
         self.activations: np.ndarray = np.array(active, dtype=np.int64)
         used = world.arrays.used
@@ -182,6 +199,74 @@ class TangentSpace:
                 changes[world, dof + 1 : dof + 3] = _plane_turn(angle).T @ change[world, 1:]
         return changes
 
+    def with_unit_quaternions(self, positions: np.ndarray) -> np.ndarray:
+        """Positions (m, coordinates) whose quaternions have a norm of 1.
+
+        Raises:
+            ValueError: A quaternion is 0.
+        """
+        for q in (*(q + 3 for q, _ in self._bases), *(q for q, _ in self._balls)):
+            own = positions[:, q : q + 4]
+            squares = (own * own).sum(axis=1, keepdims=True)
+            if not squares.all():
+                raise ValueError("a quaternion is 0, so it is no orientation")
+            if (np.abs(squares - 1.0) > _UNIT).any():
+                positions = positions.copy()
+                positions[:, q : q + 4] = np.where(np.abs(squares - 1.0) > _UNIT, own / np.sqrt(squares), own)
+        return positions
+
+    def of_changes(self, positions: np.ndarray, gradients: np.ndarray) -> np.ndarray:
+        """Gradients (m, n) by changes of positions, of gradients (m, coordinates) by their coordinates.
+
+        Args:
+            positions: The positions, (m, coordinates), with unit quaternions.
+            gradients: The gradients there.
+        """
+        found = np.zeros((len(positions), len(self)))
+        found[:, self._columns] = gradients[:, self._positions]
+        for q, dof in self._bases:
+            own = slice(q + 3, q + BASE_POSITIONS)
+            turned = multiplied(gradients[:, own], inverse(positions[:, own]))
+            found[:, dof : dof + 3] = 0.5 * turned[:, :3]
+            found[:, dof + 3 : dof + 6] = gradients[:, q : q + 3]
+        for q, dof in self._balls:
+            own = slice(q, q + 4)
+            turned = multiplied(inverse(positions[:, own]), gradients[:, own])
+            found[:, dof : dof + 3] = 0.5 * turned[:, :3]
+        for q, dof, hand in self._planes:
+            found[:, dof] = gradients[:, q]
+            for world in range(len(found)):
+                turn = _plane_turn(hand * positions[world, q])
+                found[world, dof + 1 : dof + 3] = gradients[world, q + 1 : q + 3] @ turn
+        return found
+
+    def of_coordinates(self, positions: np.ndarray, gradients: np.ndarray) -> np.ndarray:
+        """Gradients (m, coordinates) by coordinates, of gradients (m, n) by changes of positions.
+
+        Those by a quaternion are those of the unit quaternion that it is made into.
+
+        Args:
+            positions: The positions, (m, coordinates); quaternions may have any norm but 0.
+            gradients: The gradients there.
+        """
+        found = np.zeros(positions.shape)
+        found[:, self._positions] = gradients[:, self._columns]
+        for q, dof in self._bases:
+            own = slice(q + 3, q + BASE_POSITIONS)
+            turn = _pure(gradients[:, dof : dof + 3])
+            found[:, own] = multiplied(turn, _twice_over_square(positions[:, own]))
+            found[:, q : q + 3] = gradients[:, dof + 3 : dof + 6]
+        for q, dof in self._balls:
+            own = slice(q, q + 4)
+            turn = _pure(gradients[:, dof : dof + 3])
+            found[:, own] = multiplied(_twice_over_square(positions[:, own]), turn)
+        for q, dof, hand in self._planes:
+            found[:, q] = gradients[:, dof]
+            for world in range(len(found)):
+                turn = _plane_turn(hand * positions[world, q])
+                found[world, q + 1 : q + 3] = turn @ gradients[world, dof + 1 : dof + 3]
+        return found
+
     def stretch(self, positions: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """By how much springs of joints are stretched (n,), and the derivatives by changes, (n, n).
 
@@ -206,6 +291,16 @@ class TangentSpace:
             by_position[own, own] = np.eye(2)
             by_position[own, dof] = -hand * np.array([-found[dof + 2], found[dof + 1]])
         return found, by_position
+
+
+def _pure(vectors: np.ndarray) -> np.ndarray:
+    """Quaternions (m, 4) with these vectors (m, 3) and the scalar 0."""
+    return np.concatenate([vectors, np.zeros((len(vectors), 1))], axis=1)
+
+
+def _twice_over_square(quaternions: np.ndarray) -> np.ndarray:
+    """Quaternions (m, 4), twice and divided by the squares of their norms."""
+    return 2.0 * quaternions / (quaternions * quaternions).sum(axis=1, keepdims=True)
 
 
 def _plane_turn(angle: float) -> np.ndarray:

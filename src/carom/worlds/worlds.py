@@ -224,7 +224,10 @@ class Worlds(ContactQueries, Linearizing, Closed):
             ValueError: The states are of other bodies, or their number is wrong.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
-        rows = start.rows_for(worlds, self.count)
+        self._put_back(start, worlds, start.rows_for(worlds, self.count))
+
+    def _put_back(self, start: SavedWorlds, worlds: np.ndarray, rows: np.ndarray) -> None:
+        """Restore worlds to some of the saved states, given by their rows."""
         start.put_back(self._engine, worlds, rows)
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False

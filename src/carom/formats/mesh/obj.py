@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 from carom.formats.mesh.part import MeshPart, cut_into_fans, make_part
 
-# Lines that belong together: vertices, faces, others, or the one that begins an object or group. A block has a
-# bound, because the matcher remembers each line.
+# Lines that belong together: vertices, faces, others, or the one that begins an object or group. Blocks are
+# bounded, because the matcher remembers each line.
 _BLOCKS = re.compile(
     rb"(?P<vertices>(?:[ \t\v\f]*v[ \t].*\n){1,20000})"
     rb"|(?P<faces>(?:[ \t\v\f]*f[ \t].*\n){1,20000})"

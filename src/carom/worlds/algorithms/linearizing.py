@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -131,14 +131,19 @@ class Linearizing:
         parameters: Sequence[str],
         smoothing: float,
         where: ArrayLike | None,
+        start: Callable[[Engine], None] | None = None,
     ) -> tuple[Parts, StepDerivatives]:
+        """What was chosen, and the derivatives of a step of each world.
+
+        `start` may give the copies that take the step another state and other parameters.
+        """
         if self.device != CPU:
             raise NotImplementedError(f"steps on {self.device!r} cannot be linearised: use device={CPU!r}")
         if not smoothing >= 0.0:
             raise ValueError(f"smoothing must be at least 0, not {smoothing}")
         worlds = world_numbers(where, self.count)
         halted = worlds[self.halted[worlds]]
-        if len(halted):
+        if len(halted) and start is None:
             raise ValueError(f"world {halted[0]} is halted, so it has no next step")
         if any_absent(self._engine.arrays):
             raise NotImplementedError("steps cannot be linearised where bodies are absent")
@@ -150,7 +155,7 @@ class Linearizing:
             return parts, StepDerivatives(np.zeros((0, width, width)), np.zeros((0, width, inputs)), [])
         if self._linearizer is None or not self._linearizer.follow():
             self._linearizer = _Linearizer(self._scene, self._engine, self._thread_count or 1)
-        return parts, self._linearizer.find(parts, worlds, smoothing)
+        return parts, self._linearizer.find(parts, worlds, smoothing, start)
 
 
 class _Linearizer:
@@ -174,7 +179,13 @@ class _Linearizer:
         """Take the present state and parameters; False if a new copy is needed."""
         return self._made_for == self._now() and self._copies.follow(self._engine, 0.0)
 
-    def find(self, parts: Parts, worlds: np.ndarray, smoothing: float) -> StepDerivatives:
+    def find(
+        self,
+        parts: Parts,
+        worlds: np.ndarray,
+        smoothing: float,
+        start: Callable[[Engine], None] | None = None,
+    ) -> StepDerivatives:
         """Perform a step of some worlds, and differentiate it."""
         copies = self._copies
         kept = copies.linearizer
@@ -183,6 +194,8 @@ class _Linearizer:
                 *(parts.space, parts.inputs, copies),
                 *(self._structs_of, self._ask_of, self._threads),
             )
+        if start is not None:
+            start(copies.engine)
         return kept.step(self._scene.parameters, worlds, smoothing)
 
     def _structs_of(self, body: Body) -> tuple[list[list[Any]], Any]:
@@ -202,5 +215,5 @@ class _Linearizer:
 
     def _mechanics_of(self, body: Body) -> MechanicsBatch:
         if body not in self._mechanics:
-            self._mechanics[body] = MechanicsBatch(body, self._engine, self._threads)
+            self._mechanics[body] = MechanicsBatch(body, self._copies.engine, self._threads)
         return self._mechanics[body]
