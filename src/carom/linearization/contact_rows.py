@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom.layouts.codes import SPHERE, ShapeKind
+from carom.layouts.codes import BASE_VELOCITIES, SPHERE, ShapeKind
 from carom.layouts.contacts import THERE
 from carom.linearization.contact_compliance import Compliance, compliance_of, pair_of_links
 from carom.linearization.contact_features import touches_with_face, touching_radius
@@ -88,6 +88,7 @@ class ContactRows:
         kinds = shapes["shape_kind"][shape_a], shapes["shape_kind"][shape_b]
         described = " and ".join(ShapeKind(int(kind)).name.lower() for kind in kinds)
         name = f"contact {number} of {described}"
+        self._check_at_rest(name, (shape_a, shape_b))
         normal = contacts["contact_normal"][number]
         points = contacts["contact_point_a"][number], contacts["contact_point_b"][number]
         turned = np.zeros((3, len(self._space)))
@@ -124,6 +125,18 @@ class ContactRows:
             ends = (own, on_face) if side == 0 else (on_face, own)
             return _Contact(number, name, *ends, normal, turned)
         raise NotImplementedError(f'a {name} has no exact derivatives: use method="differences"')
+
+    def _check_at_rest(self, name: str, shapes: tuple[int, int]) -> None:
+        """Raise `NotImplementedError` if a fixed base at a contact has been given a velocity."""
+        taken = self._taken
+        for tree in taken.shapes["shape_tree"][list(shapes)].tolist():
+            first = int(taken.model["tree_first_velocity"][tree])
+            moves = taken.state["dof_velocity"][first : first + BASE_VELOCITIES].any()
+            if taken.model["tree_fixed"][tree] and moves:
+                raise NotImplementedError(
+                    f"{name} with a fixed base that has a velocity has no exact derivatives: "
+                    'use method="differences"'
+                )
 
     def _add(self, contact: _Contact) -> None:
         taken, rows = self._taken, self._rows
