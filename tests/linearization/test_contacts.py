@@ -151,3 +151,12 @@ def test_contacts_of_edges_are_named():
         for _ in range(100):
             world.linearize()
             world.step()
+
+
+def test_contacts_with_a_moving_fixed_base_are_refused():
+    world, _ = on_plane("sphere2.urdf", 0.5)
+    assert world.linearize().rows
+    set_velocity(world.bodies[0], 0.0, 0.3, 0.0, 0.2, 0.0, 0.0)
+    with pytest.raises(NotImplementedError, match=r"fixed base that has a velocity"):
+        world.linearize()
+    world.linearize(method="differences")

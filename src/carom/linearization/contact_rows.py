@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom.layouts.codes import SPHERE, ShapeKind
+from carom.layouts.codes import BASE_VELOCITIES, SPHERE, ShapeKind
 from carom.layouts.contacts import THERE
+from carom.linearization.contact_compliance import Compliance, compliance_of, pair_of_links
 from carom.linearization.contact_features import touches_with_face, touching_radius
 from carom.linearization.pair_rows import Places, Point
 from carom.linearization.rows import HOLDS, LOWER, Rows, status_of
@@ -42,6 +43,24 @@ class _Contact(NamedTuple):
     turned: np.ndarray
 
 
+class _Sideways(NamedTuple):
+    """How both rows of lateral friction of a contact yield.
+
+    Attributes:
+        softness: Velocity per impulse.
+        softens: Its derivatives by positions and inputs, (n + inputs,).
+        targets: Velocities of both at impulses of 0, (2,).
+        by_velocity: Derivatives of these by velocities before the step, (2, n).
+        sides: Derivatives of targets, less softness times impulse, by positions and inputs, (2, n + inputs).
+    """
+
+    softness: float
+    softens: np.ndarray
+    targets: np.ndarray
+    by_velocity: np.ndarray
+    sides: np.ndarray
+
+
 class ContactRows:
     """Adds the rows of the contacts of a world in a step to `rows`."""
 
@@ -69,6 +88,7 @@ class ContactRows:
         kinds = shapes["shape_kind"][shape_a], shapes["shape_kind"][shape_b]
         described = " and ".join(ShapeKind(int(kind)).name.lower() for kind in kinds)
         name = f"contact {number} of {described}"
+        self._check_at_rest(name, (shape_a, shape_b))
         normal = contacts["contact_normal"][number]
         points = contacts["contact_point_a"][number], contacts["contact_point_b"][number]
         turned = np.zeros((3, len(self._space)))
@@ -106,23 +126,49 @@ class ContactRows:
             return _Contact(number, name, *ends, normal, turned)
         raise NotImplementedError(f'a {name} has no exact derivatives: use method="differences"')
 
+    def _check_at_rest(self, name: str, shapes: tuple[int, int]) -> None:
+        """Raise `NotImplementedError` if a fixed base at a contact has been given a velocity."""
+        taken = self._taken
+        for tree in taken.shapes["shape_tree"][list(shapes)].tolist():
+            first = int(taken.model["tree_first_velocity"][tree])
+            moves = taken.state["dof_velocity"][first : first + BASE_VELOCITIES].any()
+            if taken.model["tree_fixed"][tree] and moves:
+                raise NotImplementedError(
+                    f"{name} with a fixed base that has a velocity has no exact derivatives: "
+                    'use method="differences"'
+                )
+
     def _add(self, contact: _Contact) -> None:
         taken, rows = self._taken, self._rows
         link_a, link_b = taken.contacts["contact_shapes"][contact.number, 2:].tolist()
         friction, rolling, spinning = self._friction(contact, link_a, link_b)
         softness, erp = self._stiffness(link_a, link_b)
-        gap = float(taken.contacts["contact_distance"][contact.number]) + taken.parameters.contact_slop
+        distance = float(taken.contacts["contact_distance"][contact.number])
+        yields = compliance_of(taken, (link_a, link_b), (friction, rolling, spinning), distance)
+        gap = distance + taken.parameters.contact_slop
         gain = (1.0 if gap > 0.0 else erp) / taken.time_step
         impulses = taken.contacts["contact_impulse"][contact.number]
         normal_turns = np.stack([contact.turned, np.zeros_like(contact.turned)])
         jacobian, hessian = self._places.row(contact.a, contact.b, contact.normal, _NONE, normal_turns)
         self._check_restitution(contact, jacobian, link_a, link_b)
+        softness = yields.softness if yields is not None else softness
         normal = rows.add(contact.name, HOLDS, jacobian, float(impulses[0]), 1.0, softness)
         rows.set_hessian(normal, hessian)
-        rows.by_position[normal] = -gain * (contact.normal @ (contact.a.moving - contact.b.moving))
+        parting = contact.normal @ (contact.a.moving - contact.b.moving)
+        if yields is None:
+            rows.by_position[normal] = -gain * parting
+        else:
+            h, push = taken.time_step, float(impulses[0])
+            kept = 1.0 - h * yields.damping
+            rows.by_velocity[normal] = kept * jacobian
+            rows.by_position[normal] = kept * (taken.velocity @ hessian)
+            rows.by_position[normal] -= (h * yields.pull_slope + push * yields.softness_slope) * parting
+            self._set_friction(normal, -push * yields.by_friction, contact, "friction")
         directions, turns = self._directions(contact)
         lateral = [self._row_of(contact, *it) for it in zip(directions, turns, strict=True)]
-        self._add_pair(contact, "friction", normal, friction, lateral, impulses[1:].tolist())
+        along = impulses[1:].tolist()
+        sideways = None if yields is None else self._sideways(yields, contact, lateral, along, parting)
+        self._add_pair(contact, "friction", normal, friction, lateral, along, sideways)
         if rolling > 0.0 or spinning > 0.0:
             self._add_torsion(contact, normal, rolling, spinning, (directions, turns))
 
@@ -145,12 +191,16 @@ class ContactRows:
     def _friction(self, contact: _Contact, a: int, b: int) -> tuple[float, float, float]:
         """The coefficients of lateral, rolling and spinning friction."""
         shapes = self._taken.shapes
+        pair = pair_of_links(self._taken, a, b)
         own = [float(shapes["link_lateral_friction"][link]) for link in (a, b)]
         ranks = [int(shapes["link_friction_rank"][link]) for link in (a, b)]
         if any((shapes["link_anisotropy"][link] != 1.0).any() for link in (a, b)):
             raise NotImplementedError(f"{contact.name}: anisotropic friction has no exact derivatives")
         if any(shapes["link_friction_anchor"][link] for link in (a, b)):
             raise NotImplementedError(f"{contact.name}: friction anchors have no exact derivatives")
+        if pair is not None:
+            lateral, rolling, spinning = shapes["filter_friction"][pair].tolist()
+            return lateral, rolling, spinning
         found: list[float] = []
         for what in ("lateral", "rolling", "spinning"):
             x, y = (float(shapes[f"link_{what}_friction"][link]) for link in (a, b))
@@ -208,6 +258,7 @@ class ContactRows:
         friction: float,
         parts: list[tuple[np.ndarray, np.ndarray]],
         along: list[float],
+        yields: _Sideways | None = None,
     ) -> None:
         """Add two rows of friction, or one, that the impulse of a normal row bounds.
 
@@ -218,6 +269,7 @@ class ContactRows:
             friction: Coefficient of friction.
             parts: Jacobian and its derivatives of each row.
             along: Their impulses.
+            yields: How they yield; None if they do not.
         """
         taken, rows = self._taken, self._rows
         push = rows.impulses[normal]
@@ -227,12 +279,19 @@ class ContactRows:
             row = rows.add(f"{what} of {contact.name}", HOLDS, jacobian, impulse, 0.0, 0.0)
             rows.set_hessian(row, hessian)
         cone = taken.parameters.cone_friction or taken.parameters.isotropic_friction
-        if len(parts) == 1 or not cone:
+        # A row along which nothing moves is off, and its impulse 0.
+        moves = [bool(jacobian.any()) for jacobian, _ in parts]
+        if len(parts) == 1 or not cone or not all(moves):
             for row, impulse in enumerate(along, first):
+                if not moves[row - first]:
+                    rows.beta.append((row, row, 1.0))
+                    continue
                 status = status_of(impulse, -bound * _STICKS, bound * _STICKS)
                 rows.names[row] = (rows.names[row][0], status)
                 if status == HOLDS:
                     rows.alpha.append((row, row, 1.0))
+                    if yields is not None:
+                        self._let_yield(row, row - first, yields)
                     continue
                 sign = -1.0 if status == LOWER else 1.0
                 rows.beta += [(row, row, 1.0), (row, normal, -sign * friction)]
@@ -242,6 +301,9 @@ class ContactRows:
         size = hypot(*along)
         if size < bound * _STICKS:
             rows.alpha += [(first, first, 1.0), (second, second, 1.0)]
+            if yields is not None:
+                self._let_yield(first, 0, yields)
+                self._let_yield(second, 1, yields)
             return
         for row in (first, second):
             rows.names[row] = (rows.names[row][0], SLIDES)
@@ -255,30 +317,86 @@ class ContactRows:
         # ... and opposite to the change of the impulses that the rows still ask for.
         jacobians = [jacobian for jacobian, _ in parts]
         rates = np.array([jacobian @ taken.solved for jacobian in jacobians])
-        masses, changes = self._masses(jacobians, [hessian for _, hessian in parts])
+        if yields is not None:
+            rates -= yields.targets
+        softness = 0.0 if yields is None else yields.softness
+        masses, changes = self._masses(jacobians, [hessian for _, hessian in parts], yields)
+        asked = rates + softness * np.array([x, y])
         rows.alpha += [(second, first, masses[0] * y), (second, second, -masses[1] * x)]
-        rows.beta += [(second, second, masses[0] * rates[0]), (second, first, -masses[1] * rates[1])]
-        changed = x * rates[1] * changes[1] - y * rates[0] * changes[0]
+        rows.beta += [
+            (second, second, masses[0] * asked[0] - masses[1] * softness * x),
+            (second, first, masses[0] * softness * y - masses[1] * asked[1]),
+        ]
+        changed = x * asked[1] * changes[1] - y * asked[0] * changes[0]
+        if yields is not None:
+            changed += masses[0] * y * yields.sides[0] - masses[1] * x * yields.sides[1]
+            rows.by_velocity[second] = masses[0] * y * yields.by_velocity[0]
+            rows.by_velocity[second] -= masses[1] * x * yields.by_velocity[1]
         rows.by_position[second] = changed[: len(self._space)]
         rows.by_input[second] = changed[len(self._space) :]
 
+    def _sideways(
+        self,
+        yields: Compliance,
+        contact: _Contact,
+        parts: list[tuple[np.ndarray, np.ndarray]],
+        along: list[float],
+        parting: np.ndarray,
+    ) -> _Sideways:
+        """How two rows of lateral friction yield, where the distance of a contact changes by `parting`."""
+        taken = self._taken
+        kept = 1.0 - taken.time_step * yields.lateral_damping
+        softens = np.concatenate([yields.lateral_slope * parting, self._by_friction(contact, "friction")])
+        softens[len(self._space) :] *= yields.lateral_by_friction
+        sides = -np.outer(along, softens)
+        for side, (_, hessian) in zip(sides, parts, strict=True):
+            side[: len(self._space)] += kept * (taken.velocity @ hessian)
+        by_velocity = kept * np.stack([jacobian for jacobian, _ in parts])
+        return _Sideways(yields.lateral_softness, softens, by_velocity @ taken.velocity, by_velocity, sides)
+
+    def _let_yield(self, row: int, number: int, yields: _Sideways) -> None:
+        """Let a row of friction that sticks yield, one of two."""
+        rows, count = self._rows, len(self._space)
+        rows.beta.append((row, row, yields.softness))
+        rows.by_velocity[row] = yields.by_velocity[number]
+        rows.by_position[row] = yields.sides[number, :count]
+        rows.by_input[row] = yields.sides[number, count:]
+
+    def _by_friction(self, contact: _Contact, what: str) -> np.ndarray:
+        """Derivatives of a coefficient of friction of a contact by inputs, (inputs,)."""
+        found = np.zeros(len(self._rows.all_inputs))
+        for place, share in self._shares_of_links(contact, what):
+            for column, given in enumerate(self._rows.all_inputs):
+                if given.field == "link_lateral_friction" and given.place == place:
+                    found[column] += share * given.scale
+        return found
+
     def _set_friction(self, row: int, derivative: float, contact: _Contact, what: str) -> None:
         """Set the derivatives of a row's right side by the lateral friction of both links."""
+        for place, share in self._shares_of_links(contact, what):
+            self._rows.set_input(row, "link_lateral_friction", place, derivative * share)
+
+    def _shares_of_links(self, contact: _Contact, what: str) -> list[tuple[tuple[int], float]]:
+        """Both links, and the derivatives of a coefficient by their lateral friction."""
         shapes = self._taken.shapes
         links = self._taken.contacts["contact_shapes"][contact.number, 2:].tolist()
+        if pair_of_links(self._taken, *links) is not None:
+            return []
         # Rolling and spinning coefficients are multiplied by the lateral one of the other link.
         kind = {"friction": "lateral", "rolling friction": "rolling", "spinning friction": "spinning"}[what]
         ranks = [int(shapes["link_friction_rank"][link]) for link in links]
         own = [float(shapes[f"link_{kind}_friction"][link]) for link in links]
+        found: list[tuple[tuple[int], float]] = []
         for k in (0, 1):
             share = own[1 - k]
             if min(ranks) > 0:
                 greater = ranks[k] > ranks[1 - k] or (ranks[0] == ranks[1] and own[k] >= own[1 - k])
                 share = float(greater and kind == "lateral")
-            self._rows.set_input(row, "link_lateral_friction", (links[k],), derivative * share)
+            found.append(((links[k],), share))
+        return found
 
     def _masses(
-        self, jacobians: list[np.ndarray], hessians: list[np.ndarray]
+        self, jacobians: list[np.ndarray], hessians: list[np.ndarray], yields: _Sideways | None
     ) -> tuple[np.ndarray, np.ndarray]:
         """Effective masses of two rows, and their derivatives by positions and inputs, (2, n + inputs).
 
@@ -293,7 +411,10 @@ class ContactRows:
             inverse = float(jacobian @ response)
             turned = 2.0 * response @ hessian - response @ self._motion.mass_derivatives(response)
             driven = -response @ self._motion.mass_input_derivatives(response, inputs)
-            masses[k], changes[k] = 1.0 / inverse, -np.concatenate([turned, driven]) / inverse**2
+            turned = np.concatenate([turned, driven])
+            if yields is not None:
+                inverse, turned = inverse + yields.softness, turned + yields.softens
+            masses[k], changes[k] = 1.0 / inverse, -turned / inverse**2
         return masses, changes
 
     def _directions(self, contact: _Contact) -> tuple[np.ndarray, np.ndarray]:

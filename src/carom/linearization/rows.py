@@ -74,6 +74,11 @@ class Rows:
         return self.sides[:, : self._dofs]
 
     @property
+    def by_velocity(self) -> np.ndarray:
+        """Derivatives of right sides by velocities before the step, (rows, n): part of `sides`."""
+        return self.sides[:, self._dofs : 2 * self._dofs]
+
+    @property
     def by_activation(self) -> np.ndarray:
         """Derivatives of right sides by activations, (rows, a): part of `sides`."""
         return self.sides[:, 2 * self._dofs : self._states]
