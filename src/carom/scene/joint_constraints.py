@@ -68,9 +68,16 @@ class JointConstraint:
 
     @property
     def moving_body(self) -> Body:
-        """`body`; if that cannot move, the other body of a user constraint."""
+        """`body`; if the link that a user constraint ties cannot move, the other body of the constraint."""
         other = None if self.user is None else self.user.child
-        return other if other is not None and not any(moving_links(self.body)) else self.body
+        if other is None or other is self.body:
+            return self.body
+        moves = moving_links(self.body)
+        if not any(moves):
+            return other
+        assert self.user
+        is_tied_by_what_moves = moves[self.user.parent_link + 1] or not any(moving_links(other))
+        return self.body if is_tied_by_what_moves else other
 
 
 class JointConstraints:
