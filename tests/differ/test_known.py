@@ -39,20 +39,6 @@ def test_masses_are_remembered_from_the_first_question(calls: list[Call], expect
 
 
 @pytest.mark.parametrize(
-    ("body", "changes", "expected"),
-    [
-        (call(0, "loadURDF", CUBE), [], False),
-        (call(0, "loadURDF", CUBE, useFixedBase=1), [], True),
-        (call(0, "loadURDF", CUBE), [call(1, "changeDynamics", BODY, -1, mass=0.0)], True),
-        (call(0, "loadURDF", "cartpole.urdf"), [], True),
-    ],
-)
-def test_a_body_is_fixed_by_its_call_or_file(body: Call, changes: list[Call], expected: bool):
-    tie = call(2, "createConstraint", BODY, -1, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
-    assert is_known([body, *changes, tie, PROBE], "base.0.0", 0.0, 1e-6) == expected
-
-
-@pytest.mark.parametrize(
     ("theirs", "ours", "near", "expected"),
     [
         (100, 200, 0.1, True),
@@ -162,16 +148,6 @@ def tied(mass: float, parent_link: int) -> list[Call]:
     """A program that ties a body of a mass to the world."""
     tie = call(1, "createConstraint", {"$": 0}, parent_link, -1, -1, 5, [0, 0, 0], [0, 0, 0], [0, 0, 0])
     return [call(0, "createMultiBody", mass), tie, call(2, "@probe")]
-
-
-@pytest.mark.parametrize(("mass", "link", "expected"), [(0, -1, True), (1, -1, False), (0, 0, False)])
-def test_only_constraints_of_what_cannot_move_are_known_to_stop_the_solver(
-    mass: float, link: int, expected: bool
-):
-    calls = tied(mass, link)
-    results = [["ok", 0], ["ok", 1]]
-    found = compare(calls, outcome(*results, state(1)), outcome(*results, state(1.00001)))
-    assert bool(statement(calls, found[0])) == expected
 
 
 MESH = {"fileName": "sphere_smooth.obj"}

@@ -40,8 +40,6 @@ def _names(table: str) -> frozenset[str]:
 
 AT_LIMITS = _names("at_limits.json")
 """Files with a joint that stands exactly at one of its limits when it is loaded."""
-IMMOVABLE = _names("immovable.json")
-"""Files with a body whose base cannot move."""
 CHILDREN_FIRST = _names("children_first.json")
 """Files that list a link before its parent."""
 FINE = _names("fine.json")

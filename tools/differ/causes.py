@@ -14,8 +14,6 @@ from tools.differ.assets import (
     FILES,
     FINE,
     FIXED,
-    GEAR,
-    IMMOVABLE,
     PRISMATIC,
     SPHERICAL,
 )
@@ -150,36 +148,6 @@ def _poses(seen: Seen) -> Iterator[Call]:
     for call in seen.before:
         if call["f"] == "createConstraint" and call["a"][4] in (PRISMATIC, FIXED):
             yield call
-
-
-def holds_what_cannot_move(seen: Seen) -> bool:
-    """Whether both ends of a constraint are bases that may be fixed, or the world."""
-    made = {call["id"]: call for call in seen.before}
-    return any(
-        call["f"] == "createConstraint"
-        and call["a"][4] != GEAR
-        and call["a"][1] == -1
-        and _may_be_fixed(made, call["a"][0])
-        and (call["a"][2] == -1 or (call["a"][3] == -1 and _may_be_fixed(made, call["a"][2])))
-        for call in seen.before
-    )
-
-
-def _may_be_fixed(made: dict[int, Call], body: Any) -> bool:
-    """Whether a body was made without mass, with a fixed base, from a file that says so, or fixed later."""
-    call = made[body["$"]] if isinstance(body, dict) and body["$"] in made else None
-    if call is None:
-        return False
-    if any(_sets_mass_of_base(later, body, 0.0) for later in made.values()):
-        return True
-    if call["f"] == "createMultiBody":
-        return not (call["a"][:1] or [call["k"].get("baseMass", 0)])[0]
-    return bool(call["k"].get("useFixedBase")) or call["a"][0] in IMMOVABLE
-
-
-def _sets_mass_of_base(call: Call, body: dict[str, Any], mass: float) -> bool:
-    """Whether a call gives the base of a body a mass."""
-    return call["f"] == "changeDynamics" and call["a"][:2] == [body, -1] and call["k"].get("mass") == mass
 
 
 def limits_what_has_none(seen: Seen) -> bool:

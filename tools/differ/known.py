@@ -27,7 +27,6 @@ from tools.differ.causes import (
     has_joints,
     hits_another_at_the_same_place,
     holds_half_a_turn,
-    holds_what_cannot_move,
     is_a_little_nearer,
     is_farther_from_a_fine_hull,
     is_the_same_rotation,
@@ -161,11 +160,7 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getCameraImage colour") and casts_shadows(seen),
     ),
     Known(
-        "Constraints between bodies that cannot move",
-        lambda seen: seen.differs("@probe") and holds_what_cannot_move(seen),
-    ),
-    Known(
-        "So do limits that `changeDynamics` gives to fixed and spherical joints",
+        "Limits that `changeDynamics` gives to fixed and spherical joints",
         lambda seen: seen.differs("@probe") and limits_what_has_none(seen),
     ),
     Known(

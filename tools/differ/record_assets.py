@@ -1,8 +1,8 @@
 """Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
 
 `at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
-`immovable.json` those with a body whose base cannot move, `children_first.json` those that list a link before
-its parent, and `fine.json` those with a hull of very many corners, and meshes that make one.
+`children_first.json` those that list a link before its parent, and `fine.json` those with a hull of very many
+corners, and meshes that make one.
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -89,7 +89,7 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, limits, immovable, children_first = [], [], [], []
+    lines, limits, children_first = [], [], []
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
         if any(word in name for word in LEFT_OUT) or not holds(load, name):
@@ -101,14 +101,12 @@ def main():
         types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
         if any(map(at_limit, bodies)):
             limits.append(name)
-        if any(p.getDynamicsInfo(body, -1)[0] == 0 for body in bodies):
-            immovable.append(name)
         if holds(has_a_fine_hull, name):
             fine.append(name)
         lines.append(f"{json.dumps(name)}: {json.dumps(types, separators=(',', ':'))}")
         if name.endswith("urdf") and holds(lists_a_child_first, name):
             children_first.append(name)
-    tables = {"at_limits": limits, "immovable": immovable, "children_first": children_first, "fine": fine}
+    tables = {"at_limits": limits, "children_first": children_first, "fine": fine}
     for table, rows in tables.items():
         with open(os.path.join(folder, f"{table}.json"), "w") as file:
             file.write(json.dumps(rows, indent=1) + "\n")
