@@ -196,7 +196,7 @@ def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:
     if len(points):
         low, high = points.min(axis=0), points.max(axis=0)
         if _has_a_grid(low, high, hull.margin):
-            points = np.unique(_on_grid(points, low, high), axis=0)
+            points = _on_grid(points, low, high)
     return extreme_points(points)
 
 
