@@ -32,6 +32,7 @@ class Log:
         self._every = every
         self._steps = 0
         self._count = 0
+        self._bodies = list(world.bodies.values())
         like = {name: getattr(world, name) for name in names} | {"time": np.empty(())}
         self._rows = {name: np.empty((_FIRST_ROOM, *it.shape), it.dtype) for name, it in like.items()}
         world.observers.append(self)
@@ -73,14 +74,14 @@ class Log:
         self._steps += 1
         if self._steps % self._every:
             return
+        if list(self._world.bodies.values()) != self._bodies:
+            self.stop()
+            raise StateError("bodies were added or removed; the log has been stopped")
         if self._count == len(self._rows["time"]):
             self._rows = {
                 name: np.concatenate((rows, np.empty_like(rows))) for name, rows in self._rows.items()
             }
         for name, rows in self._rows.items():
             value = self._world.time if name == "time" else getattr(self._world, name)
-            if np.shape(value) != rows.shape[1:]:
-                self.stop()
-                raise StateError("bodies were added or removed; the log has been stopped")
             rows[self._count] = value
         self._count += 1

@@ -24,7 +24,7 @@ from carom.scene import changes
 _NAME_BYTES = 64
 _CALL = struct.Struct(f"<{_NAME_BYTES}s6Q")
 _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
-# What `Interpreter` asks of `carom_perform`: addresses of a program, worlds, substeps, a counter, lanes; numbers.
+# What `Interpreter` asks of `carom_perform`: addresses of program, worlds, substeps, counter, lanes; numbers.
 _RUN = struct.Struct("<5Q7i4x")
 _LANES_AT = 32
 # A program: address and stride of statuses, ends of the five parts, and for each launch five addresses.
