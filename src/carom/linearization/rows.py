@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
 
-HOLDS, LOWER, UPPER, SATURATED = (
+HOLDS, LOWER, UPPER, SATURATED, SLIDES = (
     "holds",
     "at its lower bound",
     "at its upper bound",
     "at its greatest velocity",
+    "slides",
 )
 # Impulses this near to a bound, relative to it, are at it: clamping rounds.
 NEAR = 1e-9
