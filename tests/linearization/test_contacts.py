@@ -170,7 +170,7 @@ def test_contacts_that_yield_are_named(tmp_path: Path):
     world.load(file)
     world.step(5)
     with pytest.raises(
-        NotImplementedError, match="contact 0 of .*yields, so that it has no exact derivatives"
+        NotImplementedError, match=r"contact 0 of .*yields, so that it has no exact derivatives"
     ):
         world.linearize()
     assert np.isfinite(world.linearize(method="differences").A).all()
