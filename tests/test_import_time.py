@@ -44,6 +44,20 @@ def test_a_rigid_robot_does_not_load_what_soft_ones_need():
     assert not loaded & {"carom.formats.urdf.deformable", "carom.description.deformable", "carom.soft.build"}
 
 
+def test_a_first_step_does_not_load_what_it_does_not_use():
+    lines = (
+        "import pybullet as p, pybullet_data",
+        "p.connect(p.DIRECT)",
+        'p.loadURDF(pybullet_data.getDataPath() + "/r2d2.urdf")',
+        "p.stepSimulation()",
+    )
+    loaded = modules_after("\n".join(lines))
+    assert "carom.formats.urdf.reader" in loaded
+    unused = {"actuator", "keyframe", "sensor", "site", "tendon"}
+    assert not loaded & {f"carom.description.{name}" for name in unused}
+    assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
+
+
 @pytest.mark.parametrize(
     "statement", ["import carom", "import pybullet_data", "from carom.control import PID"]
 )

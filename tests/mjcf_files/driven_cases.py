@@ -36,6 +36,20 @@ ACTUATED: dict[str, str] = {
     "defaults of other shortcuts": arm(
         '<general joint="j"/><motor joint="k" class="geared"/><velocity joint="j"/>', _CLASSES
     ),
+    "dcmotor": arm(
+        '<dcmotor joint="j" motorconst=".5 .7" resistance=".3" gear="3"/>'
+        '<dcmotor joint="k" nominal="12 9 2"/>'
+    ),
+    "dcmotor with defaults": arm(
+        '<dcmotor joint="j" class="strong"/>'
+        '<dcmotor joint="k" class="strong" nominal="1 2 4" saturation="0 3"/>',
+        '<default><default class="strong"><dcmotor motorconst="2" resistance=".5" saturation="1.5 1 9" '
+        'ctrlrange="-1 1" cogging="0 6 0"/></default></default>',
+    ),
+    "dcmotor after a general default": arm(
+        '<dcmotor joint="j" motorconst="0 2" resistance=".5" input="voltage"/>',
+        '<default><general gainprm="7" forcerange="-1 1"/></default>',
+    ),
     "sum of motors": arm('<motor joint="j" gear="90"/><motor joint="j" gear="-3"/>', bounded=True),
     "sum of servos": arm(
         '<position joint="j" kp="60" kv="2"/><velocity joint="j" kv="5" forcerange="-1 1"/>'

@@ -150,3 +150,59 @@ def test_a_keyframe_sets_controls_and_activations(tmp_path):
 def test_mistakes_are_named(tmp_path, actuator, problem):
     with World() as world, pytest.raises(DescriptionError, match=problem):
         load(world, tmp_path, arm(actuator))
+
+
+MOTOR = 'motorconst=".5" resistance="2"'
+
+
+@pytest.mark.parametrize(
+    "lost",
+    [
+        'inductance=".1"',
+        'cogging=".1 6 0"',
+        'lugre="1 2 3 4 5"',
+        'thermal="1 2 3 4 5 6"',
+        'input="none"',
+        'input="pos" controller="1 2"',
+    ],
+)
+def test_dcmotors_with_another_law_are_left_out(tmp_path, lost):
+    with World() as world:
+        scene = load(world, tmp_path, arm(f'<dcmotor name="m" joint="j" {MOTOR} {lost}/>'))
+        (found,) = scene.ignored.that_matter
+        assert not scene.actuators
+    assert found.element == "actuator/dcmotor"
+    assert lost.split("=")[0] in found.reason
+
+
+@pytest.mark.parametrize(
+    ("stated", "problem"),
+    [("", "motorconst"), ('motorconst="1"', "resistance"), ('nominal="12 1"', "motorconst")],
+)
+def test_dcmotors_need_a_constant_and_a_resistance(tmp_path, stated, problem):
+    with World() as world, pytest.raises(DescriptionError, match=problem):
+        load(world, tmp_path, arm(f'<dcmotor joint="j" {stated}/>'))
+
+
+TENDONS = """<tendon><fixed name="f"><joint joint="j" coef="2"/></fixed><spatial name="s"><site site="end"/>
+<site site="tip"/></spatial></tendon>"""
+
+
+@pytest.mark.parametrize(
+    ("drives", "lost"),
+    [
+        ('<motor joint="j"/>', False),
+        ('<motor tendon="f"/>', True),
+        ('<motor tendon="s"/>', True),
+        ('<motor site="tip" gear="0 0 1"/>', True),
+        ('<motor site="tip" refsite="middle" gear="0 0 1"/>', False),
+    ],
+)
+def test_bounds_of_sums_without_forces_of_tendons_and_sites_are_reported(tmp_path, drives, lost):
+    text = arm(drives, bounded=True).replace("<worldbody>", '<worldbody><site name="end" pos="1 0 0"/>')
+    text = text.replace('density="400"/>', 'density="400"/><site name="tip" pos=".1 0 0"/>')
+    text = text.replace('<body pos=".3 0 0" name="b">', '<site name="middle"/><body pos=".3 0 0" name="b">')
+    with World() as world:
+        scene = load(world, tmp_path, text.replace("<actuator>", f"{TENDONS}<actuator>"))
+        found = [it for it in scene.ignored.that_matter if "actuatorfrcrange" in it.attributes]
+    assert len(found) == lost

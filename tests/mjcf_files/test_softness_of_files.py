@@ -87,6 +87,14 @@ def test_integrators_of_other_kinds_are_reported(tmp_path, integrator, lost):
     assert [(it.element, it.attributes) for it in found] == [("mujoco/option", ("integrator",))] * lost
 
 
+@pytest.mark.parametrize("count", [0, 3])
+def test_sweeps_without_slipping_are_reported(tmp_path, count):
+    (tmp_path / "file.xml").write_text(f'<mujoco><option noslip_iterations="{count}"/></mujoco>')
+    with World() as world:
+        found = world.load(tmp_path / "file.xml").ignored.that_matter
+    assert [it.attributes for it in found] == [("noslip_iterations",)] * (count > 0)
+
+
 def test_contacts_that_yield_otherwise_than_the_first_geom_are_reported(tmp_path):
     geoms = '<geom size=".1"/><geom size=".2" solref=".1 1"/>'
     geoms += '<geom size=".3" contype="0" conaffinity="0" margin="1"/>'

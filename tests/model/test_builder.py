@@ -86,7 +86,7 @@ def test_arrays_grow_with_their_contents():
         before = arrays.state.replacements
         rows.append(arrays.append(SPECS[1], IDENTITY))
         grew.append(arrays.state.replacements > before)
-    assert grew[0]
+    assert any(grew)
     assert not all(grew)
     assert [row.tree for row in rows] == list(range(20))
     assert arrays.used["link"] == 20 * 10

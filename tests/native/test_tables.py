@@ -1,13 +1,14 @@
 """Tables of arrays that grow."""
 
 import ctypes
+import itertools
 from typing import Any
 
 import numpy as np
 import pytest
 
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, State
-from carom.native.tables import ArrayTable, array_view, fields_of
+from carom.native.tables import ArrayTable, array_view, fields_of, room_ahead
 
 
 @pytest.fixture(params=[None, 1, 3], ids=["shared", "one world", "three worlds"])
@@ -115,6 +116,29 @@ def test_structs_share_the_memory_of_the_arrays(table):
         assert view.strides[: view.ndim] == list(array.strides[: view.ndim]) or view.strides[0] == 0
         assert view.shape[: view.ndim] == list(array.shape[: view.ndim])
         assert whole or part in struct.fields[field].entry.fields
+
+
+@pytest.mark.parametrize("declared", [Model, State])
+def test_the_first_arrays_lie_in_one_block_of_memory(declared):
+    table = ArrayTable(declared)
+    arrays = [getattr(table.struct(), name) for name in table.struct().fields]
+    starts = [view.data for view in arrays]
+    assert all((start - starts[0]) % 64 == 0 for start in starts)
+    spans = sorted((table._memory[name].ctypes.data, table._memory[name].nbytes) for name in table._memory)
+    assert all(first + size <= after for (first, size), (after, _) in itertools.pairwise(spans))
+    assert spans[-1][0] + spans[-1][1] - spans[0][0] < sum(size + 64 for _, size in spans)
+    assert {view.data for view in arrays} == {start for start, _ in spans}
+
+
+def test_tables_grow_again_only_when_there_are_several_times_as_many_rows():
+    table, made = ArrayTable(Model), 0
+    for count in range(1, 301):
+        needed = {"link": count, "dof": 6 * count, "position": 7 * count}
+        assert table.lacks(needed) == any(table.capacity[axis] < rows for axis, rows in needed.items())
+        if table.lacks(needed):
+            made += 1
+            table.reserve(room_ahead(needed))
+    assert made <= 5
 
 
 def test_entry_views_show_blocks_column_by_column():

@@ -27,7 +27,11 @@ URDF = """<?xml version="1.0"?>
 </robot>"""
 SDF = """<sdf version="1.6"><model name="box"><plugin name="p" filename="f"/><link name="body">
   <inertial><mass>2</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model></sdf>"""
-MJCF_OPTIONS = {"timestep": 0.01, "gravity": (0.0, 0.0, -9.81), "solver_residual_threshold": 1e-11}
+MJCF_OPTIONS = {
+    "timestep": 0.01, "gravity": (0.0, 0.0, -9.81), "solver_residual_threshold": 1e-11,
+    "o_margin": 0.0, "o_solref": (0.02, 1.0), "o_solimp": (0.9, 0.95, 0.001, 0.5, 2.0),
+    "o_friction": (1.0, 1.0, 0.005, 0.0001, 0.0001),
+}  # fmt: skip
 MJCF = """<mujoco model="m"><option timestep="0.01"/>
   <default><geom friction="1"/><default class="used"><geom fluidshape="ellipsoid"/></default></default>
   <worldbody><body name="arm"><joint name="j" armature="0.1"/><geom class="used" size="0.1"/>

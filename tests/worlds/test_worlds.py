@@ -20,9 +20,10 @@ from tests.worlds.same_bits import assert_same_bits
 
 import pybullet_data
 from carom import Body, World, Worlds
-from carom.description import Pose
+from carom.description import JointType, Pose
 from carom.errors import SimulationWarning
-from carom.layouts.codes import UserConstraintKind
+from carom.layouts.codes import MOTOR_MAX_IMPULSE, MOTOR_VELOCITY_CLAMP, PD_MAX_FORCE, UserConstraintKind
+from carom.model.body_spec import BodySpec, LinkSpec
 from carom.worlds import memory
 
 DATA = pybullet_data.getDataPath()
@@ -258,6 +259,35 @@ def test_a_world_that_is_not_finite_halts_alone_and_can_be_restored(
     assert not worlds.halted.any()
     worlds.step(12)
     assert_same_bits(worlds, 1, lone)
+
+
+@pytest.mark.parametrize(
+    ("field", "column"),
+    [("dof_motor", MOTOR_MAX_IMPULSE), ("dof_motor", MOTOR_VELOCITY_CLAMP), ("dof_pd", PD_MAX_FORCE)],
+)
+def test_a_bound_that_is_no_number_does_not_hide_what_it_bounds(
+    arm: tuple[World, Body], field: str, column: int
+) -> None:
+    world, body = arm
+    body.joints[0].set_position_target(0.5, max_force=10.0)
+    worlds = Worlds(world, 2)
+    worlds._engine.arrays.state.numpy[field][1, body.velocity_index[0], column] = np.nan
+    with pytest.warns(SimulationWarning, match="world 1 is halted"):
+        worlds.step()
+    assert worlds.halted.tolist() == [False, True]
+
+
+def test_a_bound_of_a_spherical_motor_that_is_no_number_does_not_hide_what_it_bounds() -> None:
+    bob = LinkSpec(
+        "bob", mass=1.0, inertia=(0.1, 0.1, 0.1), joint_name="ball", joint_type=JointType.SPHERICAL
+    )
+    world = World()
+    body = world.load(BodySpec("pendulum", LinkSpec("base"), [bob], fixed_base=True))
+    body.joints[0].set_orientation_target((0.0, 0.0, 0.6, 0.8), max_force=10.0)
+    worlds = Worlds(world, 2)
+    worlds._engine.arrays.state.numpy["dof_motor"][1, body.velocity_index[0], MOTOR_MAX_IMPULSE] = np.nan
+    with pytest.warns(SimulationWarning, match="world 1 is halted"):
+        worlds.step()
 
 
 def test_when_all_worlds_are_halted_nothing_happens(balls: tuple[World, Body, Body]) -> None:

@@ -40,9 +40,16 @@ def _names(table: str) -> frozenset[str]:
 
 AT_LIMITS = _names("at_limits.json")
 """Files with a joint that stands exactly at one of its limits when it is loaded."""
-IMMOVABLE = _names("immovable.json")
-"""Files with a body whose base cannot move."""
 CHILDREN_FIRST = _names("children_first.json")
 """Files that list a link before its parent."""
 FINE = _names("fine.json")
 """Files with a hull of very many corners, and meshes that make one."""
+LONG_AND_ROUND = _names("long_and_round.json")
+"""Files that show cylinders or capsules."""
+SWEPT: dict[str, tuple[float, float]] = {
+    name: (least, greatest)
+    for name, (least, greatest) in json.loads(
+        Path(__file__).with_name("swept.json").read_text(encoding="utf-8")
+    ).items()
+}
+"""The least and the greatest radius [m] of the capsules that MJCF files give by two points."""

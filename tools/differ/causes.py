@@ -14,13 +14,13 @@ from tools.differ.assets import (
     FILES,
     FINE,
     FIXED,
-    GEAR,
-    IMMOVABLE,
+    LONG_AND_ROUND,
     PRISMATIC,
     SPHERICAL,
+    SWEPT,
 )
 from tools.differ.compare import Difference
-from tools.differ.programs import Call
+from tools.differ.programs import Call, all_references, references
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,8 @@ _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
 _ROUND = frozenset({2, 4, 7})
 _LONG_AND_ROUND = frozenset({4, 7})
 _LABELS_OF_A_LINK = 1 << 24
+_SEVERAL_BODIES = frozenset({"loadSDF", "loadMJCF"})
+_SAME_SHADE = 12.0
 _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
@@ -70,7 +72,8 @@ _LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
 _OF_SIMPLIFIED_HULLS = 2e-3
-_SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.25, 0.7
+_MARGIN_OF_SWEPT = 0.04
+_SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.12, 0.9
 _MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
@@ -150,36 +153,6 @@ def _poses(seen: Seen) -> Iterator[Call]:
     for call in seen.before:
         if call["f"] == "createConstraint" and call["a"][4] in (PRISMATIC, FIXED):
             yield call
-
-
-def holds_what_cannot_move(seen: Seen) -> bool:
-    """Whether both ends of a constraint are bases that may be fixed, or the world."""
-    made = {call["id"]: call for call in seen.before}
-    return any(
-        call["f"] == "createConstraint"
-        and call["a"][4] != GEAR
-        and call["a"][1] == -1
-        and _may_be_fixed(made, call["a"][0])
-        and (call["a"][2] == -1 or (call["a"][3] == -1 and _may_be_fixed(made, call["a"][2])))
-        for call in seen.before
-    )
-
-
-def _may_be_fixed(made: dict[int, Call], body: Any) -> bool:
-    """Whether a body was made without mass, with a fixed base, from a file that says so, or fixed later."""
-    call = made[body["$"]] if isinstance(body, dict) and body["$"] in made else None
-    if call is None:
-        return False
-    if any(_sets_mass_of_base(later, body, 0.0) for later in made.values()):
-        return True
-    if call["f"] == "createMultiBody":
-        return not (call["a"][:1] or [call["k"].get("baseMass", 0)])[0]
-    return bool(call["k"].get("useFixedBase")) or call["a"][0] in IMMOVABLE
-
-
-def _sets_mass_of_base(call: Call, body: dict[str, Any], mass: float) -> bool:
-    """Whether a call gives the base of a body a mass."""
-    return call["f"] == "changeDynamics" and call["a"][:2] == [body, -1] and call["k"].get("mass") == mass
 
 
 def limits_what_has_none(seen: Seen) -> bool:
@@ -270,13 +243,26 @@ def is_a_little_nearer(seen: Seen) -> bool:
     return 0.0 < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
 
 
+def _made_for(seen: Seen, argument: Any) -> list[Call]:
+    """The calls that an argument refers to, and those that these refer to."""
+    made = {call["id"]: call for call in seen.before[:-1]}
+    waiting, found = references(argument), list[Call]()
+    while waiting:
+        call = made.get(waiting.pop())
+        if call is not None:
+            found.append(call)
+            waiting |= all_references(call)
+    return found
+
+
 def is_farther_from_a_fine_hull(seen: Seen) -> bool:
-    """Whether the points are a little farther than PyBullet's, and there is a hull of very many corners."""
+    """Whether points are a little farther than PyBullet's, and one shape is a hull of very many corners."""
     theirs, ours = seen.difference.place[1:3]
     if not 0.0 < ours[8] - theirs[8] < _OF_SIMPLIFIED_HULLS:
         return False
+    asked = [*seen.call["a"], *seen.call["k"].values()]
     return abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED and any(
-        _is_fine(call) for call in seen.before
+        map(_is_fine, _made_for(seen, asked))
     )
 
 
@@ -286,10 +272,24 @@ def _is_fine(call: Call) -> bool:
     return name in FINE
 
 
+def _swept(seen: Seen) -> list[tuple[float, float]]:
+    """The least and the greatest radius of capsules given by two points, of each body that has some."""
+    loaded = [call["a"][0] for body in seen.call["a"][:2] for call in _made_for(seen, body) if call["a"]]
+    return [SWEPT[name] for name in loaded if isinstance(name, str) and name in SWEPT]
+
+
 def crosses_capsules(seen: Seen) -> bool:
-    """Whether links of a body from MJCF, where capsules are given by two points, are in each other deeper."""
+    """Whether capsules given by two points are in each other deeper, at most by the sum of their radii."""
     theirs, ours = seen.difference.place[1:3]
-    return seen.loads(".xml") and ours[8] < theirs[8] < 0.0
+    radii = [greatest for _, greatest in _swept(seen)]
+    return len(radii) == 2 and -sum(radii) - _ROUNDED < ours[8] < theirs[8] < 0.0
+
+
+def is_as_thick_as_a_margin(seen: Seen) -> bool:
+    """Whether PyBullet's points are nearer, by what a capsule given by two points lacks of its margin."""
+    theirs, ours = seen.difference.place[1:3]
+    least = min((least for least, _ in _swept(seen)), default=_MARGIN_OF_SWEPT)
+    return 0.0 < ours[8] - theirs[8] < _MARGIN_OF_SWEPT - least
 
 
 def hits_another_at_the_same_place(seen: Seen) -> bool:
@@ -316,6 +316,12 @@ def forgets_forces(seen: Seen) -> bool:
             applied = False
         applied |= call["f"].startswith("applyExternal")
     return False
+
+
+def spells_a_path_shorter(seen: Seen) -> bool:
+    """Whether paths are the same but for slashes that follow slashes."""
+    theirs, ours = map(str, seen.difference.place[1:3])
+    return theirs != ours == re.sub("//+", "/", theirs)
 
 
 def numbers_a_child_first(seen: Seen) -> bool:
@@ -352,20 +358,29 @@ def stands_out_round(seen: Seen) -> bool:
 
 
 def shades_as_a_ball(seen: Seen) -> bool:
-    """Whether a pixel whose colour differs shows a body made of cylinders or capsules, or from a file."""
-    label = int(str(seen.difference.place.theirs).rsplit(" of ", 1)[1])
-    made = [call for call in seen.before if call["f"].startswith(("load", "createMultiBody"))]
-    number = label % _LABELS_OF_A_LINK
-    if label < 0 or not made:
+    """Whether a pixel that is lighter or darker shows a body with cylinders or capsules."""
+    said, ours = seen.difference.place[1:3]
+    theirs = [float(part) for part in str(said).split("differ: [")[1].split("]")[0].split(",")]
+    changes = [b - a for a, b in zip(theirs, ours, strict=True)]
+    if min(changes) < -_SAME_SHADE and max(changes) > _SAME_SHADE:
         return False
-    # A file may hold several bodies, so that those after it have higher numbers.
-    body = made[min(number, len(made) - 1)]
-    if any(not call["f"].startswith(("loadURDF", "createMultiBody")) for call in made[: number + 1]):
-        return True
-    said = str([body["a"], body["k"]])
-    return body["f"] == "loadURDF" or any(
-        f"{{'$': {call['id']}}}" in said and _is_long_and_round(call) for call in seen.before
-    )
+    body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
+    if body is None:
+        return False
+    if body["f"].startswith("load"):
+        return body["a"][0] in LONG_AND_ROUND
+    return any(map(_is_long_and_round, _made_for(seen, [body["a"], body["k"]])))
+
+
+def _maker_of(seen: Seen, label: int) -> Call | None:
+    """The call that made the body with a label in images."""
+    number = label % _LABELS_OF_A_LINK
+    for call in seen.before if label >= 0 else ():
+        if call["f"].startswith(("load", "createMultiBody")):
+            number -= len(FILES.get(call["a"][0], ((),))) if call["f"] in _SEVERAL_BODIES else 1
+            if number < 0:
+                return call
+    return None
 
 
 def _is_long_and_round(call: Call) -> bool:

@@ -27,8 +27,8 @@ from tools.differ.causes import (
     has_joints,
     hits_another_at_the_same_place,
     holds_half_a_turn,
-    holds_what_cannot_move,
     is_a_little_nearer,
+    is_as_thick_as_a_margin,
     is_farther_from_a_fine_hull,
     is_the_same_rotation,
     limits_what_has_none,
@@ -41,6 +41,7 @@ from tools.differ.causes import (
     reaches_from_positions,
     rounder,
     shades_as_a_ball,
+    spells_a_path_shorter,
     stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
@@ -127,6 +128,18 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getClosestPoints depth") and crosses_capsules(seen),
     ),
     Known(
+        "Those thinner than 4 cm are nearer in PyBullet",
+        lambda seen: seen.differs("getClosestPoints distance") and is_as_thick_as_a_margin(seen),
+    ),
+    Known(
+        "name files without doubled slashes",
+        lambda seen: (
+            seen.call["f"] in ("getCollisionShapeData", "getVisualShapeData")
+            and seen.difference.place.field.endswith(".4")
+            and spells_a_path_shorter(seen)
+        ),
+    ),
+    Known(
         "Where a ray meets two bodies at the same place",
         lambda seen: seen.differs("rayTest hit", "rayTestBatch hit") and hits_another_at_the_same_place(seen),
     ),
@@ -161,11 +174,7 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("getCameraImage colour") and casts_shadows(seen),
     ),
     Known(
-        "Constraints between bodies that cannot move",
-        lambda seen: seen.differs("@probe") and holds_what_cannot_move(seen),
-    ),
-    Known(
-        "So do limits that `changeDynamics` gives to fixed and spherical joints",
+        "Limits that `changeDynamics` gives to fixed and spherical joints",
         lambda seen: seen.differs("@probe") and limits_what_has_none(seen),
     ),
     Known(

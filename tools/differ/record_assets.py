@@ -1,8 +1,9 @@
 """Writes `assets.json`: which files of its `pybullet_data` PyBullet loads, and the types of their joints.
 
 `at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
-`immovable.json` those with a body whose base cannot move, `children_first.json` those that list a link before
-its parent, and `fine.json` those with a hull of very many corners, and meshes that make one.
+`children_first.json` those that list a link before its parent, and `fine.json` those with a hull of very many
+corners, and meshes that make one. `long_and_round.json` are those that show cylinders or capsules, and
+`swept.json` those with capsules that are given by two points, with the least and the greatest radius [m].
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -11,6 +12,7 @@ import glob
 import json
 import os
 import time
+from xml.etree import ElementTree
 
 import pybullet as p
 import pybullet_data
@@ -76,6 +78,23 @@ def lists_a_child_first(name):
     return any(p.getJointInfo(body, j)[16] >= j for j in range(p.getNumJoints(body)))
 
 
+def shows_something_long_and_round(body):
+    """Whether a body shows a cylinder or a capsule."""
+    return any(shape[2] in (p.GEOM_CYLINDER, p.GEOM_CAPSULE) for shape in p.getVisualShapeData(body))
+
+
+def radii_of_swept(name):
+    """The least and the greatest radius of the capsules that an MJCF file gives by two points, or None."""
+    root = ElementTree.parse(name).getroot()
+    default = root.find("default/geom")
+    usual = {} if default is None else default.attrib
+    geoms = [{**usual, **geom.attrib} for body in root.iter("body") for geom in body.iter("geom")]
+    radii = [
+        float(geom["size"].split()[0]) for geom in geoms if "fromto" in geom and geom.get("type") == "capsule"
+    ]
+    return [min(radii), max(radii)] if radii else None
+
+
 def makes_a_fine_hull(name):
     """Whether the hull of a mesh has many corners."""
     return is_fine(p.createMultiBody(1, p.createCollisionShape(p.GEOM_MESH, fileName=name)))
@@ -89,7 +108,8 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, limits, immovable, children_first = [], [], [], []
+    lines, limits, children_first, long_and_round = [], [], [], []
+    swept = {}
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
         if any(word in name for word in LEFT_OUT) or not holds(load, name):
@@ -99,16 +119,24 @@ def main():
         if time.time() - start > SLOW or len(bodies) > MANY_BODIES:
             continue
         types = [[p.getJointInfo(body, j)[2] for j in range(p.getNumJoints(body))] for body in bodies]
+        if any(map(shows_something_long_and_round, bodies)):
+            long_and_round.append(name)
+        if name.endswith(".xml") and radii_of_swept(name):
+            swept[name] = radii_of_swept(name)
         if any(map(at_limit, bodies)):
             limits.append(name)
-        if any(p.getDynamicsInfo(body, -1)[0] == 0 for body in bodies):
-            immovable.append(name)
         if holds(has_a_fine_hull, name):
             fine.append(name)
         lines.append(f"{json.dumps(name)}: {json.dumps(types, separators=(',', ':'))}")
         if name.endswith("urdf") and holds(lists_a_child_first, name):
             children_first.append(name)
-    tables = {"at_limits": limits, "immovable": immovable, "children_first": children_first, "fine": fine}
+    tables = {
+        "at_limits": limits,
+        "children_first": children_first,
+        "fine": fine,
+        "long_and_round": long_and_round,
+        "swept": swept,
+    }
     for table, rows in tables.items():
         with open(os.path.join(folder, f"{table}.json"), "w") as file:
             file.write(json.dumps(rows, indent=1) + "\n")

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from carom.description.actuator import ActuatorSpec
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
 
 if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
     from carom.description.deformable import Deformable
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from typing import Any
 
 from carom.engine.contact_arrays import ContactArrays
@@ -47,6 +48,12 @@ class Workspace:
         self.pair_rows: ArrayTable = ArrayTable(PairRows, world_count, ROW_ENTRY_VIEWS)
         self.soft_work: ArrayTable = ArrayTable(SoftWork, world_count)
         self.structs: KernelStructs = KernelStructs()
+
+    def with_own_launches(self) -> Workspace:
+        """The same memory with launches of its own, for another thread that steps other worlds in it."""
+        other = copy(self)
+        other.structs = KernelStructs()
+        return other
 
     @property
     def tables(self) -> tuple[ArrayTable, ...]:

@@ -19,6 +19,8 @@ class DeviceTable(ArrayTable):
     that `lasts` keep their contents when they grow.
     """
 
+    _in_one_block = False
+
     def __init__(
         self,
         device: Device,

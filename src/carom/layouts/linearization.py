@@ -4,7 +4,7 @@ A *state* is positions, velocities and activations, a *column* a state or an inp
 of the tangent space, see `linearization.tangent`.
 """
 
-from carom.layouts.types import Int32, Ints, Reals, Vector3, Vectors3, real, struct
+from carom.layouts.types import Int32, Ints, Reals, Vector3, Vector4, Vectors3, real, struct
 
 # What a dof is first of, where changes of positions are no differences of numbers.
 SCALAR_DOF, BASE_DOF, BALL_DOF, PLANE_DOF = 0, 1, 2, 3
@@ -24,7 +24,7 @@ FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
 YIELDING_LIMIT, YIELDING_FRICTION, BALL_LIMIT, MUSCLE_ROW, YIELDING_USER, BOUNDED_SUM, BASE_SPRING = range(
     3, 10
 )
-FEATURES, YIELDING_CONTACT, ANISOTROPY, ANCHOR, BOUNCE, TORSION = range(10, 16)
+FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION = range(10, 16)
 
 # What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
 # their equations.
@@ -84,6 +84,14 @@ class TouchingLinks:
     direction1: Vector3  # of friction
     direction2: Vector3
     reach: Int32  # number of dofs that move a link of both: see `StepBatch.reach`
+    friction: Vector3  # coefficients: lateral, rolling, spinning
+    stated: Int32  # 1: a pair of the file states them, so that they do not follow those of the links
+    gain: real  # by how much the requested normal velocity falls with the distance [1/s]
+    # How the normal row yields, and those of lateral friction: which share of the velocity before the step is
+    # kept; softness, velocity per impulse [1/kg]; its derivatives by the distance [1/(kg m)] and by the
+    # coefficient of lateral friction [1/kg].
+    normal_law: Vector4
+    lateral_law: Vector4
 
 
 @struct
@@ -106,6 +114,9 @@ class StepBatch:
     force: Reals  # twice n x columns: with the accelerations of free motion, and with those of the solver
     impulse: Reals  # n: of rows on dofs, less those that are known
     row_impulse: Reals  # r
+    # Of rows that slide: the velocity that they still ask for, with its sign turned, and the effective mass.
+    row_asked: Reals  # r
+    row_mass: Reals
     jacobian: Reals  # r x n
     through: Reals  # r x n, derivatives of right sides by velocities after free motion
     side: Reals  # r x columns, those by states and inputs

@@ -155,8 +155,8 @@ class StepLinearizer:
             if self._of_motion and not parameters.isotropic_friction:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
-                for place, it in enumerate(zip(taken, motions, strict=True)):
-                    self._add_sliding(memory, place, *it)
+                for place, motion in enumerate(motions):
+                    self._add_sliding(memory, place, motion)
                 kernels.finish(count)
             else:
                 kernels.solve(count)
@@ -218,7 +218,7 @@ class StepLinearizer:
         memory.row_impulse[place, :count] = rows.impulses
         return rows.names
 
-    def _add_sliding(self, memory: StepMemory, place: int, taken: TakenStep, motion: FreeMotion) -> None:
+    def _add_sliding(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
         """Add to the rows of contacts that slide how their directions change with parameters of inertia.
 
         Two rows slide opposite to the changes of their impulses, for which both effective masses count.
@@ -235,8 +235,8 @@ class StepLinearizer:
                 jacobian = memory.jacobian[place, row]
                 response = memory.inverse[place] @ jacobian
                 driven = response @ motion.mass_input_derivatives(response, self._inputs)
-                along = sign * memory.row_impulse[place, other] * float(jacobian @ taken.solved)
-                memory.side[place, second, self._width :] += along * driven / float(jacobian @ response) ** 2
+                along = sign * memory.row_impulse[place, other] * memory.row_asked[place, row]
+                memory.side[place, second, self._width :] += along * driven * memory.row_mass[place, row] ** 2
             first += 2
 
 

@@ -21,6 +21,7 @@ from carom.layouts.linearization import (
     GEAR_ROW,
     LIMIT_ROW,
     MOTOR_ROW,
+    MOVING_BASE,
     MUSCLE_ROW,
     ROLLING_FRICTION,
     ROW_HOLDS,
@@ -31,7 +32,6 @@ from carom.layouts.linearization import (
     SHAPE_KINDS,
     SPINNING_FRICTION,
     TORSION,
-    YIELDING_CONTACT,
     YIELDING_FRICTION,
     YIELDING_LIMIT,
     YIELDING_USER,
@@ -59,7 +59,8 @@ _CONTACTS = {
 }
 _PROBLEMS_OF_CONTACTS = {
     FEATURES: 'a {} has no exact derivatives: use method="differences"',
-    YIELDING_CONTACT: "{} yields, so that it has no exact derivatives",
+    MOVING_BASE: "{} with a fixed base that has a velocity has no exact derivatives: "
+    'use method="differences"',
     ANISOTROPY: "{}: anisotropic friction has no exact derivatives",
     ANCHOR: "{}: friction anchors have no exact derivatives",
     BOUNCE: "{}: a bounce has no exact derivatives",

@@ -31,7 +31,8 @@ class _OwnRows(Engine):
     """An engine whose worlds have rows of their own in the workspace: results of steps are read there."""
 
     def _make_workspaces(self, threads: int) -> list[Workspace]:
-        return [Workspace(self.arrays.world_count)] * threads
+        first = Workspace(self.arrays.world_count)
+        return [first, *(first.with_own_launches() for _ in range(threads - 1))]
 
 
 class Copies:

@@ -7,10 +7,10 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
 
 if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
     from carom.model.builder import TreeRows, WorldArrays
 
 _AXIS = "actuator"

@@ -14,6 +14,12 @@ from carom.model.shape_arrays import ShapeArrays, Surface
 MAX_BYTES = 1 << 20
 """Bodies with larger rows, those of large triangle meshes, are written anew each time [bytes]."""
 
+MAX_ROWS = 4096
+"""Longer tables are not kept to write the next body to."""
+
+_spare: list[tuple[WorldArrays, ShapeArrays]] = []
+"""Empty tables, or none while a thread writes to them."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class BodyRows:
@@ -50,13 +56,17 @@ def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
     Raises:
         DescriptionError: The file of a mesh cannot be used.
     """
-    arrays, shapes = WorldArrays(), ShapeArrays()
+    # Tables are kept for the next body; those of a body that could not be written are not.
+    arrays, shapes = _spare.pop() if _spare else (WorldArrays(), ShapeArrays())
+    shorten = shapes.way_back(), arrays.way_back()
     rows = arrays.append(spec, IDENTITY)
     shapes.append(spec, rows, surfaces)
     body = shapes.body_of(rows)
+    # A longer table would hold its memory for ever.
+    is_small = max(*shapes.capacity.values(), *arrays.model.capacity.values()) <= MAX_ROWS
     written = BodyRows(
         rows.count,
-        shapes.used,
+        dict(shapes.used),
         arrays.row_changes.packed(rows.count),
         shapes.table.row_changes.packed(shapes.used),
         arrays.row_changes.first_rows(rows.count),
@@ -66,4 +76,8 @@ def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
         tuple(body.widening),
         shapes.breaking_fraction,
     )
+    if is_small and not _spare:
+        for step in shorten:
+            step()
+        _spare.append((arrays, shapes))
     return written if len(written.rows) + len(written.shape_rows) <= MAX_BYTES else None

@@ -9,19 +9,21 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 from struct import pack, unpack
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
-from carom.description.actuator import ActuatorSpec
 from carom.description.compliance import Compliance
 from carom.description.joint import JOINT_CODE
-from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import IDENTITY, Vector3
-from carom.description.sensor import SensorSpec
-from carom.description.site import SiteSpec
 from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
 from carom.model.soft_spec import SoftSpec
+
+if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
+    from carom.description.keyframe import BodyKeyframe
+    from carom.description.sensor import SensorSpec
+    from carom.description.site import SiteSpec
 
 BASE = -1
 # Bullet's default [1/s], a float32 in its source.

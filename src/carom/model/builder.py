@@ -32,7 +32,7 @@ from carom.model.actuator_rows import check_joint_ranges, join_actuators, write_
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
-from carom.native.tables import ArrayTable
+from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
 if TYPE_CHECKING:
     from carom.model.body_rows import BodyRows
@@ -93,8 +93,8 @@ class WorldArrays:
 
     def __init__(self, world_count: int = 1) -> None:
         self.world_count = world_count
-        self.model: ArrayTable = ArrayTable(Model, references=_INDEX_FIELDS)
-        self.state: ArrayTable = ArrayTable(State, world_count)
+        self.model: ArrayTable = ArrayTable(Model, first_capacity=ROOM_AT_FIRST, references=_INDEX_FIELDS)
+        self.state: ArrayTable = ArrayTable(State, world_count, first_capacity=ROOM_AT_FIRST)
         self.used: dict[str, int] = dict.fromkeys(
             (
                 "tree",
@@ -148,9 +148,13 @@ class WorldArrays:
 
     def reserve(self, **more: int) -> None:
         """Make room for more rows on the named axes."""
-        needed = {axis: self.used[axis] + count for axis, count in more.items()}
-        for table in self.tables:
-            table.reserve(needed)
+        self._make_room({axis: self.used[axis] + count for axis, count in more.items()})
+
+    def _make_room(self, needed: dict[str, int]) -> None:
+        if self.model.lacks(needed) or self.state.lacks(needed):
+            # Both at once: what is derived from their arrays is made again if either of them grows.
+            for table in self.tables:
+                table.reserve(room_ahead(needed))
 
     def append(self, spec: BodySpec, base_pose: Pose) -> TreeRows:
         """Add a body at rest, its joints at zero, the inertial frame of its base at a world pose."""
@@ -194,8 +198,7 @@ class WorldArrays:
         """Add a body at rest whose rows are known, and return its rows here; see `append`."""
         used, count = self.used, known.count
         needed = {axis: used[axis] + number for axis, number in count.items()}
-        self.model.reserve(needed)
-        self.state.reserve(needed)
+        self._make_room(needed)
         rows = TreeRows(used["tree"], {axis: used[axis] for axis in count}, count)
         self.row_changes.put(known.rows, rows.first, known.packed_count)
         self._write_start(rows, base_pose)

@@ -56,7 +56,11 @@ def sdf_bodies(
         cursor=cursor,
         xacro_args=xacro_args,
     )
-    return [(assemble(placed.robot, fixed_base=placed.fixed_base), placed.pose) for placed in robots]
+    as_written = cursor is not None
+    return [
+        (assemble(placed.robot, fixed_base=placed.fixed_base, as_written=as_written), placed.pose)
+        for placed in robots
+    ]
 
 
 def mjcf_bodies(

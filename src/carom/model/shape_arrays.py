@@ -21,7 +21,7 @@ from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
-from carom.native.tables import ArrayTable
+from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
 if TYPE_CHECKING:
     from carom.model.body_rows import BodyRows
@@ -115,7 +115,7 @@ class ShapeArrays:
     """
 
     def __init__(self) -> None:
-        self.table: ArrayTable = ArrayTable(Shapes, references=_INDEX_FIELDS)
+        self.table: ArrayTable = ArrayTable(Shapes, first_capacity=ROOM_AT_FIRST, references=_INDEX_FIELDS)
         self.filters: PairFilters = PairFilters(self.table)
         self.used: dict[str, int] = dict.fromkeys(("link", *AXES), 0)
         self.breaking_fraction: float = BREAKING_FRACTION
@@ -169,7 +169,7 @@ class ShapeArrays:
         ]
         needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
         needed["link"] = self.used["link"] + len(links)
-        self.table.reserve(needed)
+        self._make_room(needed)
         self._bodies[rows.first["link"]] = body
         self._write_links(body, spec, links)
         self._write_pieces(body, pieces)
@@ -181,7 +181,7 @@ class ShapeArrays:
         """Add the shapes of a body whose rows are known and are in the model already; see `append`."""
         used, count = self.used, known.shape_count
         needed = {axis: used[axis] + number for axis, number in count.items()}
-        self.table.reserve(needed)
+        self._make_room(needed)
         first = {axis: used[axis] for axis in AXES}
         body = BodyShapes(
             rows,
@@ -198,6 +198,10 @@ class ShapeArrays:
         self.changes += 1
         if self.breaking_fraction != known.breaking_fraction:
             self._write_breaking(body)
+
+    def _make_room(self, needed: dict[str, int]) -> None:
+        if self.table.lacks(needed):
+            self.table.reserve(room_ahead(needed))
 
     def body_of(self, rows: TreeRows) -> BodyShapes:
         """The rows of a body's shapes."""

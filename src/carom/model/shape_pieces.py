@@ -29,7 +29,7 @@ from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
 from carom.geometry.heightfield import heightfield_surface
-from carom.geometry.hull import SMALLEST, convex_hull
+from carom.geometry.hull import SMALLEST, convex_hull, extreme_points
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.layouts.codes import ShapeKind
@@ -159,7 +159,7 @@ def _made_hull(points: NDArray[np.float64], margin: float) -> ShapePiece:
         # The points are too far apart, or flat and so far apart that rounding removes the added thickness.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
     low, high = points.min(axis=0), points.max(axis=0)
-    if margin > 0.0 and (high - low).min() > SMALLEST:
+    if _has_a_grid(low, high, margin):
         # Coplanar points may not be coplanar on the grid, so the faces are determined first.
         hull = hull.with_vertices(_on_grid(hull.vertices, low, high))
     return _polyhedral(ShapeKind.HULL, hull, margin)
@@ -182,6 +182,27 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
     counts = np.array([len(loop) for loop in loops], dtype=np.int32)
     return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts), MARGIN)
+
+
+def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:
+    """The corners (n, 3) that PyBullet has of a hull [m]: those of the hull of all points on the grid.
+
+    Moving points may make other ones corners. Flat hulls, and those without a margin, are on no grid.
+
+    Raises:
+        ValueError: There are no points, or one is not finite.
+    """
+    points = np.asarray(hull.points, dtype=np.float64).reshape(-1, 3)
+    if len(points):
+        low, high = points.min(axis=0), points.max(axis=0)
+        if _has_a_grid(low, high, hull.margin):
+            points = _on_grid(points, low, high)
+    return extreme_points(points)
+
+
+def _has_a_grid(low: NDArray[np.float64], high: NDArray[np.float64], margin: float) -> bool:
+    """Whether PyBullet would make a hull on a grid: one with these bounds and margin [m]."""
+    return margin > 0.0 and bool((high - low).min() > SMALLEST)
 
 
 def _on_grid(

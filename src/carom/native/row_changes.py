@@ -17,6 +17,8 @@ import numpy as np
 
 from carom.layouts.table_rows import RowField, RowReference, RowTable
 
+_PACK_FIELD = Struct("5q").pack
+
 
 class RowsOfAxis(NamedTuple):
     """An array of a table.
@@ -25,11 +27,13 @@ class RowsOfAxis(NamedTuple):
         axis: Name of the axis its rows belong to.
         array: Its memory: one axis of rows, or an axis of worlds and one of rows, and those of an entry.
         per_world: Whether it has an axis of worlds.
+        address: Address of the memory.
     """
 
     axis: str
     array: np.ndarray
     per_world: bool
+    address: int
 
 
 class RowNumbers(NamedTuple):
@@ -58,12 +62,9 @@ class RowChanges:
         place = {axis: number for number, axis in enumerate(self._axes)}
         self._zeros = (0,) * len(self._axes)
         self._fields = fields
-        field_records = (RowField * len(fields))()
-        for record, (axis, array, per_world) in zip(field_records, fields, strict=True):
-            row_bytes = array.itemsize * prod(array.shape[1 + per_world :])
-            record.memory, record.axis, record.row_bytes = array.ctypes.data, place[axis], row_bytes
-            record.worlds = array.shape[0] if per_world else 1
-            record.world_bytes = row_bytes * array.shape[1] if per_world else 0
+        field_records = (RowField * len(fields)).from_buffer_copy(
+            b"".join([_packed_field(field, place[field.axis]) for field in fields])
+        )
         reference_records = (RowReference * len(references))()
         for record, (axis, target, array) in zip(reference_records, references, strict=True):
             record.memory, record.row_bytes = array.ctypes.data, array.strides[0]
@@ -80,7 +81,7 @@ class RowChanges:
         """The first rows of each array in turn, so many on each axis, of the first world."""
         return b"".join(
             (array[0] if per_world else array)[: count.get(axis, 0)].tobytes()
-            for axis, array, per_world in self._fields
+            for axis, array, per_world, _ in self._fields
         )
 
     def packed(self, numbers: Mapping[str, int]) -> bytes:
@@ -106,6 +107,15 @@ class RowChanges:
             self._take(self._table, *cut, done)
 
         return remove
+
+
+def _packed_field(field: RowsOfAxis, axis: int) -> bytes:
+    """A field as a `RowField`."""
+    strides = field.array.strides
+    if field.per_world:
+        worlds, rows = field.array.shape[:2]
+        return _PACK_FIELD(field.address, worlds, strides[1] * rows, strides[1], axis)
+    return _PACK_FIELD(field.address, 1, 0, strides[0], axis)
 
 
 @cache

@@ -11,7 +11,9 @@ share it: kernels see a stride of zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache, partial
+from ctypes import addressof, c_char
+from functools import cache, lru_cache, partial
+from math import prod
 from struct import Struct as Packing
 from typing import Any, NamedTuple, cast
 
@@ -23,10 +25,20 @@ from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis
 from carom.native.undo import Undo
 from carom.native.zeros import zeros
 
+ROOM_AT_FIRST = 64
+"""Rows of the tables of a world's bodies from the start: few worlds have one body only."""
+
 NUMPY_REAL = np.float64
 """The type of real numbers in kernels."""
 
 _FIRST_CAPACITY = 16
+# Tables with few rows get room for several times as many, so that the axes of a world grow at the same time.
+_FEW_ROWS, _AHEAD = 1024, 8
+# The first field of an `ArrayView`, and the others, as bytes.
+_PACK_ADDRESS, _PACK_SHAPE = Packing("=Q").pack, Packing("=Q8iHH4x").pack
+_BYTES = np.dtype(np.uint8)
+# Arrays of one block begin at multiples of it [bytes], those of cache lines.
+_ALIGNMENT = 64
 
 
 def numbers_of(numbers: np.ndarray) -> memoryview[float]:
@@ -94,6 +106,12 @@ def array_view(array: np.ndarray, axes: int = 1) -> ArrayView:
     return view
 
 
+def address_of(array: np.ndarray) -> int:
+    """Address of a contiguous array that can be written to; quicker than with NumPy."""
+    memory: Any = array
+    return addressof(c_char.from_buffer(memory)) if array.size else array.ctypes.data
+
+
 def put_array(struct: Any, name: str, values: npt.ArrayLike) -> np.ndarray:
     """Make a field of a struct an array of one axis with values of shape (n, *shape of an entry).
 
@@ -113,6 +131,33 @@ def put_zeros(struct: Any, name: str, count: int) -> np.ndarray:
     return put_array(struct, name, zeros((count, *field.shape), field.scalar))
 
 
+def room_ahead(needed: Mapping[str, int]) -> dict[str, int]:
+    """Rows to reserve on each axis if there is no room for those that are needed."""
+    return {axis: _AHEAD * count if count <= _FEW_ROWS else count for axis, count in needed.items()}
+
+
+@lru_cache(maxsize=4096)
+def _shape_of_view(shape: tuple[int, ...], strides: tuple[int, ...], per_world: bool) -> bytes:
+    """An `ArrayView` of a contiguous array, without its address."""
+    if per_world:
+        step = 0 if shape[0] == 1 else strides[0]
+        return _PACK_SHAPE(0, shape[0], shape[1], 0, 0, step, strides[1], 0, 0, 2, 0)
+    return _PACK_SHAPE(0, shape[0], 0, 0, 0, strides[0], 0, 0, 0, 1, 0)
+
+
+@cache
+def _first_fields(
+    struct: type[Struct], capacity: int
+) -> tuple[dict[str, tuple[int, tuple[int, ...], np.dtype[Any]]], int]:
+    """Place [bytes], shape and type of the arrays of a struct in one block of memory, and its size."""
+    fields, size = {}, 0
+    for name, field in fields_of(struct).items():
+        shape = (*((1,) if field.per_world else ()), capacity, *field.shape)
+        fields[name] = size, shape, field.scalar
+        size += -(-prod(shape) * field.scalar.itemsize // _ALIGNMENT) * _ALIGNMENT
+    return fields, size
+
+
 class ArrayTable:
     """Arrays by name, grouped by axis, those of two dimensions with a leading world axis.
 
@@ -122,6 +167,8 @@ class ArrayTable:
         capacity: Number of allocated rows, by axis.
         replacements: Number of times that an array was replaced by another.
     """
+
+    _in_one_block = True
 
     def __init__(
         self,
@@ -149,10 +196,26 @@ class ArrayTable:
         self._memory: dict[str, np.ndarray] = {}
         self.numpy: dict[str, np.ndarray] = {}
         self._made: Any = None
+        self._views: dict[str, tuple[np.ndarray, bytes]] = {}
+        self._addresses: dict[str, tuple[np.ndarray, int]] = {}
         self._bytes: dict[str, memoryview[int]] = {}
         self._by_axis: dict[str, list[np.ndarray]] = {}
         self._row_changes: RowChanges | None = None
-        self._replace({name: self._allocate(name, first_capacity) for name in self._fields})
+        self._replace(self._first_arrays(first_capacity))
+
+    def _first_arrays(self, capacity: int) -> dict[str, np.ndarray]:
+        """Arrays with so many rows, those of a single world next to each other in memory."""
+        if set(self._world_counts.values()) != {1} or not self._in_one_block:
+            return {name: self._allocate(name, capacity) for name in self._fields}
+        fields, size = _first_fields(self._struct, capacity)
+        block = zeros((size,), _BYTES)
+        start = address_of(block)
+        arrays = {}
+        for name in self._fields:
+            offset, shape, scalar = fields[name]
+            arrays[name] = array = np.ndarray(shape, scalar, block, offset)
+            self._addresses[name] = array, start + offset
+        return arrays
 
     def _allocate(self, name: str, capacity: int) -> np.ndarray:
         field = self._fields[name]
@@ -168,18 +231,18 @@ class ArrayTable:
 
         def put() -> None:
             self._memory.update(arrays)
-            self._follow()
+            self._follow(arrays)
 
         Undo().at_once(put)
 
-    def _follow(self) -> None:
-        """Update everything derived from the arrays."""
+    def _follow(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Update everything derived from arrays that were replaced."""
         self.replacements += 1
         self._made = None
         self._bytes.clear()
         self._by_axis.clear()
         self._row_changes = None
-        for name, array in self._memory.items():
+        for name, array in arrays.items():
             field = self._fields[name]
             self.capacity[field.axis] = array.shape[int(field.per_world)]
             if array.dtype.names is None:
@@ -208,14 +271,20 @@ class ArrayTable:
             memory = self._bytes[name] = memoryview(array).cast("B")
         return memory
 
+    def lacks(self, needed: Mapping[str, int]) -> bool:
+        """Whether there is no room for `needed` rows on one of the axes."""
+        capacity = self.capacity
+        # A loop takes half the time of `any`.
+        for axis, count in needed.items():  # noqa: SIM110
+            if count > capacity.get(axis, count):
+                return True
+        return False
+
     def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
         """Make room for `needed` rows by axis, growing by a least factor; true if arrays were replaced."""
-        capacity = self.capacity
-        for axis, count in needed.items():
-            if count > capacity.get(axis, count):
-                break
-        else:
+        if not self.lacks(needed):
             return False
+        capacity = self.capacity
         grown = {
             axis: max(count, int(growth * capacity[axis]))
             for axis, count in needed.items()
@@ -257,6 +326,7 @@ class ArrayTable:
         other = ArrayTable.__new__(ArrayTable)
         other.__dict__.update(self.__dict__)
         other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
+        other._views, other._addresses = {}, {}
         other._by_axis, other._row_changes = {}, None
         other._world_counts = self._world_counts.copy()
         other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
@@ -307,7 +377,7 @@ class ArrayTable:
     def row_fields(self) -> list[RowsOfAxis]:
         """All arrays."""
         return [
-            RowsOfAxis(field.axis, self._memory[name], field.per_world)
+            RowsOfAxis(field.axis, self._memory[name], field.per_world, self._address(name))
             for name, field in self._fields.items()
         ]
 
@@ -345,14 +415,35 @@ class ArrayTable:
         return self._made
 
     def _make_struct(self) -> Any:
-        struct = self._struct()
         shown = self._shown()
-        fields = fields_of(self._struct)
-        for name, array in shown.items():
-            setattr(struct, name, array_view(array, 2 if fields[name].per_world else 1))
-        # Setting a field copies the view, which no longer keeps the array alive.
+        # All fields are arrays, so the struct is their views, one after the other.
+        struct = self._struct.from_buffer_copy(
+            b"".join([self._view(name, shown[name]) for name in fields_of(self._struct)])
+        )
+        # The views do not keep the arrays alive.
         struct.memory = shown
         return struct
+
+    def _view(self, name: str, array: np.ndarray) -> bytes:
+        """The `ArrayView` of a field, made once for an array."""
+        known = self._views.get(name)
+        if known is not None and known[0] is array:
+            return known[1]
+        source = self._entry_views.get(name, name)
+        view = _PACK_ADDRESS(self._address(source)) + _shape_of_view(
+            array.shape, array.strides, self._fields[source].per_world
+        )
+        self._views[name] = array, view
+        return view
+
+    def _address(self, name: str) -> int:
+        """Address of a field's array."""
+        array, known = self._memory[name], self._addresses.get(name)
+        if known is not None and known[0] is array:
+            return known[1]
+        address = address_of(array)
+        self._addresses[name] = array, address
+        return address
 
     def _shown(self) -> dict[str, np.ndarray]:
         """The arrays of all fields, including `entry_views`, which show others scalar by scalar."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from typing import TYPE_CHECKING
 
 from carom.native.cpu import core_count
 from carom.native.uninterrupted import uninterrupted
+
+if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
 
 Task = Callable[[], None]
 
@@ -46,6 +49,9 @@ def _work(pending: object) -> None:
 
 @cache
 def _pool() -> ThreadPoolExecutor:
+    # It brings in all of `logging`; a single core does without.
+    from concurrent.futures import ThreadPoolExecutor
+
     return ThreadPoolExecutor(MAX_WORKERS, thread_name_prefix="carom-render")
 
 

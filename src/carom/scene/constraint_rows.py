@@ -104,7 +104,7 @@ class ConstraintRows:
 
         Args:
             arrays: The arrays of the world.
-            active: The constraints that can move something, as in Bullet's list.
+            active: The constraints that have rows, as in Bullet's list.
             tags: Island of each body that can move, by number.
             user_rows: Row of each user constraint in `UserConstraints`, by number.
             minimum_island_size: Islands are merged until they have more constraints than this.
@@ -167,7 +167,7 @@ class ConstraintRows:
         """The values of a row, of `_FIELDS`."""
         it = rows[row]
         link = it.body.first_link + 1 + it.joint if it.user is None else user_rows[it.user.id]
-        tree, place = it.moving_body.rows.tree, self._places[row]
+        tree, place = it.sorted_with.rows.tree, self._places[row]
         actuator = it.body.rows.first["actuator"] + it.actuator
         bounds = (it.lower, it.upper, it.twist, it.max_impulse)
         return it.kind, tree, link, place, *bounds, actuator, it.reference, it.impedance, it.margin
@@ -202,7 +202,7 @@ def _count(arrays: WorldArrays, changes: Iterable[tuple[JointConstraint, bool]])
 
 def _trees_of(constraint: JointConstraint) -> list[int]:
     """The trees that a constraint acts on."""
-    trees = [constraint.moving_body.rows.tree]
+    trees = [constraint.sorted_with.rows.tree]
     if constraint.user is not None and constraint.user.child is not None:
         trees.append(constraint.user.child.rows.tree)
     return trees

@@ -67,10 +67,12 @@ class JointConstraint:
             self.reference, self.impedance = compliance.reference, compliance.impedance
 
     @property
-    def moving_body(self) -> Body:
-        """`body`; if that cannot move, the other body of a user constraint."""
+    def sorted_with(self) -> Body:
+        """The body with whose rows it is sorted: `body`, or that at the other end if it ties a still link."""
         other = None if self.user is None else self.user.child
-        return other if other is not None and not any(moving_links(self.body)) else self.body
+        if self.user is None or other is None or other is self.body:
+            return self.body
+        return self.body if moving_links(self.body)[self.user.parent_link + 1] else other
 
 
 class JointConstraints:
@@ -202,8 +204,8 @@ class JointConstraints:
         return kept
 
     def _is_active(self, constraint: JointConstraint) -> bool:
-        """Whether a constraint can move something: one between two fixed bodies is not active."""
-        return constraint.moving_body.id in self.tags.tags()
+        """Whether a constraint has a row; user constraints are sorted even if they tie what cannot move."""
+        return constraint.user is not None or constraint.body.id in self.tags.tags()
 
     def _moving_links(self) -> list[tuple[int, int]]:
         """Body and link (the base is 0) of all links that can move, as Bullet numbers them."""

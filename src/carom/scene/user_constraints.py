@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.description.tendon import WORLD, Path
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
+    from carom.description.tendon import Path
     from carom.scene.body import Body
 
 # An impulse per substep, as in Bullet, until a force is set.
@@ -156,6 +156,10 @@ class UserConstraint:
 
     def path_terms(self) -> list[tuple[Any, ...]]:
         """The values of the rows of its path's parts, of `_PATH_FIELDS`."""
+        if not (parts := self.both_paths):
+            return []
+        from carom.description.tendon import WORLD
+
         base = self.parent.first_link + 1
         return [
             (
@@ -168,7 +172,7 @@ class UserConstraint:
                 -1 if part.side_link == WORLD else base + part.side_link,
                 part.side or (0.0, 0.0, 0.0),
             )
-            for part in self.both_paths
+            for part in parts
         ]
 
     def terms(self, first_path: int) -> tuple[Any, ...]:

@@ -209,6 +209,12 @@ class DescriptionLoading(BodyAdding):
     def load_sdf(self, path: str | Path, *, scale: float = 1.0, strict: bool = False) -> list[Body]:
         """Add the models that an SDF file describes, at their poses in the file.
 
+        They are read as the format's specification says: inertia from the file (a mass of 1 kg where none is
+        stated), frames, axes in the frames that they name, limits only where they are stated, damping,
+        friction and springs of joints, gearboxes as couplings of joints. Links and joints of a model inside
+        another have names like `arm::hand`. The frame of a link that a joint carries is that of the joint.
+        Models whose joints form loops are refused.
+
         Args:
             path: The file; one that comes with `pybullet_data` is found by its name.
             scale: Factor on lengths.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -14,6 +13,8 @@ _NAME = "world.carom"
 
 def packed_world(world: World) -> bytes:
     """The content of the file that `World.save` writes."""
+    from tempfile import TemporaryDirectory
+
     with TemporaryDirectory() as folder:
         path = Path(folder) / _NAME
         world.save(path)
@@ -22,6 +23,8 @@ def packed_world(world: World) -> bytes:
 
 def unpacked_world(kind: type[World], content: bytes) -> World:
     """The world of `packed_world`."""
+    from tempfile import TemporaryDirectory
+
     world = kind()
     with TemporaryDirectory() as folder:
         path = Path(folder) / _NAME

@@ -238,5 +238,11 @@ def _required(cls: Any) -> frozenset[str]:
 @cache
 def _hints(cls: Any) -> dict[str, Any]:
     """Types of the fields of a dataclass, also those that its module imports for type checkers only."""
-    hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray})
+    from carom.description.actuator import ActuatorSpec
+    from carom.description.keyframe import BodyKeyframe
+    from carom.description.sensor import SensorSpec
+    from carom.description.site import SiteSpec
+
+    specs = {it.__name__: it for it in (ActuatorSpec, BodyKeyframe, SensorSpec, SiteSpec)}
+    hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray, **specs})
     return {field.name: hints[field.name] for field in fields(cls)}

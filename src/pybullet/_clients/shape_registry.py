@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from carom.description import Collision, Visual
 from carom.native.undo import Undo
 
 if TYPE_CHECKING:
-    from carom.description import Robot
+    from pybullet._loading.kept_descriptions import KeptDescription
 
 Shape = TypeVar("Shape")
 
@@ -67,10 +67,11 @@ class ShapeRegistry:
     """The shapes of one client: collision shapes, and visual shapes, each a tuple of visuals.
 
     Attributes:
-        alone: Descriptions of bodies without links, with what they were made from.
+        described: Descriptions of bodies made by `createMultiBody`, by their arguments; see
+            `pybullet._loading.kept_descriptions`.
     """
 
     def __init__(self) -> None:
         self.collisions: ShapeTable[CollisionShape] = ShapeTable()
         self.visuals: ShapeTable[tuple[Visual, ...]] = ShapeTable()
-        self.alone: OrderedDict[tuple[Any, ...], tuple[Any, Any, Robot]] = OrderedDict()
+        self.described: OrderedDict[bytes, KeptDescription] = OrderedDict()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose, Robot
@@ -31,14 +32,13 @@ from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates, with_f
 
 if TYPE_CHECKING:
     from carom.model.body_spec import BodySpec
+    from pybullet._loading.kept_descriptions import KeptDescription
 
 __all__ = ["createMultiBody"]
 
 Shape = TypeVar("Shape")
 
 _FAILED = "createMultiBody failed."
-# Number of bodies without links whose descriptions are kept.
-_KEPT = 64
 
 JOINT_TYPES = {
     JOINT_REVOLUTE: JointType.REVOLUTE,
@@ -178,30 +178,60 @@ def createMultiBody(
         >>> p.getNumJoints(pendulum)
         1
     """
-    given = locals()
     client = client_of(physicsClientId)
     maximal, bits = integer(useMaximalCoordinates, "useMaximalCoordinates"), integer(flags, "flags")
     pose = optional_pose(basePosition, baseOrientation, _FAILED, "base")
-    lists = _link_lists({name: values for name, values in given.items() if name.startswith("link")})
+    base = (
+        baseMass,
+        baseCollisionShapeIndex,
+        baseVisualShapeIndex,
+        baseInertialFramePosition,
+        baseInertialFrameOrientation,
+    )
+    lists = {
+        "linkMasses": linkMasses,
+        "linkCollisionShapeIndices": linkCollisionShapeIndices,
+        "linkVisualShapeIndices": linkVisualShapeIndices,
+        "linkPositions": linkPositions,
+        "linkOrientations": linkOrientations,
+        "linkInertialFramePositions": linkInertialFramePositions,
+        "linkInertialFrameOrientations": linkInertialFrameOrientations,
+        "linkParentIndices": linkParentIndices,
+        "linkJointTypes": linkJointTypes,
+        "linkJointAxis": linkJointAxis,
+    }
+    from pybullet._loading.kept_descriptions import kept_description, key_of
+
+    key = key_of((*base, *lists.values()))
+    kept = kept_description(client.shapes, key)
     places = None if batchPositions is None else sequence(batchPositions, _FAILED, "batchPositions")
+    if kept is None:
+        kept = _described(client, key, base, _link_lists(lists))
     batch = [vector3(place, _FAILED, "batchPositions") for place in places or ()]
-    inertial = baseInertialFramePosition, baseInertialFrameOrientation
-    base_frame = optional_pose(*inertial, _FAILED, "baseInertialFrame")
-    base = _mass(baseMass, "baseMass"), base_frame, baseCollisionShapeIndex, baseVisualShapeIndex
-    if lists["linkMasses"]:
-        links = [_link(client, 0, *base), *_links(client, lists)]
-        robot = Robot("", tuple(links), tuple(_joints(lists)))
-    else:
-        robot = _alone(client, *base)
     warn_of_coordinates("createMultiBody", maximal, client)
-    spec = _assembled(robot, with_flags_of_colours(client, max(bits, 0)))
+    spec = _assembled(kept.robot, with_flags_of_colours(client, max(bits, 0)))
     poses = [Pose(place, pose.orientation) for place in batch or [pose.position]]
     ids = add_bodies(client, [(spec, pose) for pose in poses], _FAILED, maximal=maximal > 0)
-    for number in (baseCollisionShapeIndex, *lists["linkCollisionShapeIndices"]):
-        shape = client.shapes.collisions.get(integer(number, "collision shape"))
+    for number in kept.collisions:
+        shape = client.shapes.collisions.get(number)
         if shape is not None:
             shape.used = True
     return ids if batch else ids[0]
+
+
+def _described(
+    client: Client, key: bytes | None, base: tuple[Any, ...], lists: dict[str, tuple[Any, ...]]
+) -> KeptDescription:
+    """The description of a body, which is kept under the key of its arguments."""
+    from pybullet._loading.kept_descriptions import keep_description
+
+    mass, collision, visual, place, turn = base
+    frame = optional_pose(place, turn, _FAILED, "baseInertialFrame")
+    links = [_link(client, 0, _mass(mass, "baseMass"), frame, collision, visual), *_links(client, lists)]
+    robot = Robot("", tuple(links), tuple(_joints(lists)))
+    collisions = {integer(it, "collision shape") for it in (collision, *lists["linkCollisionShapeIndices"])}
+    visuals = {integer(it, "visual shape") for it in (visual, *lists["linkVisualShapeIndices"])}
+    return keep_description(client.shapes, key, robot, collisions, visuals)
 
 
 def _link_lists(lists: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
@@ -288,24 +318,6 @@ def _check_tree(parents: list[int]) -> None:
         hangs.update(way)
 
 
-def _alone(client: Client, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Robot:
-    """The description of a body without links: the same object for the same shapes, so it is made once."""
-    numbers = integer(collision_id, "collision shape"), integer(visual_id, "visual shape")
-    collision, visuals = client.shapes.collisions.get(numbers[0]), client.shapes.visuals.get(numbers[1])
-    collisions = None if collision is None else collision.collisions
-    kept = client.shapes.alone.get((mass, frame, *numbers))
-    # Numbers of removed shapes are given again, and heights of height fields replaced.
-    if kept is not None and kept[0] is collisions and kept[1] is visuals:
-        return kept[2]
-    robot = Robot("", (_link(client, 0, mass, frame, *numbers),), ())
-    missing = (collisions is None and numbers[0] >= 0) or (visuals is None and numbers[1] >= 0)
-    if not missing:
-        client.shapes.alone[(mass, frame, *numbers)] = collisions, visuals, robot
-        while len(client.shapes.alone) > _KEPT:
-            client.shapes.alone.popitem(last=False)
-    return robot
-
-
 def _link(client: Client, number: int, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Link:
     collision = _shape(client.shapes.collisions, collision_id, "collision")
     visuals = _shape(client.shapes.visuals, visual_id, "visual")
@@ -341,8 +353,19 @@ def _joint(
 
 
 def _assembled(robot: Robot, flags: int) -> BodySpec:
-    from carom.layouts.flags import LoadFlags
     from carom.soft.from_urdf import rigid_body
+
+    without, also = _flags_of_bodies()
+    try:
+        return rigid_body(robot, flags=(flags & ~without) | also, compound_margin=0.0)
+    except CaromError as problem:
+        fail(_FAILED, str(problem))
+
+
+@cache
+def _flags_of_bodies() -> tuple[int, int]:
+    """The flags that are for files only, and those that bodies of shapes always have."""
+    from carom.layouts.flags import LoadFlags
 
     of_files = (
         LoadFlags.MERGE_FIXED_LINKS
@@ -350,8 +373,4 @@ def _assembled(robot: Robot, flags: int) -> BodySpec:
         | LoadFlags.IGNORE_COLLISION_SHAPES
         | LoadFlags.PRINT_URDF_INFO
     )
-    kept = (LoadFlags(flags) & ~of_files) | LoadFlags.USE_IMPLICIT_CYLINDER
-    try:
-        return rigid_body(robot, flags=kept, compound_margin=0.0)
-    except CaromError as problem:
-        fail(_FAILED, str(problem))
+    return int(of_files), int(LoadFlags.USE_IMPLICIT_CYLINDER)

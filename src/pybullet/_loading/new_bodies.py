@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 from carom.description import Mesh
@@ -34,9 +35,7 @@ def warn_of_coordinates(
 
 def keep_flags_of_colours(client: Client, flags: int) -> None:
     """Note which colours a file was loaded with: what comes without flags of its own gets them, too."""
-    from carom.layouts.flags import LoadFlags
-
-    client.flags_of_colours = flags & int(LoadFlags.COLOURS)
+    client.flags_of_colours = flags & _colours()
 
 
 def with_flags_of_colours(client: Client, flags: int) -> int:
@@ -44,9 +43,15 @@ def with_flags_of_colours(client: Client, flags: int) -> int:
 
     `loadSDF` clears them.
     """
+    return (flags & ~_colours()) | client.flags_of_colours
+
+
+@cache
+def _colours() -> int:
+    """The flags about colours."""
     from carom.layouts.flags import LoadFlags
 
-    return (flags & ~int(LoadFlags.COLOURS)) | client.flags_of_colours
+    return int(LoadFlags.COLOURS)
 
 
 def add_bodies(

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from carom.description import Collision, ConvexHull, Cylinder, Geometry, Mesh
 from carom.description.pose import Pose, Vector3
-from carom.geometry.hull import extreme_points
 from carom.layouts.flags import LoadFlags
 from carom.model.inertia import is_in_place, placement
-from carom.model.shape_pieces import mesh_geometries, shape_pieces
+from carom.model.shape_pieces import grid_corners, mesh_geometries, shape_pieces
 from carom.native.products import product
 from carom.scene.body import Body
 from carom.scene.soft_body import SoftBody
@@ -58,8 +57,8 @@ def hull_corners(body: Body, link: int, index: int) -> tuple[Vector3, ...]:
 
 def _hulls(geometry: Geometry, index: int, implicit_cylinder: bool) -> Iterator[Corners]:
     match geometry:
-        case ConvexHull(points=points):
-            yield extreme_points(points)
+        case ConvexHull():
+            yield grid_corners(geometry)
         case Cylinder() if not implicit_cylinder:
             for piece in shape_pieces(geometry, implicit_cylinder=False):
                 if piece.polyhedron is not None:

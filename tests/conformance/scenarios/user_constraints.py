@@ -120,3 +120,28 @@ def body_dragged_by_its_constraint(p: Any) -> dict[str, Any]:
     released = simulate(p, 0.5, lambda: _observe(p, {"tree": body}), stride=8)
     thinned = {name: series[::8] for name, series in dragged.items()}
     return under("dragged", thinned) | under("released", released) | {"axis and pivots": [*info[5], *info[6]]}
+
+
+@scenario()
+def body_tied_to_what_cannot_move(p: Any) -> dict[str, Any]:
+    """A link of a free body is tied to the base of an arm, which is fixed: the arm has no part in it."""
+    body = _free_tree(p, [0.5, 0.2, 3])
+    arm = load(p, "seven_dof.urdf", useFixedBase=True)
+    constraint = p.createConstraint(
+        arm, -1, body, 1, p.JOINT_POINT2POINT, [0, 0, 0], [0.4, -0.9, 0.4], [0.5, 0.3, 0.2]
+    )
+    return simulate(p, 0.25, lambda: _observe(p, {"tree": body, "arm": arm}, constraint), stride=2)
+
+
+@scenario()
+def constraint_that_moves_nothing(p: Any) -> dict[str, Any]:
+    """A fixed body is tied to the world, beside an arm that is tied to a free one: only the order changes."""
+    arm = load(p, "seven_dof.urdf", useFixedBase=True)
+    body = _free_tree(p, [0.5, 0.2, 3])
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
+    wall = p.createMultiBody(0, box, -1, [20, 0, 0])
+    p.createConstraint(wall, -1, -1, -1, p.JOINT_POINT2POINT, [0, 0, 0], [0.1, 0, 0], [20.5, 0, 0])
+    constraint = p.createConstraint(
+        arm, 3, body, 1, p.JOINT_POINT2POINT, [0, 0, 0], [0.4, -0.9, 0.4], [0.5, 0.3, 0.2]
+    )
+    return simulate(p, 0.1, lambda: _observe(p, {"tree": body, "arm": arm}, constraint), stride=1)

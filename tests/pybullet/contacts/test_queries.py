@@ -207,6 +207,12 @@ def test_overlaps_with_what_has_no_shape(client: int) -> None:
     assert p.getOverlappingObjects([0, -1, 0], [1.4, 1, 1]) == ((body, -1),)
     assert p.getOverlappingObjects([1.5, 0, 0], [2, 1, 1]) == ((body, 0),)
     assert p.getOverlappingObjects([0, 0.0001, 0], [2, 1, 1]) is None
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    ball = p.createMultiBody(1, shape, basePosition=[1.5, 0.5, 0.5])
+    # Later calls take another way than the first ones.
+    for _ in range(4):
+        assert p.getOverlappingObjects([1.5, 0, 0], [2, 1, 1]) == ((body, 0), (ball, -1))
+    p.removeBody(ball)
     p.resetBasePositionAndOrientation(body, [5, 5, 5], [0, 0, 0, 1])
     assert p.getOverlappingObjects([4, 4, 4], [6, 6, 7]) == ((body, -1), (body, 0))
     panda = p.loadURDF(f"{pybullet_data.getDataPath()}/franka_panda/panda.urdf", useFixedBase=True)

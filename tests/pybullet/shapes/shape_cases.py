@@ -391,7 +391,7 @@ def hulls_of_file(p: Any) -> list[Any]:
     return [corner for link in range(p.getNumJoints(body)) for corner in corners(p, body, link)]
 
 
-# Corners come in another order, and from PyBullet on a grid of 10216 cells.
+# Corners come in another order.
 CORNER_CASES: dict[str, Callable[[Any], list[Any]]] = {
     **{
         f"corners: {name}": hull_of(name)

@@ -18,9 +18,6 @@ ANSWERS = json.loads(Path(__file__).with_name("shapes.json").read_text(encoding=
 ABSOLUTE = 1e-12
 """Below this, a figure is rounding."""
 
-CELL = 1.0 / 10216
-"""PyBullet moves the corners of hulls by up to a cell of this size across their bounds."""
-
 
 @pytest.fixture(autouse=True)
 def _world() -> None:
@@ -45,10 +42,9 @@ def test_corners_of_hulls_are_those_of_pybullet(name: str) -> None:
     assert ours.shape == theirs.shape
     if not len(ours):
         return
-    tolerance = 2.0 * CELL * float(np.ptp(theirs, axis=0).max()) + ABSOLUTE
     distances = np.abs(ours[:, None] - theirs[None]).max(axis=2)
-    assert distances.min(axis=0).max() <= tolerance
-    assert distances.min(axis=1).max() <= tolerance
+    assert distances.min(axis=0).max() <= ABSOLUTE
+    assert distances.min(axis=1).max() <= ABSOLUTE
 
 
 @pytest.mark.parametrize("name", REFUSED)

@@ -6,8 +6,6 @@ from pathlib import Path
 
 from carom.errors import DescriptionError
 from carom.formats.files import FileCache, read_bounded
-from carom.formats.mesh.collada import read_collada
-from carom.formats.mesh.gltf import read_gltf
 from carom.formats.mesh.obj import read_obj
 from carom.formats.mesh.part import MeshPart
 from carom.formats.mesh.ply import read_ply
@@ -19,12 +17,26 @@ MAX_FILE_BYTES = 512 << 20
 MAX_CACHED_BYTES = 256 << 20
 """Most memory that the meshes of unchanged files take; robots may have a hundred of them."""
 
+
+# Those of formats with texts of their own are imported when there is such a file.
+def _read_collada(data: bytes, file: Path) -> list[MeshPart]:
+    from carom.formats.mesh.collada import read_collada
+
+    return read_collada(data, file)
+
+
+def _read_gltf(data: bytes, file: Path) -> list[MeshPart]:
+    from carom.formats.mesh.gltf import read_gltf
+
+    return read_gltf(data, file)
+
+
 _READERS = {
     ".obj": read_obj,
     ".stl": read_stl,
-    ".dae": read_collada,
-    ".glb": read_gltf,
-    ".gltf": read_gltf,
+    ".dae": _read_collada,
+    ".glb": _read_gltf,
+    ".gltf": _read_gltf,
     ".ply": read_ply,
 }
 

@@ -32,6 +32,7 @@ _ACTUATORS = {
     "intvelocity": "dampratio inheritrange kp kv",
     "damper": "kv",
     "cylinder": "area bias diameter timeconst",
+    "dcmotor": "cogging controller inductance input lugre motorconst nominal resistance saturation thermal",
     "muscle": "force fpmax fvmax lengthrange lmax lmin range scale tausmooth timeconst vmax",
 }
 
@@ -66,14 +67,14 @@ _TENDON = (
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
-_UNBUILT = ("orientation", "pid", "adhesion", "dcmotor", "plugin")
+_UNBUILT = ("orientation", "pid", "adhesion", "plugin")
 
 _READ = {
     "mujoco": "model",
     "compiler": "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass coordinate "
     "eulerseq fitaabb inertiafromgeom inertiagrouprange meshdir settotalmass strippath texturedir",
     "option": "actuatorgroupdisable density gravity impratio integrator cone jacobian magnetic o_friction "
-    "o_margin o_solimp o_solref solver timestep viscosity wind",
+    "noslip_iterations o_margin o_solimp o_solref solver timestep viscosity wind",
     "mesh": "builtin class face file inertia name params refpos refquat scale vertex",
     "hfield": "elevation file name ncol nrow size",
     "texture": "class file name type",
@@ -132,8 +133,8 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
 
 _WITHOUT_LOSS = {
     "compiler": "discardvisual fusestatic passthrough savecanonical savecompiled saveinertial usethread",
-    "option": "ccd_iterations ccd_tolerance iterations ls_iterations ls_tolerance noslip_iterations "
-    "noslip_tolerance sdf_initpoints sdf_iterations tolerance",
+    "option": "ccd_iterations ccd_tolerance iterations ls_iterations ls_tolerance noslip_tolerance "
+    "sdf_initpoints sdf_iterations tolerance",
     "mesh": "content_type material maxhullvert normal smoothnormal texcoord",
     "hfield": "content_type",
     "model": "content_type",

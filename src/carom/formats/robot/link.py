@@ -90,8 +90,8 @@ def _read_inertial(context: FileContext, link: Element, name: str) -> Inertial:
         raise context.error(element, "<inertia> is missing")
     ixx, iyy, izz = (context.value(inertia, key) for key in ("ixx", "iyy", "izz"))
     products = ("ixy", "ixz", "iyz")
-    # In PyBullet, products of inertia count only when all three are given.
-    if context.written is not None:
+    # In PyBullet, products of inertia count only when all three are given; it has no cursor.
+    if context.cursor is not None:
         ixy, ixz, iyz = (context.value(inertia, key, 0.0) for key in products)
     elif all(context.states(inertia, key) for key in products):
         ixy, ixz, iyz = (context.value(inertia, key) for key in products)

@@ -13,12 +13,13 @@ class SdfContext(FileContext):
     """State of one reading; its root is the `<sdf>` element, and values are the text of child elements.
 
     Attributes:
-        has_frames: `relative_to` of links' poses counts; PyBullet ignores it.
+        as_written: `relative_to` of links' poses counts, and limits that are not stated are none; PyBullet
+            ignores the one and refuses or invents the others.
         words_are_true: `true` means 1 as in the format's specification, not 0 as in PyBullet.
     """
 
     words_are_true: bool = True
-    has_frames: bool = False
+    as_written: bool = False
 
     def text(self, parent: Element, tag: str) -> str | None:
         """The text of a child without surrounding white space; None if there is no such child."""
@@ -70,7 +71,7 @@ class SdfContext(FileContext):
                 element,
                 f"{len(numbers)} numbers instead of six; the last three are read as angles, as in PyBullet",
             )
-        if not self.has_frames and element.attributes.get("relative_to"):
+        if not self.as_written and element.attributes.get("relative_to"):
             self.warn(element, "relative_to is not supported; the pose is taken in the enclosing frame")
         scale = self.scale
         x, y, z = numbers[:3]

@@ -10,7 +10,7 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
 _MODEL = "__model__"
-_PLACED = ("link", "frame", "joint")
+_PLACED = ("link", "frame", "joint", "model")
 
 
 class Frames:
@@ -44,10 +44,16 @@ class Frames:
             base = element.attributes.get("attached_to")
         elif not base and element.tag == "joint":
             base = self._context.text(element, "child")
-        return own if not base else compose(self._named(stated or element, base), own)
+        return own if not base else compose(self.named(stated or element, base), own)
 
-    def _named(self, element: Element, name: str) -> Pose:
+    def named(self, element: Element, name: str) -> Pose:
+        """The pose of a frame in that of the model; errors are at the element that names it."""
         if name not in self._known:
+            inner, _, rest = name.partition("::")
+            if rest and inner in self._elements and self._elements[inner].tag == "model":
+                pose = Frames(self._context, self._elements[inner]).named(element, rest)
+                self._known[name] = compose(self.named(element, inner), pose)
+                return self._known[name]
             if name not in self._elements:
                 known = ", ".join(self._elements)
                 raise self._context.error(element, f"there is no frame {shown(name)}; there are {known}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from carom.description import Joint, JointLimit, JointType, Pose
 from carom.description.joint import WITHOUT_AXIS, WITHOUT_LIMIT
 from carom.description.pose import Vector3
@@ -18,8 +20,11 @@ from carom.formats.sdf.context import SdfContext
 from carom.formats.xml_element import Element
 
 WORLD = "world"
-_TYPES = {kind.value: kind for kind in JointType} | {"ball": JointType.SPHERICAL}
-_Z: Vector3 = (0.0, 0.0, 1.0)
+TYPES: dict[str, JointType] = {kind.value: kind for kind in JointType} | {"ball": JointType.SPHERICAL}
+"""Types by their names in files."""
+
+Z: Vector3 = (0.0, 0.0, 1.0)
+"""Axis of a joint that states none."""
 
 
 def read_sdf_joint(
@@ -33,12 +38,12 @@ def read_sdf_joint(
         DescriptionError: The name, type or a link is missing or unknown, or something inside is wrong.
     """
     name = context.required(element, "name")
-    kind = read_joint_type(context, element, _TYPES)
+    kind = read_joint_type(context, element, TYPES)
     pose = element.first("pose")
     if pose is not None and any(context.values(pose)):
         context.warn(pose, "ignored, as in PyBullet: the joint is at the origin of its child")
-    parent = _read_end(context, element, "parent", link_indices)
-    child = _read_end(context, element, "child", link_indices)
+    parent = read_end(context, element, "parent", link_indices)
+    child = read_end(context, element, "child", link_indices)
     axis, length = ALONG_X
     limit, damping, friction = JointLimit(), 0.0, 0.0
     axis_element = element.first("axis")
@@ -52,7 +57,22 @@ def read_sdf_joint(
     return Joint(name, kind, parent, child, frame, axis, length, limit, damping, friction)
 
 
-def _read_end(context: SdfContext, joint: Element, tag: str, link_indices: dict[str, int]) -> int:
+def read_bounds(context: SdfContext, axis: Element) -> JointLimit:
+    """The `<limit>` of an axis with the defaults of the format: what is not stated has no bound."""
+    element = axis.first("limit")
+    if element is None:
+        return JointLimit(effort=inf, velocity=inf)
+    effort, velocity = (context.bound(element, name, -1.0) for name in ("effort", "velocity"))
+    return JointLimit(
+        lower=context.bound(element, "lower", -inf),
+        upper=context.bound(element, "upper", inf),
+        effort=effort if effort >= 0.0 else inf,
+        velocity=velocity if velocity >= 0.0 else inf,
+    )
+
+
+def read_end(context: SdfContext, joint: Element, tag: str, link_indices: dict[str, int]) -> int:
+    """The index of the link at an end of a joint: `parent` or `child`."""
     name = context.text(joint, tag)
     if name is None:
         raise context.error(joint, f"<{tag}> is missing")
@@ -62,4 +82,4 @@ def _read_end(context: SdfContext, joint: Element, tag: str, link_indices: dict[
 def _read_axis(context: SdfContext, element: Element, kind: JointType) -> tuple[Vector3, float]:
     """Unit axis and the length it had in the file."""
     vector = context.triple(element, "xyz")
-    return (_Z, 1.0) if vector is None else unit_axis(context, element, kind, vector)
+    return (Z, 1.0) if vector is None else unit_axis(context, element, kind, vector)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Joint, Link, Material, Pose, Robot
+from carom.description import Joint, Link, Pose, Robot
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose
 from carom.errors import DescriptionError
@@ -13,9 +13,10 @@ from carom.formats.robot.context import shown
 from carom.formats.robot.link import MASSLESS, read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.sdf.context import SdfContext
-from carom.formats.sdf.frames import Frames
 from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import WORLD, read_sdf_joint
+from carom.formats.sdf.looks import read_material
+from carom.formats.sdf.parts import read_parts
 from carom.formats.xml_element import Element
 
 _WORDS = {"true": True, "false": False}
@@ -26,8 +27,34 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     """The robots of a `<model>`, one for each link that has no parent; raises `DescriptionError`."""
     name = context.required(element, "name")
     for child in element.children:
-        if child.tag in _IGNORED and not context.has_frames:
+        if child.tag in _IGNORED and not context.as_written:
             context.warn(child, f"{_IGNORED[child.tag]} ignored")
+    if context.as_written:
+        parts = read_parts(context, element)
+        links, poses, joints, joint_elements = parts.links, parts.poses, parts.joints, parts.elements
+    else:
+        links, poses, joints, joint_elements = _read_parts(context, element)
+    place, static = context.pose(element), _is_static(context, element)
+    carried = {joint.child for joint in joints}
+    roots = [index for index in range(len(links)) if index not in carried]
+    if len(roots) <= 1:
+        root = find_root(context, links, joints, joint_elements)
+        if context.as_written:
+            place = compose(place, poses[root])
+        # In PyBullet, the model's pose becomes that of its root link; the link's own pose is ignored.
+        return [PlacedRobot(_robot(context, name, links, joints, root), place, static)]
+    return [
+        PlacedRobot(
+            _part(context, name, links, joints, root, joint_elements), compose(place, poses[root]), static
+        )
+        for root in roots
+    ]
+
+
+def _read_parts(
+    context: SdfContext, element: Element
+) -> tuple[list[Link], list[Pose], list[Joint], list[Element]]:
+    """Links, their poses and joints, as PyBullet reads them."""
     links, poses = _read_links(context, element)
     joint_elements = list(element.all("joint"))
     indices = {link.name: index for index, link in enumerate(links)}
@@ -40,54 +67,21 @@ def read_model(context: SdfContext, element: Element) -> list[PlacedRobot]:
     lines: dict[str, int] = {}
     for joint in joint_elements:
         context.refuse_duplicate(joint, joint.attributes["name"], lines)
-    place, static = context.pose(element), _is_static(context, element)
-    carried = {joint.child for joint in joints}
-    roots = [index for index in range(len(links)) if index not in carried]
-    if len(roots) <= 1:
-        root = find_root(context, links, joints, joint_elements)
-        if context.has_frames:
-            place = compose(place, poses[root])
-        # In PyBullet, the model's pose becomes that of its root link; the link's own pose is ignored.
-        return [PlacedRobot(_robot(context, name, links, joints, root), place, static)]
-    return [
-        PlacedRobot(
-            _part(context, name, links, joints, root, joint_elements), compose(place, poses[root]), static
-        )
-        for root in roots
-    ]
+    return links, poses, joints, joint_elements
 
 
 def _read_links(context: SdfContext, model: Element) -> tuple[list[Link], list[Pose]]:
     links: list[Link] = []
     poses: list[Pose] = []
     lines: dict[str, int] = {}
-    frames = Frames(context, model) if context.has_frames else None
     for element in model.all("link"):
-        link = read_link(context, element, read_sdf_geometry, _read_material)
+        link = read_link(context, element, read_sdf_geometry, read_material)
         context.refuse_duplicate(element, link.name, lines)
         links.append(link)
-        poses.append(context.pose(element) if frames is None else frames.of(element))
+        poses.append(context.pose(element))
     if not links:
         raise context.error(model, "there are no links")
     return links, poses
-
-
-def _read_material(context: SdfContext, visual: Element) -> Material | None:
-    """The material of a visual, with the visual's name."""
-    element = visual.first("material")
-    if element is None:
-        return None
-    diffuse = _colour(context, element.first("diffuse"), (4,))
-    specular = _colour(context, element.first("specular"), (3, 4))
-    return Material(
-        visual.attributes.get("name") or "mat",
-        rgba=None if diffuse is None else (diffuse[0], diffuse[1], diffuse[2], diffuse[3]),
-        specular=None if specular is None else (specular[0], specular[1], specular[2]),
-    )
-
-
-def _colour(context: SdfContext, element: Element | None, counts: tuple[int, ...]) -> list[float] | None:
-    return None if element is None else context.parse_components(element, element.tag, element.text, counts)
 
 
 def _is_static(context: SdfContext, model: Element) -> bool:

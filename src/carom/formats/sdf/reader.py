@@ -77,7 +77,8 @@ class _Reading:
             root.attributes.get("version")
         context = SdfContext(file, root, self.scale, self.search)
         context.words_are_true = self.words_are_true
-        context.has_frames = self.cursor is not None
+        context.cursor = self.cursor
+        context.as_written = self.cursor is not None
         robots: list[PlacedRobot] = []
         for element in (root.first("world") or root).children:
             if element.tag == "model":

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
-from carom.description.actuator import ActuatorSpec
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
@@ -25,11 +24,11 @@ from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
 from carom.formats.urdf.moving_mass import report_motion_without_mass
 from carom.formats.urdf.rules import URDF_RULES
-from carom.formats.urdf.transmission import read_transmissions
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
 if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
     from carom.formats.xacro.document import Expanded
 
 Part = TypeVar("Part", Link, Joint)
@@ -135,6 +134,8 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
     root = find_root(context, links, joints, list(element.all("joint")))
     actuators: tuple[ActuatorSpec, ...] = ()
     if context.written is not None:
+        from carom.formats.urdf.transmission import read_transmissions
+
         actuators = read_transmissions(context, joints)
         report_motion_without_mass(context, links, joints)
         joints = checked_followers(context, joints)

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
+from typing import TYPE_CHECKING
 
 from carom.description import Joint, JointType
-from carom.description.actuator import ActuatorSpec, Motor
 from carom.formats.robot.context import FileContext
 from carom.formats.xml_element import Element
+
+if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
 
 _DRIVEN = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 _LOST = "nothing drives its joint but the motor of the joint"
@@ -26,6 +29,8 @@ def read_transmissions(context: FileContext, joints: Sequence[Joint]) -> tuple[A
         DescriptionError: A joint does not exist, a name is missing, or a reduction is not a number.
     """
     by_name = {joint.name: joint for joint in joints}
+    from carom.description.actuator import Motor
+
     motors: dict[str, ActuatorSpec] = {}
     for element in context.root.all("transmission"):
         stated = list(element.all("joint"))

@@ -2,13 +2,14 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.contact_compliance import yields
-from carom.kernels.linearization.contact_points import move_contact
+from carom.kernels.dynamics.kinematics import base_omega, base_velocity
+from carom.kernels.linearization.contact_points import greatest_of, move_contact
 from carom.kernels.linearization.dof_motion import find_axes, find_reach
 from carom.kernels.linearization.friction_rows import add_friction_rows
-from carom.kernels.linearization.link_rows import add_row_of_links, add_turning
+from carom.kernels.linearization.link_rows import add_row_of_links, parting
 from carom.kernels.linearization.rows import note_problem
-from carom.kernels.solver.contact_terms import combined_restitution, contact_friction, contact_stiffness
+from carom.kernels.linearization.yielding_rows import add_yielding, surfaces_of
+from carom.kernels.solver.contact_terms import combined_restitution
 from carom.kernels.structs import (
     Contacts,
     Model,
@@ -31,11 +32,11 @@ from carom.layouts.linearization import (
     CONTACT_FRICTION,
     CONTACT_ROW,
     FEATURES,
+    MOVING_BASE,
     ROLLING_FRICTION,
     SHAPE_KINDS,
     SPINNING_FRICTION,
     TORSION,
-    YIELDING_CONTACT,
 )
 
 
@@ -79,11 +80,32 @@ def has_factors(shapes: Shapes, world: Int32, link: Int32) -> bool:
 
 
 @func
-def refuse_surfaces(shapes: Shapes, steps: StepBatch, place: Int32, world: Int32, touch: TouchingLinks):
+def is_carried(model: Model, state: State, world: Int32, tree: Int32) -> bool:
+    """Whether a fixed base has been given a velocity."""
+    if model.tree[tree].fixed == 0:
+        return False
+    return greatest_of(base_omega(model, state, world, tree)) > 0.0 or (
+        greatest_of(base_velocity(model, state, world, tree)) > 0.0
+    )
+
+
+@func
+def refuse_surfaces(
+    model: Model,
+    state: State,
+    shapes: Shapes,
+    contacts: Contacts,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    touch: TouchingLinks,
+):
     """Note what has no exact derivatives of how two links touch."""
     a, b = touch.link_a, touch.link_b
-    if yields(shapes, world, a, b):
-        note_problem(steps, place, YIELDING_CONTACT, touch.known_as)
+    pair = contacts.contact_shapes[world, touch.contact]
+    for end in range(2):
+        if is_carried(model, state, world, shapes.shape_tree[wp.where(end == 0, pair[0], pair[1])]):
+            note_problem(steps, place, MOVING_BASE, touch.known_as)
     if has_factors(shapes, world, a) or has_factors(shapes, world, b):
         note_problem(steps, place, ANISOTROPY, touch.known_as)
     if shapes.link_friction_anchor[world, a] != 0 or shapes.link_friction_anchor[world, b] != 0:
@@ -103,23 +125,17 @@ def add_normal(
 ) -> Int32:
     """Add the normal row of a contact; returns its number among the rows of all worlds."""
     n = space.dofs
-    softness, erp = contact_stiffness(settings, shapes, world, touch.link_a, touch.link_b)
-    gap = contacts.contact_distance[world, touch.contact] + settings.contact_slop
-    gain = wp.where(gap > 0.0, real(1.0), erp) / settings.time_step
     impulse = contacts.contact_impulse[world, touch.contact][0]
     row = add_row_of_links(settings, space, steps, place, touch, CONTACT_ROW, 0, Int32(0), impulse)
     number = row - place * space.most_rows
     steps.alpha[row * space.most_rows + number] = 1.0
-    steps.beta[row * space.most_rows + number] = softness
     approach = real(0.0)
     for index in range(touch.reach):
         dof = steps.reach[place * n + index]
-        entry = place * n + dof
         free = steps.velocity[(3 * place + 1) * n + dof]
         approach -= steps.jacobian[row * n + dof] * free
-        parting = wp.dot(touch.normal, steps.moved_a[entry] - steps.moved_b[entry])
-        steps.side[row * space.columns + dof] -= gain * parting
-    add_turning(space, steps, place, touch, row, 1)
+        steps.side[row * space.columns + dof] -= touch.gain * parting(touch, steps, place * n + dof)
+    add_yielding(shapes, space, steps, place, world, touch, CONTACT_ROW, row, Int32(1))
     restitution = combined_restitution(shapes, world, touch.link_a, touch.link_b)
     if restitution > 0.0 and approach >= settings.restitution_threshold:
         note_problem(steps, place, BOUNCE, touch.known_as)
@@ -155,8 +171,9 @@ def add_contact(
     touch.direction2 = contacts.contact_direction2[world, contact]
     touch.reach = find_reach(model, space, steps, place, pair[2], pair[3])
     if move_contact(state, shapes, space, steps, place, world, touch, pair[0], pair[1]):
-        refuse_surfaces(shapes, steps, place, world, touch)
-        friction = contact_friction(shapes, world, pair[2], pair[3])
+        refuse_surfaces(model, state, shapes, contacts, steps, place, world, touch)
+        touch = surfaces_of(settings, shapes, contacts, world, touch)
+        friction = touch.friction
         impulse = contacts.contact_impulse[world, contact]
         normal = add_normal(settings, shapes, contacts, space, steps, place, world, touch)
         add_friction_rows(

@@ -6,8 +6,8 @@ from carom.kernels.linearization.dof_motion import follows
 from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.rows import add_row
 from carom.kernels.structs import Settings, StepBatch, StepSpace, TouchingLinks
-from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.linearization import MOVES_A, MOVES_B, ROW_HOLDS
+from carom.kernels.types import Int32, Vector3, Vector4, func, real
+from carom.layouts.linearization import CONTACT_FRICTION, CONTACT_ROW, MOVES_A, MOVES_B, ROW_HOLDS
 
 
 @func
@@ -15,6 +15,20 @@ def direction_of(touch: TouchingLinks, number: Int32) -> Vector3:
     """The normal (0), or a friction direction (1, 2)."""
     friction = wp.where(number == 1, touch.direction1, touch.direction2)
     return wp.where(number == 0, touch.normal, friction)
+
+
+@func
+def law_of_row(touch: TouchingLinks, kind: Int32) -> Vector4:
+    """How rows of a kind yield, see `TouchingLinks`; those of rolling and spinning friction are rigid."""
+    rigid = Vector4(0.0, 0.0, 0.0, 0.0)
+    sideways = wp.where(kind == CONTACT_FRICTION, touch.lateral_law, rigid)
+    return wp.where(kind == CONTACT_ROW, touch.normal_law, sideways)
+
+
+@func
+def parting(touch: TouchingLinks, steps: StepBatch, entry: Int32) -> real:
+    """Derivative of the distance of a contact by a dof, whose entry in its place is given."""
+    return wp.dot(touch.normal, steps.moved_a[entry] - steps.moved_b[entry])
 
 
 @func
@@ -109,7 +123,8 @@ def add_row_of_links(
 ) -> Int32:
     """Add a row along the direction `number` of a contact, or about it, without α and β.
 
-    How its rate changes as its Jacobian turns is kept in `steps.rate` for `add_turning`.
+    How its rate, less that of before the step which it keeps, changes as its Jacobian turns is kept in
+    `steps.rate` for `add_yielding`.
 
     Returns:
         Its number among the rows of all worlds.
@@ -117,6 +132,7 @@ def add_row_of_links(
     n = space.dofs
     row = add_row(space, steps, place, kind, ROW_HOLDS, touch.known_as, real(0.0), real(0.0))
     steps.row_impulse[row] = impulse
+    kept = law_of_row(touch, kind)[0]
     clear(steps.rate, row * n, n)
     direction, none = direction_of(touch, number), Vector3(0.0, 0.0, 0.0)
     linear, about = wp.where(angular == 1, none, direction), wp.where(angular == 1, direction, none)
@@ -130,7 +146,7 @@ def add_row_of_links(
         if steps.reach_side[entry] & MOVES_B != 0:
             value -= wp.dot(axis, about + wp.cross(touch.point_b, linear)) + wp.dot(lift, linear)
         steps.jacobian[row * n + dof] = value
-        solved = steps.velocity[(3 * place + 2) * n + dof]
+        solved = steps.velocity[(3 * place + 2) * n + dof] - kept * steps.velocity[3 * place * n + dof]
         for rank in range(touch.reach):
             other = steps.reach[place * n + rank]
             bent = jacobian_change(space, steps, place, touch, number, angular, dof, other)
@@ -138,20 +154,3 @@ def add_row_of_links(
             steps.force[force] += impulse / settings.time_step * bent
             steps.rate[row * n + other] += solved * bent
     return row
-
-
-@func
-def add_turning(
-    space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks, first: Int32, count: Int32
-):
-    """Add to the right sides of rows with α how the rates of their Jacobians change with the positions."""
-    room = space.most_rows
-    number = first - place * room
-    for row in range(first, first + count):
-        for other in range(count):
-            share = steps.alpha[row * room + number + other]
-            if share != 0.0:
-                for index in range(touch.reach):
-                    dof = steps.reach[place * space.dofs + index]
-                    rate = steps.rate[(first + other) * space.dofs + dof]
-                    steps.side[row * space.columns + dof] -= share * rate

@@ -116,7 +116,7 @@ def merge_moving(settings: Settings, state: State, pair_rows: PairRows, world: I
 
 @func
 def list_constraints(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
-    """Make the linked list of constraints of each island."""
+    """Make the linked list of constraints of each island; those of what cannot move are in none."""
     for tree in range(settings.tree_count):
         pair_rows.tree_first_constraint[world, tree] = _NONE
     place = settings.constraint_count + 0
@@ -124,7 +124,7 @@ def list_constraints(settings: Settings, model: Model, state: State, pair_rows: 
         place -= 1
         constraint = state.batch_constraint[world, place]
         tree = model.constraint[constraint].tree
-        if not is_left_out(state, world, tree):
+        if model.tree[tree].dof_count > 0 and not is_left_out(state, world, tree):
             root = state.tree_island[world, tree]
             pair_rows.constraint_next[world, constraint] = pair_rows.tree_first_constraint[world, root]
             pair_rows.tree_first_constraint[world, root] = constraint

@@ -5,11 +5,11 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from carom.description.actuator import ActuatorSpec
 from carom.errors import DescriptionError
 from carom.layouts.codes import DRIVEN, ActivationDynamics
 
 if TYPE_CHECKING:
+    from carom.description.actuator import ActuatorSpec
     from carom.scene.body import Body
 
 

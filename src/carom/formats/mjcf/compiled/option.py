@@ -57,6 +57,9 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     if (integrator := attributes.get("integrator")) in _INTEGRATORS:
         reason = "the only integrator is semi-implicit Euler"
         context.leave_out(element, _INTEGRATORS[integrator], reason, "integrator")
+    if context.number(element, attributes, "noslip_iterations", 0.0) > 0.0:
+        reason = "friction that sticks yields as contacts do; nothing makes it rigid afterwards"
+        context.leave_out(element, "what is held by friction creeps", reason, "noslip_iterations")
     if "actuatorgroupdisable" in attributes:
         text = attributes["actuatorgroupdisable"]
         groups = context.numbers(element, "actuatorgroupdisable", text, 0, 31)

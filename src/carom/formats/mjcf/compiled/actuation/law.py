@@ -8,19 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
 
+from carom.formats.mjcf.compiled.actuation.dc_motor import DcMotor
 from carom.formats.mjcf.defaults import Attributes
 
 Numbers = Callable[[str, str, int], list[float]]
 """Of an attribute's name and text, and the most numbers it may have: its numbers."""
 
-SHORTCUTS = ("general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle")
+SHORTCUTS = (
+    "general", "motor", "position", "velocity", "intvelocity", "damper", "cylinder", "muscle", "dcmotor",
+)  # fmt: skip
 FIXED, AFFINE, NONE = "fixed", "affine", "none"
 FILTER, FILTER_EXACT, INTEGRATOR = "filter", "filterexact", "integrator"
-MUSCLE = "muscle"
-_UNBUILT = ("orientation", "adhesion", "dcmotor", "pid", "plugin")
+MUSCLE, DC_MOTOR = "muscle", "dcmotor"
+_UNBUILT = ("orientation", "adhesion", "pid", "plugin")
 KINDS = (*SHORTCUTS, *_UNBUILT)
 
 
@@ -46,6 +49,7 @@ class Law:
         inherited: Factor on the range of the joint that bounds the target; 0 for none.
         shortcut: The shortcut that it is of; empty for a general one.
         bounded: Names of the ranges that have to be stated.
+        motor: Of a `dcmotor`, what the law follows from.
     """
 
     gain_type: str = FIXED
@@ -57,6 +61,7 @@ class Law:
     inherited: float = 0.0
     shortcut: str = ""
     bounded: tuple[str, ...] = ()
+    motor: DcMotor | None = None
 
     def apply(self, tag: str, attributes: Attributes, numbers: Numbers) -> None:
         """Change it by the attributes of an element, or by those of its defaults."""
@@ -74,6 +79,9 @@ class Law:
         self.shortcut = "" if tag == "general" else tag
         match tag:
             case "general":
+                if self.motor is not None and {"gainprm", "biasprm", "dynprm"} & {*attributes}:
+                    # These would be numbers of the motor.
+                    self.motor = replace(self.motor, missing=("other parameters",))
                 self.gain_type = attributes.get("gaintype", self.gain_type)
                 self.bias_type = attributes.get("biastype", self.bias_type)
                 self.dynamics = attributes.get("dyntype", self.dynamics)
@@ -99,6 +107,11 @@ class Law:
                     area = 0.25 * pi * diameter * diameter
                 bias = several("bias", self.bias, 3)
                 self._set(FIXED, AFFINE, FILTER, [area, 0.0, 0.0], bias)
+            case "dcmotor":
+                motor = (self.motor or DcMotor()).with_attributes(attributes, numbers)
+                share = motor.constant / motor.resistance if motor.resistance > 0.0 else 0.0
+                self._set(FIXED, AFFINE, NONE, [share, 0.0, 0.0], [0.0, 0.0, -share * motor.constant])
+                self.motor = motor
             case "muscle":
                 self._set(MUSCLE, MUSCLE, MUSCLE, _one(), _zero())
             case _:
@@ -124,6 +137,7 @@ class Law:
         self, gain_type: str, bias_type: str, dynamics: str, gain: list[float], bias: list[float]
     ) -> None:
         self.gain_type, self.bias_type, self.dynamics = gain_type, bias_type, dynamics
+        self.motor = None
         self.gain, self.bias = gain, bias
 
     @staticmethod
@@ -137,6 +151,8 @@ class Law:
         """What of it is not built; empty if nothing is."""
         if self.shortcut == MUSCLE:
             return ""
+        if self.motor is not None and self.motor.missing:
+            return f"{DC_MOTOR} ({', '.join(self.motor.missing)})"
         for kind, built in (
             (self.gain_type, (FIXED, AFFINE)),
             (self.bias_type, (NONE, AFFINE)),

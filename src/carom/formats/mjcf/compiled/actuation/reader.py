@@ -28,7 +28,7 @@ from carom.formats.mjcf.defaults import MAIN, Attributes
 from carom.formats.reading.cursor import Recorded, layered
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-from carom.layouts.codes import ActivationDynamics
+from carom.layouts.codes import ActivationDynamics, PathKind
 
 _DYNAMICS = {
     NONE: ActivationDynamics.NONE,
@@ -53,6 +53,7 @@ class ActuatorReader:
         self.moving = moving
         self._kinds = {name: kind for name, _, kind in model.joints if name}
         self._drivers: dict[str, list[int]] = {}
+        self._above = {child.name: body.name for body in names.bodies.values() for child in body.children}
         self._elements: dict[str, tuple[Element, Scope]] = {}
 
     def read(self, scope: Scope) -> None:
@@ -196,6 +197,8 @@ class ActuatorReader:
             kind: _range(scope, element, attributes, kind, law)
             for kind in ("ctrl", "force", "act")
         }  # fmt: skip
+        if law.motor is not None and law.motor.torque > 0.0:
+            ranges["force"] = (-law.motor.torque, law.motor.torque)
         if self._is_off(scope, element, attributes):
             ranges["force"] = _NO_FORCE
         return ranges
@@ -289,6 +292,48 @@ class ActuatorReader:
                 it = self.model.actuators[number]
                 assert it.spec is not None, "only such actuators drive joints"
                 it.spec = replace(it.spec, joint_range=of_joint.actuator_range)
+        reported: set[int] = set()
+        for it in self.model.actuators:
+            for joint in self._pulled_joints(it.spec) if it.spec is not None else ():
+                element = self.names.joints[joint][1].element
+                if self.names.joints[joint][1].actuator_range == _UNBOUNDED or id(element) in reported:
+                    continue
+                reported.add(id(element))
+                self.names.joints[joint][1].context.leave_out(
+                    element,
+                    f"its bound is without the force of actuator {shown(it.name)}",
+                    "forces along tendons and at sites have no bound of their sum",
+                    "actuatorfrcrange",
+                )
+
+    def _pulled_joints(self, spec: ActuatorSpec) -> list[str]:
+        """The joints on which an actuator of a tendon or of sites acts."""
+        if spec.joint:
+            return []
+        bodies = [
+            self.model.sites[name].body for name in (spec.site, spec.reference_site, spec.slider_site) if name
+        ]
+        if spec.tendon:
+            parts = self.model.tendons[spec.tendon].parts
+            of_joints = [
+                part.on for part in parts if part.on in self.names.joints and part.kind == PathKind.JOINT
+            ]
+            if of_joints:
+                return of_joints
+            bodies = [part.on for part in parts if part.on]
+        chains = [self._chain(body) for body in bodies]
+        # What moves all ends alike changes no length between them.
+        shared = set.intersection(*map(set, chains)) if len(chains) > 1 else set[str]()
+        moving = {body for chain in chains for body in chain} - shared
+        return [name for name, (body, _) in self.names.joints.items() if body.name in moving]
+
+    def _chain(self, body: str) -> list[str]:
+        """A body and all above it."""
+        found: list[str] = []
+        while body:
+            found.append(body)
+            body = self._above.get(body, "")
+        return found
 
 
 def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
@@ -309,6 +354,8 @@ def _law(scope: Scope, element: Element) -> tuple[Attributes, Law]:
             laws.apply(tag, defaults, numbers)
             whole = layered(whole, defaults)
     law = laws.apply(element.tag, element.attributes, numbers)
+    if law.motor is not None and (problem := law.motor.problem()):
+        raise context.error(element, problem)
     return layered(whole, element.attributes), law
 
 

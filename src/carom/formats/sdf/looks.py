@@ -1,0 +1,25 @@
+"""`<material>`: how a visual shape looks."""
+
+from __future__ import annotations
+
+from carom.description import Material
+from carom.formats.sdf.context import SdfContext
+from carom.formats.xml_element import Element
+
+
+def read_material(context: SdfContext, visual: Element) -> Material | None:
+    """The material of a visual, with the visual's name."""
+    element = visual.first("material")
+    if element is None:
+        return None
+    diffuse = _colour(context, element.first("diffuse"), (4,))
+    specular = _colour(context, element.first("specular"), (3, 4))
+    return Material(
+        visual.attributes.get("name") or "mat",
+        rgba=None if diffuse is None else (diffuse[0], diffuse[1], diffuse[2], diffuse[3]),
+        specular=None if specular is None else (specular[0], specular[1], specular[2]),
+    )
+
+
+def _colour(context: SdfContext, element: Element | None, counts: tuple[int, ...]) -> list[float] | None:
+    return None if element is None else context.parse_components(element, element.tag, element.text, counts)
