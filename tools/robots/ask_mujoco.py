@@ -16,7 +16,7 @@ import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
 
 STATES = 3
-MOST_DOFS = 250
+MAX_DOFS = 250
 SECONDS = 1.0
 STEP = 1e-8
 OFF = ("CONTACT", "LIMIT", "FRICTIONLOSS", "EQUALITY")
@@ -50,7 +50,7 @@ def answered(file: str) -> dict[str, Any]:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     answer["poses"] = poses(model, data)
-    if not 0 < model.nv <= MOST_DOFS:
+    if not 0 < model.nv <= MAX_DOFS:
         return answer
     answer["rollout"] = rollout(model, data)
     flags = model.opt.disableflags

@@ -29,7 +29,7 @@ from carom.native.tables import ArrayTable
 
 ProgramMaker = Callable[[KernelStructs, Plan], Program]
 
-MOST_STEPS = 64
+MAX_STEPS = 64
 """Maximum number of steps in one call."""
 # Chunks of worlds for each thread: enough to balance the load.
 _CHUNKS_PER_THREAD = 16
@@ -82,7 +82,7 @@ class Engine:
         self._workspaces = self._make_workspaces(threads)
         self._all_worlds = np.arange(arrays.world_count, dtype=np.int32)
         self._worlds = self._all_worlds.copy()
-        self.due = np.ones(MOST_STEPS, dtype=np.int32)
+        self.due = np.ones(MAX_STEPS, dtype=np.int32)
         self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
         self._threads = Threads(threads)
         self._interpreters: list[Stepper] = self._make_interpreters(self.due)
@@ -283,7 +283,7 @@ class Engine:
         """Perform steps of some worlds.
 
         Args:
-            due: Number of substeps of each step; at most `MOST_STEPS` steps.
+            due: Number of substeps of each step; at most `MAX_STEPS` steps.
             worlds: Numbers of the worlds, shape (n,); None for all.
         """
         if self._plan is None:

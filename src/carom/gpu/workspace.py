@@ -22,7 +22,7 @@ from carom.model.builder import WorldArrays
 from carom.native.kernels import Kernel
 from carom.native.launch import KernelStructs
 
-MOST_WORKERS = 32768
+MAX_WORKERS = 32768
 """Maximum number of threads of the narrow phase: more than a GPU runs at a time. Each needs 23 kB."""
 # Initial capacity for pairs of shapes, rows over two trees and their blocks, and single contacts; doubled
 # when it is too small.
@@ -54,7 +54,7 @@ class Extent:
     @property
     def workers(self) -> int:
         """Number of threads of the narrow phase."""
-        return max(1, min(self.worlds * self.pairs, MOST_WORKERS))
+        return max(1, min(self.worlds * self.pairs, MAX_WORKERS))
 
 
 class DeviceStructs(KernelStructs):

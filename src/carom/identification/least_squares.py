@@ -13,7 +13,7 @@ from carom.identification.unknowns import Unknowns
 _ITERATIONS = 100
 # Gain of a step, in squares of standard deviations, that is not worth another.
 _ENOUGH = 1e-8
-_MOST_DAMPING = 1e6
+_MAX_DAMPING = 1e6
 _REDUNDANT = 1e-9
 # How far towards the bodies that cannot be a step may go.
 _SHARE_OF_ROOM = 0.9
@@ -83,7 +83,7 @@ def minimise(
                 break
         else:
             now.follow(np.zeros(len(p)))
-            if left <= _ENOUGH or damping > _MOST_DAMPING:
+            if left <= _ENOUGH or damping > _MAX_DAMPING:
                 now = model(p)
                 break
             damping = max(damping * 30.0, 1e-10)

@@ -24,7 +24,7 @@ DELAYS = "delays"
 _DELAY = ".delay"
 SMALL_FRICTION = 1e-9
 # Scales of parameters that are 0 at the start: only the steps of the solver depend on them.
-_LEAST_SCALE = 0.01
+_MIN_SCALE = 0.01
 _ANY_SIGN = ("actuator_gains", "actuator_biases", "motor_position_gains", "motor_velocity_gains")
 
 
@@ -89,7 +89,7 @@ class Unknowns:
             value = read_value(world, it)
             self.inputs.append(it)
             start.append(value)
-            scale.append(max(abs(value), _LEAST_SCALE))
+            scale.append(max(abs(value), _MIN_SCALE))
         of_delays = self._delayed(others, controls)
         self.delays: dict[str, int] = {name: len(start) + k for k, name in enumerate(of_delays)}
         self.names: tuple[str, ...] = (
@@ -100,7 +100,7 @@ class Unknowns:
         signs = [-np.inf if it.kind in _ANY_SIGN else 0.0 for it in given]
         self.lower = np.concatenate([self.lower, signs, np.zeros(len(of_delays))])
         self.start: Array = np.array([*start, *([0.0] * len(of_delays))])
-        self.scale: Array = np.array([*scale, *([_LEAST_SCALE] * len(of_delays))])
+        self.scale: Array = np.array([*scale, *([_MIN_SCALE] * len(of_delays))])
         if not len(self.start):
             raise ValueError("there is nothing to fit")
 

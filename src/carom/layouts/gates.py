@@ -4,7 +4,7 @@ from enum import IntEnum
 
 from carom.layouts.records import Int32, Int64, Object, UInt64, c_record
 
-MOST_CLIENTS = 1024
+MAX_CLIENTS = 1024
 
 
 class Conduct(IntEnum):

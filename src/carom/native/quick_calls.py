@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from carom.layouts.gates import MOST_CLIENTS, Conduct, Guard
+from carom.layouts.gates import MAX_CLIENTS, Conduct, Guard
 from carom.layouts.quick_calls import MAX_CALLS, QuickCall
 from carom.native.gates import BuiltinMaker, GateLock, lock_of
 from carom.native.library import library
@@ -52,7 +52,7 @@ class QuickCalls:
     def __init__(
         self, symbols: Any, calls: int, guards: int, clients: int, python: dict[str, ctypes.c_void_p]
     ) -> None:
-        self.clients: Any = (ctypes.c_void_p * MOST_CLIENTS).from_address(clients)
+        self.clients: Any = (ctypes.c_void_p * MAX_CLIENTS).from_address(clients)
         symbols.carom_gates.restype = ctypes.c_void_p
         self.gates: Any = (ctypes.c_void_p * len(self.clients)).from_address(symbols.carom_gates())
         self.is_paused: ctypes.c_int32 = ctypes.c_int32.in_dll(symbols, "carom_quick_calls_paused")

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from carom.checks import Array, positive
 from carom.closed import Closed
-from carom.engine.engine import MOST_STEPS
+from carom.engine.engine import MAX_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
@@ -151,7 +151,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         chosen = None if where is None else np.unique(world_numbers(self._engine.take(where), self.count))
         while count > 0:
             # Sensors with a memory measure after each step.
-            steps = 1 if self._sensors.remembered else min(count, MOST_STEPS)
+            steps = 1 if self._sensors.remembered else min(count, MAX_STEPS)
             self._step(steps, chosen)
             count -= steps
 

@@ -24,8 +24,9 @@ from carom.scene import changes
 _NAME_BYTES = 64
 _CALL = struct.Struct(f"<{_NAME_BYTES}s6Q")
 _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
-# What `Interpreter` asks of `carom_perform`: addresses of a program, worlds, substeps and a counter; numbers.
-_RUN = struct.Struct("<4Q6i")
+# What `Interpreter` asks of `carom_perform`: addresses of a program, worlds, substeps, a counter, lanes; numbers.
+_RUN = struct.Struct("<5Q7i4x")
+_LANES_AT = 32
 # A program: address and stride of statuses, ends of the five parts, and for each launch five addresses.
 _PROGRAM = struct.Struct("<7q")
 _KERNEL_CALL = struct.Struct("<3Q")
@@ -112,9 +113,18 @@ class Elsewhere:
     def perform(self, run: Any) -> None:
         """Perform a program of launches; see `native/source/perform.cpp`."""
         address = ctypes.addressof(run._obj)
+        # Worlds move one at a time there, with the same bits: what lanes have is spread over too many places.
+        lanes = ctypes.c_uint64.from_address(address + _LANES_AT)
+        kept, lanes.value = lanes.value, 0
+        try:
+            self._perform(address)
+        finally:
+            lanes.value = kept
+
+    def _perform(self, address: int) -> None:
         memory = Memory(self._layouts)
         memory.add(address, _RUN.size)
-        _, _, _, _, worlds, steps, *_ = _RUN.unpack(ctypes.string_at(address, _RUN.size))
+        _, _, _, _, _, worlds, steps, *_ = _RUN.unpack(ctypes.string_at(address, _RUN.size))
         program = memory.add_pointer(address, _PROGRAM.size)
         highest = max(
             memoryview(ctypes.string_at(memory.add_pointer(address + 8, worlds * _INT), worlds * _INT)).cast(

@@ -15,7 +15,7 @@ from carom.kernels.shapes.cores import Core, local_support
 from carom.kernels.shapes.gjk import corner, weighted
 from carom.kernels.types import Index3, Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
 
-MOST_STEPS = 64
+MAX_STEPS = 64
 # Bullet's tolerances: of the squared distance, and of its decrease in a step, both as a fraction; the squared
 # distance of equal points and that of cores that touch [m^2]; six times the volume of a flat tetrahedron
 # [m^3].
@@ -196,7 +196,7 @@ def nearest_as_in_bullet(core_a: Core, core_b: Core, vertex_position: Vectors3, 
     point_a = Vector3(0.0, 0.0, 0.0)
     point_b = Vector3(0.0, 0.0, 0.0)
     steps = Int32(0)
-    while steps < MOST_STEPS and count < 4:
+    while steps < MAX_STEPS and count < 4:
         steps += 1
         new_a = farthest(core_a, vertex_position, -axis, middle)
         new_b = farthest(core_b, vertex_position, axis, middle)

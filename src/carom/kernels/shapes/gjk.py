@@ -10,7 +10,7 @@ from carom.kernels.maths.min_max import maximum, within_bounds
 from carom.kernels.shapes.cores import Core, support
 from carom.kernels.types import Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
 
-MOST_STEPS = 64
+MAX_STEPS = 64
 # Cores nearer than this count as overlapping [m].
 TOUCHING = real(1.0e-10)
 # Absolute tolerance of the distance [m].
@@ -143,7 +143,7 @@ def nearest_points(core_a: Core, core_b: Core, vertex_position: Vectors3, start:
     point_a = core_a.position
     steps = Int32(0)
     searching = Int32(1)
-    while searching == 1 and steps < MOST_STEPS:
+    while searching == 1 and steps < MAX_STEPS:
         steps += 1
         on_a = support(core_a, vertex_position, -v)
         on_b = support(core_b, vertex_position, v)

@@ -8,7 +8,7 @@ namespace {
 
 const char CLIENT[] = "physicsClientId";
 
-Gate* gates[MOST_CLIENTS];
+Gate* gates[MAX_CLIENTS];
 
 // Functions of the host. From the first to the second, no code of the user runs. The third says whether an error, given
 // by its type, itself and its traceback, comes from our own code and not from code of the user that interrupted it.
@@ -30,7 +30,7 @@ intptr_t client_of(const Guard& guard, PyObject* const* arguments, intptr_t coun
     return number;
 }
 
-Gate* gate_of(intptr_t number) { return number >= 0 && number < MOST_CLIENTS ? gates[number] : nullptr; }
+Gate* gate_of(intptr_t number) { return number >= 0 && number < MAX_CLIENTS ? gates[number] : nullptr; }
 
 constexpr int MAX_TURNS = 1000;
 

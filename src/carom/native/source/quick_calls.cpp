@@ -30,7 +30,7 @@ struct Arrangement {
 QuickCall calls[MAX_CALLS];
 Guard guards[MAX_CALLS];
 Arrangement arrangements[MAX_CALLS];
-const Client* clients[MOST_CLIENTS];
+const Client* clients[MAX_CLIENTS];
 
 }  // namespace
 
@@ -291,7 +291,7 @@ PyObject* tuple_of(const double* numbers, int count) {
 }
 
 const Client* find_client(double number) {
-    const bool is_known = !carom_quick_calls_paused && number >= 0.0 && number < MOST_CLIENTS;
+    const bool is_known = !carom_quick_calls_paused && number >= 0.0 && number < MAX_CLIENTS;
     const Client* client = is_known ? clients[static_cast<int>(number)] : nullptr;
     if (client && client->gate->owner) {
         if (is_closed(*client->gate))

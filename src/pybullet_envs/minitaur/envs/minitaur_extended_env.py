@@ -14,7 +14,7 @@ from pybullet_envs.minitaur_env_bases import Step
 
 _MAX_SWING = 0.8
 _MAX_STEPS = 500
-_MOST_VELOCITY = 0.5
+_MAX_VELOCITY = 0.5
 _JERKINESS = 0.1
 
 
@@ -145,7 +145,7 @@ class MinitaurExtendedEnv(MinitaurReactiveEnv):
 
     def _reward(self) -> float:
         way = self.minitaur.GetBasePosition()[0] - self._last_base_position[0]
-        velocity = np.clip(way / self.control_time_step, -_MOST_VELOCITY, _MOST_VELOCITY)
+        velocity = np.clip(way / self.control_time_step, -_MAX_VELOCITY, _MAX_VELOCITY)
         now, before, earlier = (_back(self._past_actions, step) for step in range(3))
         return float(velocity - _JERKINESS * np.abs(now - 2 * before + earlier).mean())
 

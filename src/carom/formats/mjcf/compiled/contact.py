@@ -13,7 +13,7 @@ from carom.formats.mjcf.compiled.softness import read_compliance
 from carom.formats.xml_element import Element
 
 _FRICTION = (1.0, 0.005, 0.0001)
-_LEAST_WEIGHT = 1e-20
+_MIN_WEIGHT = 1e-20
 """It counts as 0, and says that there is one."""
 _EQUAL_RANK = 1000
 """Rank of friction at priority 0."""
@@ -33,7 +33,7 @@ def read_contact(
     sliding, spinning, rolling = (*values, *_FRICTION[len(values) :])[:3]
     dimensions = int(context.number(element, attributes, "condim", 3.0))
     compliance = read_compliance(scope, element, attributes)
-    weight = max(_LEAST_WEIGHT, context.number(element, attributes, "solmix", 1.0))
+    weight = max(_MIN_WEIGHT, context.number(element, attributes, "solmix", 1.0))
     margin = context.number(element, attributes, "margin", 0.0)
     if options.get("flag.override", False):
         sliding, _, spinning, rolling, _ = options["o_friction"]

@@ -19,7 +19,7 @@ from carom.formats.mjcf.compiled.model import CompiledBody
 from carom.native.products import dots, product
 
 Matrix = NDArray[np.float64]
-_LEAST_PIVOT = 1e-15
+_MIN_PIVOT = 1e-15
 
 
 @dataclass(eq=False, slots=True)
@@ -158,7 +158,7 @@ def _cholesky(matrix: Matrix) -> Matrix | None:
     rest, lower = matrix.copy(), np.zeros_like(matrix)
     for k in range(len(matrix)):
         pivot = rest[k, k]
-        if not pivot > _LEAST_PIVOT:
+        if not pivot > _MIN_PIVOT:
             return None
         lower[k:, k] = rest[k:, k] / np.sqrt(pivot)
         rest[k + 1 :, k + 1 :] -= lower[k + 1 :, k, None] * lower[None, k + 1 :, k]

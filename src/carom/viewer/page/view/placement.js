@@ -1,7 +1,7 @@
 // Where texts go: near their points, clear of each other and of what covers the view.
 
 /** A text is moved up or down by at most so many times its height. */
-const MOST_STEPS = 5;
+const MAX_STEPS = 5;
 const GAP = 1;
 
 export class Placement {
@@ -30,7 +30,7 @@ export class Placement {
     if (this.covers.some((cover) => x > cover.left && x < cover.right && y > cover.top && y < cover.bottom)) return null;
     const wanted = this.clear([x + right, y + down], width, height);
     for (const left of [wanted, x - right - width]) {
-      for (let step = 0; step <= 2 * MOST_STEPS; step++) {
+      for (let step = 0; step <= 2 * MAX_STEPS; step++) {
         // Below, above, further below, and so on.
         const shift = Math.ceil(step / 2) * (step % 2 ? 1 : -1) * (height + GAP);
         const corner = [left, y + down + shift];
