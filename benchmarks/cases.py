@@ -90,6 +90,7 @@ IN_PROCESS = (
     Case("mass_matrix", "calculateMassMatrix, Panda"),
     Case("linearize_panda", "derivatives of a step by states and 9 torques, Panda"),
     Case("linearize_ant", "derivatives of a step by states and 8 torques, Ant in the air"),
+    Case("linearize_pandas", "derivatives of a step of 64 Pandas by states and 9 torques"),
     Case("differentiate_pandas", "a step of 256 Pandas in PyTorch, forward and backward"),
     Case("stable_pd", "STABLE_PD_CONTROL, floating tree of 20 links", speedup=1.0),
     Case("inverse_kinematics", "calculateInverseKinematics, KUKA, to a point", speedup=3.0),

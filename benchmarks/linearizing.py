@@ -30,6 +30,14 @@ def linearize_ant(original_data: str) -> Callable[[], Any]:
     return world.linearize
 
 
+def linearize_pandas(original_data: str) -> Callable[[], Any]:
+    world = World()
+    world.gravity = (0.0, 0.0, -9.81)
+    world.load_urdf(DATA / "franka_panda" / "panda.urdf", fixed_base=True, as_pybullet=False)
+    world.step(10)
+    return Worlds(world, 64).linearize
+
+
 def differentiate_pandas(original_data: str) -> Callable[[], Any]:
     import torch
 

@@ -22,7 +22,12 @@ import pybullet as p
 
 # PyBullet has no derivatives.
 if find_spec("carom"):
-    from linearizing import differentiate_pandas, linearize_ant, linearize_panda  # noqa: F401
+    from linearizing import (  # noqa: F401
+        differentiate_pandas,
+        linearize_ant,
+        linearize_panda,
+        linearize_pandas,
+    )
 
 ROOT = Path(__file__).resolve().parents[1]
 ASSETS = ROOT / "src" / "pybullet_data"

@@ -120,6 +120,46 @@ def test_a_quadruped_stands_on_its_feet_and_flies(tmp_path: Path):
     assert not assert_exact(world, parameters=["masses"]).rows
 
 
+@pytest.mark.parametrize("friction", ["cone", "pyramid", "isotropic"])
+def test_feet_of_a_quadruped_slide(tmp_path: Path, friction: str):
+    file = tmp_path / "quadruped.urdf"
+    file.write_text(quadruped())
+    world = new_world(plane=True)
+    world.parameters.cone_friction = friction == "cone"
+    world.parameters.isotropic_friction = friction == "isotropic"
+    world.apply_parameters()
+    body = world.load_urdf(file, (0.0, 0.0, 0.37), as_pybullet=False)
+    for link in range(-1, body.joint_count):
+        body.change_dynamics(link, **SURFACE)
+        if link >= 0:
+            body.joints[link].reset((0.1, 0.5, -1.0)[link % 3])
+    set_velocity(body, 0.3, -0.2, 0.5, 1.0, 0.6, -0.4)
+    step = assert_exact(world, parameters=["masses", "inertias", "armature", "friction"])
+    sliding = [status for name, status in step.rows if name.startswith("friction of contact")]
+    # The rows of a pyramid slide each for itself.
+    assert len(sliding) >= 4
+    assert len(sliding) // 2 <= len([status for status in sliding if status != "holds"])
+
+
+@pytest.mark.parametrize("sliding", [False, True])
+def test_a_ball_and_a_corner_touch_faces_that_move(sliding: bool):
+    for file, turn in (("sphere2.urdf", (0.0, 0.0, 0.0, 1.0)), ("cube.urdf", (0.3, 0.2, 0.15, 1.0))):
+        world = new_world()
+        below = world.load_urdf(f"{ASSETS}/cube.urdf", (0.0, 0.0, 0.0), (0.1, 0.05, 0.2, 1.0))
+        above = world.load_urdf(f"{ASSETS}/{file}", (0.05, -0.1, 1.5), turn)
+        for body in (below, above):
+            body.change_dynamics(-1, restitution=0.0, lateral_friction=0.1 if sliding else 2.0, **SURFACE)
+        set_velocity(below, 0.2, -0.3, 0.4, 0.1, 0.2, 0.3)
+        set_velocity(above, 0.3, 0.1, -0.2, 0.3, 0.1, -2.0)
+        for _ in range(100):
+            world.step()
+            if world.linearize().rows:
+                break
+        found = assert_exact(world, parameters=PARAMETERS)
+        of_friction = {status for name, status in found.rows if name.startswith("friction")}
+        assert of_friction == ({"slides"} if sliding else {"holds"})
+
+
 def test_stiff_contacts_are_springs():
     world, ball = on_plane("sphere2.urdf", 0.5, contact_stiffness=1e4, contact_damping=100.0)
     set_velocity(ball, 0.0, 2.0, 0.1, 1.0, 0.0, -0.1)

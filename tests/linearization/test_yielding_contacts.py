@@ -8,6 +8,7 @@ from tests.linearization.scenes import assert_exact, statuses, tighten
 from carom import World
 
 SOFT = 'solref="0.05 0.7" solimp="0.7 0.9 0.004 0.3 3"'
+STEEP = 'solref="0.05 0.7" solimp="0.3 0.9 0.004 0.5 1"'
 PARAMETERS = ["masses", "friction"]
 
 
@@ -43,14 +44,17 @@ def test_a_ball_sinks_in(tmp_path, soft, cone):
     assert found["friction of contact 0 of sphere and plane"] == ["holds", "holds"]
 
 
+@pytest.mark.parametrize(("soft", "friction"), [(SOFT, 0.05), (STEEP, 0.3)])
 @pytest.mark.parametrize("kind", ["cone", "pyramid", "isotropic"])
-def test_a_tilted_box_slides_on_its_corner(tmp_path, kind):
-    box = f'<freejoint/><geom type="box" size=".1 .12 .14" friction=".05" {SOFT}/>'
-    world = of_file(tmp_path, f'<body pos="0 0 .168" euler="20 30 0">{box}</body>')
+def test_a_tilted_box_slides_on_its_corner(tmp_path, kind, soft, friction):
+    box = f'<freejoint/><geom type="box" size=".1 .12 .14" friction="{friction}" {soft}/>'
+    floor = soft if soft == STEEP else ""
+    world = of_file(tmp_path, f'<body pos="0 0 .168" euler="20 30 0">{box}</body>', floor=floor)
     world.parameters.cone_friction = kind == "cone"
     world.parameters.isotropic_friction = kind == "isotropic"
     world.apply_parameters()
-    world.velocity[6:12] = 0.1, 0.2, 0.3, 1.3, 0.9, -0.1
+    # The greater the friction, the faster it must be to slide.
+    world.velocity[6:12] = 0.1, 0.2, 0.3, 26.0 * friction, 18.0 * friction, -0.1
     while not world.linearize().rows:
         world.step()
     found = statuses(assert_exact(world, parameters=PARAMETERS))

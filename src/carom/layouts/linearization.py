@@ -4,25 +4,38 @@ A *state* is positions, velocities and activations, a *column* a state or an inp
 of the tangent space, see `linearization.tangent`.
 """
 
-from carom.layouts.types import Int32, Ints, Reals, real, struct
+from carom.layouts.types import Int32, Ints, Reals, Vector3, Vector4, Vectors3, real, struct
 
 # What a dof is first of, where changes of positions are no differences of numbers.
 SCALAR_DOF, BASE_DOF, BALL_DOF, PLANE_DOF = 0, 1, 2, 3
 
 # What a row is of.
 MOTOR_ROW, LIMIT_ROW, FRICTION_ROW, ACTUATOR_ROW, GEAR_ROW, COUPLING_ROW = 0, 1, 2, 3, 4, 5
+CONTACT_ROW, CONTACT_FRICTION, ROLLING_FRICTION, SPINNING_FRICTION = 6, 7, 8, 9
 
 # Status of a row.
-ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROW_SATURATED = 0, 1, 2, 3
+ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROW_SATURATED, ROW_SLIDES = 0, 1, 2, 3, 4
 
-# Which number of its dof, actuator or constraint an input of rows is: columns of motors, then these.
-INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND = 8, 9, 12, 15
+# Which number of its dof, actuator, constraint or link an input of rows is: columns of motors, then these.
+INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 15, 16
 
 # Why a step has no answer yet.
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
 YIELDING_LIMIT, YIELDING_FRICTION, BALL_LIMIT, MUSCLE_ROW, YIELDING_USER, BOUNDED_SUM, BASE_SPRING = range(
     3, 10
 )
+FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION = range(10, 16)
+
+# What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
+# their equations.
+ALL_STAGES, ROWS_STAGE, EQUATIONS_STAGE, RESUMED = 0, 1, 2, 3
+
+# Which links a dof moves, bit by bit.
+MOVES_A, MOVES_B = 1, 2
+# A contact is known by its number and the kinds of its shapes: ((number * this) + kind of a) * this + of b.
+SHAPE_KINDS = 8
+# At most so many rows has a contact.
+ROWS_OF_CONTACT = 6
 
 
 @struct
@@ -33,26 +46,52 @@ class StepSpace:
     states: Int32
     columns: Int32
     most_rows: Int32
-    most_of_joints: Int32  # of these, rows that the kernels add
+    most_of_joints: Int32  # of these, rows of joints and of ties between them
     constraints: Int32  # joint constraints
     users: Int32  # user constraints
     smoothing: real
     dof_row: Ints  # its row among all velocities
     dof_position: Ints  # its row among all positions; -1 for dofs of joints with several, and of bases
     dof_first: Ints  # what it is the first dof of: see above
+    dof_group: Ints  # the first dof of its joint or base
     dof_hand: Reals  # of a plane, at its first dof: sign of the turn from its first axis to the second
     dof_tree: Ints
     dof_place: Ints  # among the dofs of its tree
     row_dof: Ints  # the dof of a row of velocities, or -1
     actuator_column: Ints  # column of the activation of an actuator, or -1
-    # The first input of the rows of a dof's motor, of a constraint and of an actuator, and the next one; -1
-    # for none.
+    # The first input of the rows of a dof's motor, of a constraint, of an actuator and of the contacts of a
+    # link, and the next one; -1 for none.
     dof_input: Ints
     constraint_input: Ints
     actuator_input: Ints
+    link_input: Ints
     input_next: Ints
     input_number: Ints  # which number it is: see above
     input_scale: Reals
+
+
+@struct
+class TouchingLinks:
+    """A contact that is linearised."""
+
+    contact: Int32
+    known_as: Int32  # see SHAPE_KINDS
+    link_a: Int32
+    link_b: Int32
+    point_a: Vector3
+    point_b: Vector3
+    normal: Vector3  # on b, towards a
+    direction1: Vector3  # of friction
+    direction2: Vector3
+    reach: Int32  # number of dofs that move a link of both: see `StepBatch.reach`
+    friction: Vector3  # coefficients: lateral, rolling, spinning
+    stated: Int32  # 1: a pair of the file states them, so that they do not follow those of the links
+    gain: real  # by how much the requested normal velocity falls with the distance [1/s]
+    # How the normal row yields, and those of lateral friction: which share of the velocity before the step is
+    # kept; softness, velocity per impulse [1/kg]; its derivatives by the distance [1/(kg m)] and by the
+    # coefficient of lateral friction [1/kg].
+    normal_law: Vector4
+    lateral_law: Vector4
 
 
 @struct
@@ -64,22 +103,35 @@ class StepBatch:
 
     world: Ints
     problem: Ints  # see above
-    problem_dof: Ints
-    row_count: Ints  # those of pairs before, all afterwards
+    problem_of: Ints  # its dof, its user constraint, or its contact, see SHAPE_KINDS
+    row_count: Ints  # those of the host before, all afterwards
     row_kind: Ints  # r
     row_status: Ints
-    row_dof: Ints  # of gears and couplings the user constraint
+    row_dof: Ints  # of gears and couplings the user constraint, of contacts see SHAPE_KINDS
     velocity: Reals  # three times n: before the step, after free motion, of the solver
     effective: Reals  # n x n, effective mass matrix
     inverse: Reals  # n x n, its inverse; zeros where nothing can move
     force: Reals  # twice n x columns: with the accelerations of free motion, and with those of the solver
     impulse: Reals  # n: of rows on dofs, less those that are known
     row_impulse: Reals  # r
+    # Of rows that slide: the velocity that they still ask for, with its sign turned, and the effective mass.
+    row_asked: Reals  # r
+    row_mass: Reals
     jacobian: Reals  # r x n
     through: Reals  # r x n, derivatives of right sides by velocities after free motion
     side: Reals  # r x columns, those by states and inputs
     alpha: Reals  # r x r
     beta: Reals
+    # Of the dofs, motions per unit of their rates in world axes, the linear ones at the origin.
+    axis_angular: Vectors3  # n
+    axis_linear: Vectors3
+    # Of a contact: the dofs that move its links, which of both they move, and by a change of each dof how the
+    # points of contact move, and how the normal and both friction directions turn.
+    reach: Ints  # n
+    reach_side: Ints
+    moved_a: Vectors3
+    moved_b: Vectors3
+    turned: Vectors3  # three times n
     response: Reals  # n x r
     rate: Reals  # r x n
     system: Reals  # rows x rows

@@ -1,12 +1,12 @@
 """The derivatives of one step, by the implicit function theorem over the rows that hold at its end.
 
-Kernels find what follows from inertia, joints and ties between joints, and solve for the impulses; the host
-adds forces on links, parameters of inertia, contacts and other user constraints where there are any.
+Kernels find what follows from inertia, joints, ties between them and contacts, and solve for the impulses;
+the host adds forces on links, parameters of inertia and other user constraints where there are any.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,11 +14,16 @@ import numpy as np
 
 from carom.layouts.codes import FILTER, FILTER_EXACT, INTEGRATOR, MUSCLE
 from carom.layouts.contacts import THERE
-from carom.layouts.linearization import FOUND, OVERFLOWED, REDUNDANT
+from carom.layouts.linearization import (
+    CONTACT_FRICTION,
+    FOUND,
+    OVERFLOWED,
+    REDUNDANT,
+    ROLLING_FRICTION,
+    ROW_SLIDES,
+)
 from carom.linearization.ball_rows import add_ball_motor, ball_motors
-from carom.linearization.contact_rows import ContactRows
 from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
-from carom.linearization.motion_questions import Ask, ask_lone
 from carom.linearization.pair_rows import Places
 from carom.linearization.row_names import RowNames, raise_problem
 from carom.linearization.rows import Rows
@@ -65,7 +70,6 @@ class StepLinearizer:
         inputs: Controls and parameters.
         copies: The worlds, which take the steps.
         mechanisms: Mechanisms of their bodies.
-        ask: For each world what answers questions about motions.
         threads: Number of threads.
     """
 
@@ -75,11 +79,9 @@ class StepLinearizer:
         inputs: Sequence[Input],
         copies: Copies,
         mechanisms: Mechanisms,
-        ask: Callable[[int], Ask],
         threads: int,
     ) -> None:
         self._space, self._inputs, self._copies = space, inputs, copies
-        self._ask = ask
         self._kernels = StepKernels(space, inputs, copies, mechanisms, threads)
         self._names = RowNames(space)
         torques = [(given.row, column) for column, given in enumerate(inputs) if given.kind == "torques"]
@@ -122,7 +124,7 @@ class StepLinearizer:
         names: list[tuple[tuple[str, str], ...]] = []
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
-            on_host = hosted or len(self._space.activations) > 0 or bool(np.count_nonzero(contacts[some]))
+            on_host = hosted or len(self._space.activations) > 0
             names += self._find(memory, parameters, some, wrench, on_host)
             found[first : first + len(some)] = memory.step[: len(some)]
         return StepDerivatives(found[:, :, : self._width], found[:, :, self._width :], names)
@@ -145,11 +147,19 @@ class StepLinearizer:
                 TakenStep(parameters, self._space, self._copies, wrench, memory.velocity[place], world)
                 for place, world in enumerate(worlds.tolist())
             ]
+            motions = [FreeMotion(self._space, it) for it in taken]
             pairs = [
                 self._add_host(memory, place, *it)
-                for place, it in enumerate(zip(taken, worlds.tolist(), strict=True))
+                for place, it in enumerate(zip(taken, motions, strict=True))
             ]
-            kernels.solve(count)
+            if self._of_motion and not parameters.isotropic_friction:
+                kernels.add_rows(count)
+                self._check(memory, worlds)
+                for place, motion in enumerate(motions):
+                    self._add_sliding(memory, place, motion)
+                kernels.finish(count)
+            else:
+                kernels.solve(count)
         else:
             kernels.find(count)
         self._check(memory, worlds)
@@ -170,7 +180,7 @@ class StepLinearizer:
             if problem == OVERFLOWED:
                 raise ValueError(f"in world {worlds[place]} a derivative is not finite")
             if problem != REDUNDANT:
-                raise_problem(problem, self._space, int(memory.problem_dof[place]))
+                raise_problem(problem, self._space, int(memory.problem_of[place]))
             rows = int(memory.row_count[place])
             system = memory.square("system", place, rows)
             memory.square("solution", place, rows)[:] = np.linalg.pinv(system, rcond=_REDUNDANT)
@@ -178,23 +188,19 @@ class StepLinearizer:
             self._kernels.resume(place)
 
     def _add_host(
-        self, memory: StepMemory, place: int, taken: TakenStep, world: int
+        self, memory: StepMemory, place: int, taken: TakenStep, motion: FreeMotion
     ) -> list[tuple[str, str]]:
         """Add what the host adds to forces and rows of a place; returns the names of rows."""
         space, inputs, dofs = self._space, self._inputs, len(self._space)
-        motion = FreeMotion(space, taken, memory.inverse[place], self._ask(world))
         force = memory.force[place]
         motion.add_forces(force[:, :, :dofs], force[:, :, dofs : 2 * dofs])
         if self._of_motion:
             motion.add_inputs(force[:, :, self._width :], inputs)
-        contacts = int(taken.contacts["count_contacts"][THERE])
-        if not (contacts or self._has_pairs or self._ball_motors):
+        if not (self._has_pairs or self._ball_motors):
             return []
         rows = Rows(space, inputs, memory.rows)
-        if contacts or self._has_pairs:
-            places = Places(space, motion)
-            UserRows(space, taken, places, rows).add_all(taken.user_count)
-            ContactRows(space, taken, places, motion, rows).add_all()
+        if self._has_pairs:
+            UserRows(space, taken, Places(space, motion), rows).add_all(taken.user_count)
         for constraint in self._ball_motors:
             add_ball_motor(space, taken, rows, constraint)
         count = len(rows)
@@ -212,6 +218,27 @@ class StepLinearizer:
         memory.row_impulse[place, :count] = rows.impulses
         return rows.names
 
+    def _add_sliding(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
+        """Add to the rows of contacts that slide how their directions change with parameters of inertia.
+
+        Two rows slide opposite to the changes of their impulses, for which both effective masses count.
+        """
+        kinds, status = memory.row_kind[place], memory.row_status[place]
+        first = 0
+        while first < int(memory.row_count[place]):
+            slides = status[first] == ROW_SLIDES and kinds[first] in (CONTACT_FRICTION, ROLLING_FRICTION)
+            if not slides:
+                first += 1
+                continue
+            second = first + 1
+            for row, other, sign in ((second, first, 1.0), (first, second, -1.0)):
+                jacobian = memory.jacobian[place, row]
+                response = memory.inverse[place] @ jacobian
+                driven = response @ motion.mass_input_derivatives(response, self._inputs)
+                along = sign * memory.row_impulse[place, other] * memory.row_asked[place, row]
+                memory.side[place, second, self._width :] += along * driven * memory.row_mass[place, row] ** 2
+            first += 2
+
 
 def step_derivatives(
     world: World, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
@@ -222,9 +249,7 @@ def step_derivatives(
     """
     kept = copies.linearizer
     if kept is None or not kept.suits(space, inputs, copies):
-        kept = copies.linearizer = StepLinearizer(
-            space, inputs, copies, lone_mechanisms, lambda _: ask_lone, 1
-        )
+        kept = copies.linearizer = StepLinearizer(space, inputs, copies, lone_mechanisms, 1)
     return kept.step(world.parameters, None, smoothing)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
 from carom.linearization.inputs import INERTIAL
-from carom.linearization.motion_questions import Ask, motion_questions
+from carom.linearization.motion_questions import motion_questions
 from carom.linearization.spatial import Spatial, link_forces
 from carom.linearization.turns import matrix_of
 from carom.native.kernels import regressor_kernel
@@ -32,19 +32,12 @@ class FreeMotion:
     """What the host adds to the equations of motion M (v⁺ - v) / h = forces + Jᵀ λ / h of a linearised step.
 
     A kernel has written what follows from inertia, joint springs and damping.
-
-    Attributes:
-        inverse: Inverse of the effective mass matrix M, with armature, damping and springs; zeros where
-            nothing can move.
     """
 
-    def __init__(self, space: TangentSpace, taken: TakenStep, inverse: np.ndarray, ask: Ask) -> None:
-        """Take a step and M⁻¹; `ask` answers questions about motions."""
+    def __init__(self, space: TangentSpace, taken: TakenStep) -> None:
         self._space = space
         self._taken = taken
-        self._ask = ask
         self._spatial: list[Spatial] | None = None
-        self.inverse: np.ndarray = inverse
 
     def _stretched(self) -> tuple[np.ndarray, np.ndarray]:
         """How far springs are stretched, and the derivatives by positions."""
@@ -137,17 +130,6 @@ class FreeMotion:
                 found[own, column] = self._by_inertia(
                     given, body, own, regressors[place], self.spatial[place]
                 )
-
-    def mass_derivatives(self, response: np.ndarray) -> np.ndarray:
-        """Derivatives of M response by positions, (n, n), for a constant `response` (n,)."""
-        found = np.zeros((len(response), len(response)))
-        for body, (first, size) in zip(self._space.bodies, self._space.places, strict=True):
-            own = slice(first, first + size)
-            if response[own].any():
-                both = np.stack([response[own], np.zeros(size)])
-                with_it, without = self._ask(body, motion_questions(body, self._taken, own, both))[:, 0]
-                found[own, own] = with_it - without
-        return found
 
     def _by_inertia(
         self, given: Input, body: Body, own: slice, regressor: np.ndarray, spatial: Spatial

@@ -1,24 +1,17 @@
-"""Questions about the motion of a body in a step, to the kernel of its derivatives."""
+"""Questions about the motion of a body in a step, to the kernels of mechanisms."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.algorithms.sweeps import sweeps_of
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.linearization.turns import rotation_of
-from carom.native.kernels import step_derivatives_kernel
 
 if TYPE_CHECKING:
     from carom.linearization.taken_step import TakenStep
     from carom.scene.body import Body
-
-# Answers (k, 3, n, n) to questions (k, numbers) about a body: derivatives of the forces that its motion takes
-# by positions, velocities and accelerations; those of a free base along axes of the world.
-Ask = Callable[["Body", np.ndarray], np.ndarray]
 
 _GRAVITY = 3
 
@@ -47,10 +40,3 @@ def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np
             both = found[:, start : start + BASE_VELOCITIES]
             both[:] = (both.reshape(-1, 2, 3) @ turn).reshape(-1, BASE_VELOCITIES)
     return found
-
-
-def ask_lone(body: Body, questions: np.ndarray) -> np.ndarray:
-    """The answers about a body of a lone world."""
-    sweeps = sweeps_of(body)
-    found = sweeps.answers(step_derivatives_kernel, 3 * sweeps.dofs**2, 0, questions=questions)
-    return found.reshape(-1, 3, sweeps.dofs, sweeps.dofs)

@@ -4,34 +4,69 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from carom.layouts.codes import ShapeKind
 from carom.layouts.linearization import (
     ACTUATOR_ROW,
+    ANCHOR,
+    ANISOTROPY,
     BALL_LIMIT,
     BASE_SPRING,
+    BOUNCE,
     BOUNDED_SUM,
+    CONTACT_FRICTION,
+    CONTACT_ROW,
     COUPLING_ROW,
+    FEATURES,
     FRICTION_ROW,
     GEAR_ROW,
     LIMIT_ROW,
     MOTOR_ROW,
+    MOVING_BASE,
     MUSCLE_ROW,
+    ROLLING_FRICTION,
     ROW_HOLDS,
     ROW_LOWER,
     ROW_SATURATED,
+    ROW_SLIDES,
     ROW_UPPER,
+    SHAPE_KINDS,
+    SPINNING_FRICTION,
+    TORSION,
     YIELDING_FRICTION,
     YIELDING_LIMIT,
     YIELDING_USER,
 )
-from carom.linearization.rows import HOLDS, LOWER, SATURATED, UPPER
+from carom.linearization.rows import HOLDS, LOWER, SATURATED, SLIDES, UPPER
 
 if TYPE_CHECKING:
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.tangent import TangentSpace
 
-_STATUS = {ROW_HOLDS: HOLDS, ROW_LOWER: LOWER, ROW_UPPER: UPPER, ROW_SATURATED: SATURATED}
+_STATUS = {
+    ROW_HOLDS: HOLDS,
+    ROW_LOWER: LOWER,
+    ROW_UPPER: UPPER,
+    ROW_SATURATED: SATURATED,
+    ROW_SLIDES: SLIDES,
+}
 _JOINTS = {MOTOR_ROW: "motor", LIMIT_ROW: "limit", FRICTION_ROW: "friction", ACTUATOR_ROW: "actuator"}
 _TIES = {GEAR_ROW: "gear constraint", COUPLING_ROW: "coupling constraint"}
+_CONTACTS = {
+    CONTACT_ROW: "",
+    CONTACT_FRICTION: "friction of ",
+    ROLLING_FRICTION: "rolling friction of ",
+    SPINNING_FRICTION: "spinning friction of ",
+}
+_PROBLEMS_OF_CONTACTS = {
+    FEATURES: 'a {} has no exact derivatives: use method="differences"',
+    MOVING_BASE: "{} with a fixed base that has a velocity has no exact derivatives: "
+    'use method="differences"',
+    ANISOTROPY: "{}: anisotropic friction has no exact derivatives",
+    ANCHOR: "{}: friction anchors have no exact derivatives",
+    BOUNCE: "{}: a bounce has no exact derivatives",
+    TORSION: "{}: rolling and spinning friction have no exact derivatives where bodies are solved in several "
+    'groups: use method="differences"',
+}
 _PROBLEMS = {
     YIELDING_LIMIT: "limit of {} yields, so that it has no exact derivatives",
     YIELDING_FRICTION: "friction of {} yields, so that it has no exact derivatives",
@@ -70,11 +105,22 @@ class RowNames:
     def _name(self, kind: int, number: int) -> str:
         if kind in _TIES:
             return f"{_TIES[kind]} {number}"
+        if kind in _CONTACTS:
+            return f"{_CONTACTS[kind]}{_contact(number)}"
         return f"{_JOINTS[kind]} of {self._space.labels[number][0]}"
 
 
-def raise_problem(problem: int, space: TangentSpace, dof: int) -> None:
-    """Raise `NotImplementedError` for what a kernel has found of a dof."""
+def _contact(known_as: int) -> str:
+    """A contact by its number and the kinds of its shapes, see `layouts.linearization.SHAPE_KINDS`."""
+    number, kinds = divmod(known_as, SHAPE_KINDS**2)
+    described = " and ".join(ShapeKind(kind).name.lower() for kind in divmod(kinds, SHAPE_KINDS))
+    return f"contact {number} of {described}"
+
+
+def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
+    """Raise `NotImplementedError` for what a kernel has found of a dof, a constraint or a contact."""
     if problem == YIELDING_USER:
         raise NotImplementedError("compliant constraints have no exact derivatives")
-    raise NotImplementedError(_PROBLEMS[problem].format(space.labels[dof][0]))
+    if problem in _PROBLEMS_OF_CONTACTS:
+        raise NotImplementedError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
+    raise NotImplementedError(_PROBLEMS[problem].format(space.labels[number][0]))

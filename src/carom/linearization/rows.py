@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
 
-HOLDS, LOWER, UPPER, SATURATED = (
+HOLDS, LOWER, UPPER, SATURATED, SLIDES = (
     "holds",
     "at its lower bound",
     "at its upper bound",
     "at its greatest velocity",
+    "slides",
 )
 # Impulses this near to a bound, relative to it, are at it: clamping rounds.
 NEAR = 1e-9
@@ -72,11 +73,6 @@ class Rows:
     def by_position(self) -> np.ndarray:
         """Derivatives of right sides by positions, (rows, n): part of `sides`."""
         return self.sides[:, : self._dofs]
-
-    @property
-    def by_velocity(self) -> np.ndarray:
-        """Derivatives of right sides by velocities before the step, (rows, n): part of `sides`."""
-        return self.sides[:, self._dofs : 2 * self._dofs]
 
     @property
     def by_activation(self) -> np.ndarray:

@@ -10,6 +10,13 @@ import numpy as np
 from carom.algorithms.sweeps import sweeps_of
 from carom.engine.world_calls import WorldCalls
 from carom.layouts.codes import BASE_POSITIONS, ConstraintKind
+from carom.layouts.linearization import (
+    ALL_STAGES,
+    EQUATIONS_STAGE,
+    RESUMED,
+    ROWS_OF_CONTACT,
+    ROWS_STAGE,
+)
 from carom.layouts.mechanism import MechanismBatch
 from carom.linearization.step_memory import StepMemory, places_for, step_space
 from carom.linearization.user_rows import TIES
@@ -23,7 +30,7 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.scene.body import Body
 
-# At most so many rows has a contact, or a user constraint.
+# At most so many rows has a user constraint.
 _MOST_ROWS = 6
 _GRAVITY = 3
 _PARAMETERS = ("mass", "moment", "inertia", "armature")
@@ -85,7 +92,7 @@ class StepKernels:
         """
         if self.memory is None or contacts > self._contacts:
             self._contacts = 2 * contacts
-            self._struct.most_rows = self._fixed_rows + _MOST_ROWS * self._contacts
+            self._struct.most_rows = self._fixed_rows + ROWS_OF_CONTACT * self._contacts
             self.memory = None
         self._struct.smoothing = smoothing
         places = places_for(self._struct, worlds)
@@ -112,7 +119,8 @@ class StepKernels:
         bodies = [self._mechanisms(body) for body in self._space.bodies]
         tables = (
             *(engine.arrays.state, engine.arrays.model),
-            *(engine.contact_arrays.users, engine.workspace.scratch),
+            *(engine.contact_arrays.users, engine.contact_arrays.shapes.table),
+            *(engine.contact_arrays.contacts, engine.workspace.scratch, engine.workspace.pair_rows),
         )
         now: list[Any] = [engine.changes, *(table.replacements for table in tables)]
         for structs, varied in bodies:
@@ -135,8 +143,9 @@ class StepKernels:
             numbers = [first, body.first_position, int(varied is not None), 0]
             for launches, own in zip(self._motion, structs, strict=True):
                 launches.append(Launch(motion_of_step_kernel, 1, [*own, batch, *given, *of_memory, *numbers]))
+        touching = [shared[name] for name in ("users", "shapes", "contacts", "pair_rows")]
         self._solution = [
-            Launch(solution_of_step_kernel, 1, [*given, shared["users"], *of_memory, 0, 0])
+            Launch(solution_of_step_kernel, 1, [*given, *touching, *of_memory, ALL_STAGES, 0])
             for _ in range(self._threads)
         ]
 
@@ -144,22 +153,38 @@ class StepKernels:
         """Linearise the motion of the bodies in the first `count` places."""
         self._run(count, self._motion)
 
+    def add_rows(self, count: int) -> None:
+        """Add the rows of contacts, joints and ties."""
+        self._solve(count, ROWS_STAGE)
+
+    def finish(self, count: int) -> None:
+        """Find the derivatives; all rows are there."""
+        self._solve(count, EQUATIONS_STAGE)
+
     def solve(self, count: int) -> None:
-        """Add the rows of joints, and find the derivatives."""
-        self._run(count, [[it] for it in self._solution])
+        """Both."""
+        self._solve(count, ALL_STAGES)
 
     def find(self, count: int) -> None:
-        """Both."""
+        """Linearise the motion of the bodies in the first `count` places, and solve."""
         self._run(count, [[*motion, it] for motion, it in zip(self._motion, self._solution, strict=True)])
 
     def resume(self, place: int) -> None:
         """Find the derivatives of a place whose equations have been solved."""
         launch, indices = self._solution[0], solution_of_step_kernel.indices
-        for name, number in (("resumed", 1), ("first_world", place)):
+        for name, number in (("stage", RESUMED), ("first_world", place)):
             launch.replace(indices[name], number)
         launch()
-        for name in ("resumed", "first_world"):
+        for name in ("stage", "first_world"):
             launch.replace(indices[name], 0)
+
+    def _solve(self, count: int, stage: int) -> None:
+        index = solution_of_step_kernel.indices["stage"]
+        for launch in self._solution:
+            launch.replace(index, stage)
+        self._run(count, [[it] for it in self._solution])
+        for launch in self._solution:
+            launch.replace(index, ALL_STAGES)
 
     def _run(self, count: int, launches: list[list[Launch]]) -> None:
         if self._calls is not None:
@@ -169,7 +194,7 @@ class StepKernels:
             launch()
 
 
-_COUNTED = ("constraint", "actuator")
+_COUNTED = ("constraint", "actuator", "link")
 
 
 def _rows_of_joints(copies: Copies) -> int:

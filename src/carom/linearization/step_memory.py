@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.layouts.codes import (
+    BASE_VELOCITIES,
     MOTOR_KD,
     MOTOR_KP,
     MOTOR_MAX_IMPULSE,
@@ -15,10 +16,15 @@ from carom.layouts.codes import (
     MOTOR_VELOCITY,
 )
 from carom.layouts.linearization import (
+    BALL_DOF,
+    BASE_DOF,
     INPUT_BIAS,
     INPUT_BOUND,
     INPUT_CONTROL,
+    INPUT_FRICTION,
     INPUT_GAIN,
+    PLANE_DOF,
+    SCALAR_DOF,
     StepBatch,
     StepSpace,
 )
@@ -39,7 +45,7 @@ def step_space(space: TangentSpace, inputs: Sequence[Input], counts: dict[str, i
     Args:
         space: The tangent space.
         inputs: The inputs.
-        counts: Number of joint constraints, and of actuators.
+        counts: Number of joint constraints, of actuators, and of links.
     """
     made: Any = StepSpace()
     made.dofs, made.states = len(space), 2 * len(space) + len(space.activations)
@@ -53,17 +59,26 @@ def step_space(space: TangentSpace, inputs: Sequence[Input], counts: dict[str, i
     for name, values in (
         *(("dof_row", space.dofs), ("dof_position", positions), ("dof_first", firsts)),
         *(("dof_hand", hands), ("dof_tree", space.trees), ("dof_place", space.places_in_tree)),
-        *(("row_dof", of_row), ("actuator_column", column)),
+        *(("row_dof", of_row), ("actuator_column", column), ("dof_group", _groups(firsts))),
     ):
         put_array(made, name, values)
     _put_inputs(made, space, inputs, counts)
     return made
 
 
+def _groups(kinds: np.ndarray) -> np.ndarray:
+    """The first dof of the joint or base of each dof, of what each is the first of."""
+    groups = np.arange(len(kinds))
+    sizes = {BASE_DOF: BASE_VELOCITIES, BALL_DOF: 3, PLANE_DOF: 3}
+    for dof in np.flatnonzero(kinds != SCALAR_DOF).tolist():
+        groups[dof : dof + sizes[int(kinds[dof])]] = dof
+    return groups
+
+
 def _put_inputs(made: Any, space: TangentSpace, inputs: Sequence[Input], counts: dict[str, int]) -> None:
-    """Put the inputs of rows in lists, one for each dof, constraint and actuator."""
+    """Put the inputs of rows in lists, one for each dof, constraint, actuator and link."""
     sizes = {"dof": len(space), **counts}
-    first = {axis: np.full(sizes[axis], -1) for axis in ("dof", "constraint", "actuator")}
+    first = {axis: np.full(sizes[axis], -1) for axis in ("dof", "constraint", "actuator", "link")}
     following, numbers = np.full(len(inputs), -1), np.full(len(inputs), -1)
     for column, given in enumerate(inputs):
         if given.field == "dof_motor" and given.place[1] in _OF_MOTORS:
@@ -72,6 +87,8 @@ def _put_inputs(made: Any, space: TangentSpace, inputs: Sequence[Input], counts:
             axis, row, number = "constraint", given.place[0], INPUT_BOUND
         elif given.field == "actuator_control":
             axis, row, number = "actuator", given.place[0], INPUT_CONTROL
+        elif given.field == "link_lateral_friction":
+            axis, row, number = "link", given.place[0], INPUT_FRICTION
         elif given.field in ("actuator_gain", "actuator_bias"):
             base = INPUT_GAIN if given.field == "actuator_gain" else INPUT_BIAS
             axis, row, number = "actuator", given.place[0], base + given.place[1]
@@ -93,12 +110,12 @@ class StepMemory:
         batch: The struct.
         places: Number of places.
         rows: Number of rows that each has room for.
-        world, problem, problem_dof, row_count: See `StepBatch`, (places,).
+        world, problem, problem_of, row_count: See `StepBatch`, (places,).
         row_kind, row_status, row_dof: (places, rows).
         velocity: (places, 3, n).
         effective, inverse: (places, n, n).
         force: (places, 2, n, columns).
-        row_impulse: (places, rows).
+        row_impulse, row_asked, row_mass: (places, rows).
         jacobian, through: (places, rows, n).
         side: (places, rows, columns).
         alpha, beta: (places, rows, rows).
@@ -112,9 +129,12 @@ class StepMemory:
         self.places, self.rows = places, rows
         for name in ("impulse", "response", "rate", "system", "solution", "wanted", "change"):
             put_zeros(self.batch, name, places * _sizes(space)[name])
+        for name in ("axis_angular", "axis_linear", "reach", "reach_side", "moved_a", "moved_b"):
+            put_zeros(self.batch, name, places * n)
+        put_zeros(self.batch, "turned", 3 * places * n)
         self.world: np.ndarray = self._made("world")
         self.problem: np.ndarray = self._made("problem")
-        self.problem_dof: np.ndarray = self._made("problem_dof")
+        self.problem_of: np.ndarray = self._made("problem_of")
         self.row_count: np.ndarray = self._made("row_count")
         self.row_kind: np.ndarray = self._made("row_kind", rows)
         self.row_status: np.ndarray = self._made("row_status", rows)
@@ -124,6 +144,8 @@ class StepMemory:
         self.inverse: np.ndarray = self._made("inverse", n, n)
         self.force: np.ndarray = self._made("force", 2, n, columns)
         self.row_impulse: np.ndarray = self._made("row_impulse", rows)
+        self.row_asked: np.ndarray = self._made("row_asked", rows)
+        self.row_mass: np.ndarray = self._made("row_mass", rows)
         self.jacobian: np.ndarray = self._made("jacobian", rows, n)
         self.through: np.ndarray = self._made("through", rows, n)
         self.side: np.ndarray = self._made("side", rows, columns)
@@ -153,5 +175,7 @@ def _sizes(space: Any) -> dict[str, int]:
 def places_for(space: Any, worlds: int) -> int:
     """How many of some worlds to linearise together."""
     n, rows, columns = space.dofs, space.most_rows, space.columns
-    each = 16 * n * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 4)
+    each = (
+        16 * n * n + 22 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 6)
+    )
     return max(1, min(worlds, _MOST_NUMBERS // max(each, 1)))

@@ -79,34 +79,9 @@ class TakenStep:
         self.control: np.ndarray = self.state["actuator_control"]
         self.activation: np.ndarray = scratch["actuator_start"]
         self.link_wrench: np.ndarray = wrench[world]
-        self._pair_rows = copies.pair_rows(world)
         self.free_velocity: np.ndarray = velocities[1]
         self.solved: np.ndarray = velocities[2]
         self.ends: np.ndarray = velocities[1:]
         self.angular: np.ndarray = scratch["dof_angular"][space.dofs]
         self.linear: np.ndarray = scratch["dof_linear"][space.dofs]
         self.link_pose: np.ndarray = self.state["link_pose"]
-
-    def torsion_impulses(self, contact: int) -> list[float] | None:
-        """Impulses of rolling friction, two, and of spinning friction, in the solver's rows of a contact.
-
-        None if the rows of other bodies have taken their place: bodies that do not touch are solved one after
-        the other in the same memory.
-        """
-        expected = tuple(self.contacts["contact_impulse"][contact])
-        # Contacts of rigid bodies have rows of fixed size, in two places that follow each other.
-        of_singles = self._pair_rows["single_impulse"]
-        for place in np.flatnonzero(self._pair_rows["single_contact"][:-1] == contact).tolist():
-            after = place + 1
-            if self._pair_rows["single_contact"][after] != contact:
-                continue
-            if tuple(of_singles[place, :3]) == expected:
-                spun, *rolled = of_singles[after, :3].tolist()
-                return [*rolled, spun]
-        impulses = self._pair_rows["row_terms_impulse"]
-        normal, lateral, rolling, spinning = self._pair_rows["contact_rows"][contact].tolist()
-        known = impulses[normal], impulses[lateral], impulses[lateral + 1]
-        if known != expected:
-            return None
-        rolled = impulses[rolling : rolling + 2].tolist() if rolling >= 0 else [0.0, 0.0]
-        return [*rolled, float(impulses[spinning]) if spinning >= 0 else 0.0]

@@ -88,12 +88,12 @@ def lateral_softness(shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32
 
 
 @func
-def let_contact_yield(
-    settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32
-) -> ContactTerms:
-    """The terms of a contact with what two links, or their pair, say about how it yields.
+def contact_law(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32):
+    """How contacts of two links yield, as these or their pair say.
 
-    One that is farther apart than its margin is no contact.
+    Returns:
+        Reference and impedance, see `kernels.dynamics.yielding`; the reference of lateral friction; the
+        margin [m]; the inverse mass [1/kg]; the row of their pair, or -1.
     """
     share = weight_of_first(shapes, world, a, b)
     reference = mixed_reference(shapes, world, a, b, share)
@@ -104,13 +104,26 @@ def let_contact_yield(
     lateral = reference
     row = pair_with_contacts(shapes, settings, a, b)
     if row >= 0:
-        terms.friction = shapes.filter_friction[row]
         reference = shapes.filter_reference[row]
         impedance = shapes.filter_impedance[row]
         margin = impedance[3]
         lateral = shapes.filter_lateral[row]
         if lateral[0] == 0.0 and lateral[1] == 0.0:
             lateral = reference
+    return reference, impedance, lateral, margin, inverse_mass, row
+
+
+@func
+def let_contact_yield(
+    settings: Settings, shapes: Shapes, terms: ContactTerms, world: Int32, a: Int32, b: Int32
+) -> ContactTerms:
+    """The terms of a contact with what two links, or their pair, say about how it yields.
+
+    One that is farther apart than its margin is no contact.
+    """
+    reference, impedance, lateral, margin, inverse_mass, row = contact_law(settings, shapes, world, a, b)
+    if row >= 0:
+        terms.friction = shapes.filter_friction[row]
     distance = terms.distance - margin
     if distance >= 0.0 or terms.ignored != 0:
         terms.ignored = Int32(1)

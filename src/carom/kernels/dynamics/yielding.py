@@ -42,6 +42,25 @@ def impedance_at(reference: Vector4, impedance: Vector4, size: real) -> real:
 
 
 @func
+def impedance_slope(reference: Vector4, impedance: Vector4, error: real) -> real:
+    """Derivative of `impedance_at` by the error."""
+    first = within_bounds(impedance[0], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
+    last = within_bounds(impedance[1], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
+    width, power = impedance[2], reference[3]
+    if width <= _LEAST:
+        return real(0.0)
+    x = wp.abs(error) / width
+    if x >= 1.0:
+        return real(0.0)
+    rise = real(1.0)
+    if power > 1.0:
+        midpoint = within_bounds(reference[2], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
+        part = wp.where(x <= midpoint, x / midpoint, (1.0 - x) / (1.0 - midpoint))
+        rise = power * wp.pow(part, power - 1.0)
+    return wp.where(error < 0.0, real(-1.0), real(1.0)) * rise * (last - first) / width
+
+
+@func
 def spring_and_damper(settings: Settings, reference: Vector4, impedance: Vector4):
     """Stiffness [1/s²] and damping [1/s] of the relative motion, at an impedance of 1."""
     last = within_bounds(impedance[1], _MIN_IMPEDANCE, _MAX_IMPEDANCE)

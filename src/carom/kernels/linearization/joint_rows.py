@@ -2,7 +2,14 @@
 
 import warp as wp
 
-from carom.kernels.linearization.rows import NEAR, add_row, add_row_of_dof, set_input, status_of
+from carom.kernels.linearization.rows import (
+    NEAR,
+    add_row,
+    add_row_of_dof,
+    note_problem,
+    set_input,
+    status_of,
+)
 from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import (
@@ -46,14 +53,6 @@ from carom.layouts.linearization import (
     YIELDING_LIMIT,
     YIELDING_USER,
 )
-
-
-@func
-def note_problem(steps: StepBatch, place: Int32, problem: Int32, dof: Int32):
-    """Note why a step has no answer, unless there is another reason before."""
-    if steps.problem[place] == 0:
-        steps.problem[place] = problem
-        steps.problem_dof[place] = dof
 
 
 @func

@@ -5,10 +5,18 @@ import warp as wp
 from carom.kernels.linearization.matrices import clear
 from carom.kernels.structs import StepBatch, StepSpace
 from carom.kernels.types import Int32, func, real
-from carom.layouts.linearization import ROW_HOLDS, ROW_LOWER, ROW_UPPER
+from carom.layouts.linearization import ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROWS_OF_CONTACT
 
 # Impulses this near to a bound, relative to it, are at it: clamping rounds.
 NEAR = wp.constant(real(1.0e-9))
+
+
+@func
+def note_problem(steps: StepBatch, place: Int32, problem: Int32, number: Int32):
+    """Note why a step has no answer, and of what, unless there is another reason before."""
+    if steps.problem[place] == 0:
+        steps.problem[place] = problem
+        steps.problem_of[place] = number
 
 
 @func
@@ -23,12 +31,12 @@ def status_of(impulse: real, lower: real, upper: real) -> Int32:
 
 
 @func
-def make_room(space: StepSpace, steps: StepBatch, place: Int32):
-    """Set the rows to 0 that may be added to those which are there."""
+def make_room(space: StepSpace, steps: StepBatch, place: Int32, contacts: Int32):
+    """Set the rows to 0 that may be added to those which are there: those of joints and of some contacts."""
     there = steps.row_count[place]
     room = space.most_rows
     first = place * room + there
-    left = wp.min(room - there, space.most_of_joints)
+    left = wp.min(room - there, space.most_of_joints + ROWS_OF_CONTACT * contacts)
     clear(steps.jacobian, first * space.dofs, left * space.dofs)
     clear(steps.through, first * space.dofs, left * space.dofs)
     clear(steps.side, first * space.columns, left * space.columns)

@@ -2,6 +2,7 @@
 
 import warp as wp
 
+from carom.kernels.linearization.contact_rows import add_contacts, pushing_contacts
 from carom.kernels.linearization.joint_rows import add_joint_rows, add_ties
 from carom.kernels.linearization.matrices import (
     add_products,
@@ -12,9 +13,29 @@ from carom.kernels.linearization.matrices import (
 )
 from carom.kernels.linearization.rows import make_room
 from carom.kernels.mechanism.sweep import cross_matrix
-from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
+from carom.kernels.structs import (
+    Contacts,
+    Model,
+    PairRows,
+    Scratch,
+    Settings,
+    Shapes,
+    State,
+    StepBatch,
+    StepSpace,
+    UserConstraints,
+)
 from carom.kernels.types import Int32, Matrix3, Vector3, func, kernel, real
-from carom.layouts.linearization import BALL_DOF, BASE_DOF, FOUND, PLANE_DOF, REDUNDANT
+from carom.layouts.linearization import (
+    ALL_STAGES,
+    BALL_DOF,
+    BASE_DOF,
+    EQUATIONS_STAGE,
+    FOUND,
+    PLANE_DOF,
+    REDUNDANT,
+    ROWS_STAGE,
+)
 
 # Rows may be redundant where the product of the sizes of their equations and of the inverse is not below
 # this: no number of sweeps resolves them.
@@ -241,27 +262,36 @@ def solution_of_step_kernel(
     state: State,
     scratch: Scratch,
     users: UserConstraints,
+    shapes: Shapes,
+    contacts: Contacts,
+    pair_rows: PairRows,
     space: StepSpace,
     steps: StepBatch,
-    resumed: Int32,
+    stage: Int32,
     first_world: Int32,
 ):
     """Find the derivatives of the step of a world, of which `motion_of_step_kernel` has all bodies.
 
-    If `resumed` is 1, the equations of its rows have been solved on the host.
+    `stage` says which part of it: see `layouts.linearization`.
     """
     place = first_world + wp.tid()
     world = steps.world[place]
     if steps.problem[place] == FOUND:
-        if resumed == 0:
-            make_room(space, steps, place)
+        if stage == ALL_STAGES or stage == ROWS_STAGE:
+            pushing = pushing_contacts(contacts, world)
+            make_room(space, steps, place, pushing)
+            if pushing > 0:
+                add_contacts(
+                    model, settings, state, scratch, shapes, contacts, pair_rows, space, steps, place, world
+                )
             add_ties(model, settings, state, scratch, users, space, steps, place, world)
             find_impulses(space, steps, place)
             add_joint_rows(model, settings, state, scratch, space, steps, place, world)
+        if stage == ALL_STAGES or stage == EQUATIONS_STAGE:
             find_changes(settings, space, steps, place)
             if steps.row_count[place] > 0:
                 if write_equations(space, steps, place) == 0:
                     if steps.problem[place] == FOUND:
                         steps.problem[place] = REDUNDANT
-        if steps.problem[place] == FOUND:
+        if stage != ROWS_STAGE and steps.problem[place] == FOUND:
             write_step(model, settings, state, space, steps, place, world)

@@ -205,22 +205,6 @@ def step_derivatives(
     note_overflow(batch.answer, start, 3 * count * count)
 
 
-@kernel
-def step_derivatives_kernel(
-    sizes: MechanismSizes,
-    mechanism: MechanismTable,
-    sweep: SweepTable,
-    batch: MechanismBatch,
-    varied: Int32,
-    first_world: Int32,
-):
-    """As `inverse_derivatives_kernel`, but along the axes of the world for a free base, as steps move it."""
-    world = first_world + wp.tid()
-    if varied == 1:
-        take_parameters(sizes, mechanism, batch, world)
-    step_derivatives(sizes, mechanism, sweep, batch, world)
-
-
 @func
 def write_subtree_forces(
     sizes: MechanismSizes, mechanism: MechanismTable, sweep: SweepTable, answer: Reals, start: Int32

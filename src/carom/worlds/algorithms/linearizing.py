@@ -16,9 +16,7 @@ from carom.linearization.chosen import Chosen as Parts
 from carom.linearization.chosen import chosen_parts
 from carom.linearization.exact import StepDerivatives, StepLinearizer
 from carom.linearization.linearized_step import refuse_substeps
-from carom.linearization.motion_questions import Ask
 from carom.linearization.stepping import Copies
-from carom.native.kernels import step_derivatives_kernel
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.mechanics import MechanicsBatch
@@ -192,7 +190,7 @@ class _Linearizer:
         if kept is None or not kept.suits(parts.space, parts.inputs, copies):
             kept = copies.linearizer = StepLinearizer(
                 *(parts.space, parts.inputs, copies),
-                *(self._structs_of, self._ask_of, self._threads),
+                *(self._structs_of, self._threads),
             )
         if start is not None:
             start(copies.engine)
@@ -200,18 +198,6 @@ class _Linearizer:
 
     def _structs_of(self, body: Body) -> tuple[list[list[Any]], Any]:
         return self._mechanics_of(body).sweep_structs()
-
-    def _ask_of(self, world: int) -> Ask:
-        def ask(body: Body, questions: np.ndarray) -> np.ndarray:
-            return self._ask(body, questions, np.full(len(questions), world))
-
-        return ask
-
-    def _ask(self, body: Body, questions: np.ndarray, worlds: np.ndarray) -> np.ndarray:
-        mechanics = self._mechanics_of(body)
-        size = 3 * mechanics.dofs**2
-        found = mechanics.sweep(step_derivatives_kernel, questions, worlds, size, "derivative")
-        return found.reshape(len(questions), 3, mechanics.dofs, mechanics.dofs)
 
     def _mechanics_of(self, body: Body) -> MechanicsBatch:
         if body not in self._mechanics:
