@@ -111,7 +111,8 @@ def test_fast_pictures_get_finer_again(replay: Page):
           const first = pace.sharpness;
           const single = (told(15, 2), told(900, 1), told(30, 5));
           const some = (told(30, 5), told(48, 3)), slow = told(60, 8);
-          const slowest = told(500, 50), enough = told(30, 50), fast = told(10, 50);
+          // Coarser than half, pictures need not be fast to go back to half; from there on they do.
+          const slowest = told(500, 50), stays = told(40, 50), enough = told(30, 50), fast = told(10, 50);
           pace.wait(600);
           const still = (told(500, 50), pace.sharpness);
           pace.wait(0);
@@ -119,10 +120,10 @@ def test_fast_pictures_get_finer_again(replay: Page):
           pace.hold(true);
           pace.wait(9999);
           const filmed = (told(500, 50), pace.sharpness);
-          return [first, single, some, slow, slowest, enough, fast, still, moving, filmed];
+          return [first, single, some, slow, slowest, stays, enough, fast, still, moving, filmed];
         }"""
     )
-    assert steps == [0.5, 0.5, 0.5, 0.4, 0.25, 0.25, 1, 1, 1, 1]
+    assert steps == [0.5, 0.5, 0.5, 0.4, 0.25, 0.25, 0.5, 1, 1, 1, 1]
 
 
 # Draws moments of the recording as while something moves: with what does not move kept, and without.

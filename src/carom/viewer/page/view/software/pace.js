@@ -10,6 +10,8 @@ const SLOW_MS = 34;
 const MODEST_SLOW_MS = 50;
 const VERY_SLOW_MS = 70;
 const FAST_MS = 20;
+/** Below half the resolution these are fast enough to go back towards it [ms]. */
+const MODEST_FAST_MS = 36;
 /** Number of pictures whose times are averaged, without the slowest: another process may have delayed it. */
 const PICTURES = 8;
 /** Time without a change before drawing with all details, and before drawing at the best resolution [ms]. */
@@ -66,7 +68,8 @@ export class Pace {
     const mean = total / (PICTURES - 1);
     this.durations = [];
     const slow = this.step <= MODEST ? MODEST_SLOW_MS : SLOW_MS;
-    const change = mean > VERY_SLOW_MS && this.step > MODEST ? -2 : mean > slow ? -1 : mean < FAST_MS ? 1 : 0;
+    const fast = this.step < MODEST ? MODEST_FAST_MS : FAST_MS;
+    const change = mean > VERY_SLOW_MS && this.step > MODEST ? -2 : mean > slow ? -1 : mean < fast ? 1 : 0;
     this.step = Math.min(Math.max(this.step + change, 0), STEPS.length - 1);
   }
 }
