@@ -25,6 +25,8 @@ import pybullet_data
 # Scenes are small, so that a step is short and calls meet often.
 MAX_BODIES = 12
 _HANG = 60.0
+# A restored state takes the bodies of all threads back to where they were: not while one looks at its own.
+_WHERE_BODIES_ARE = threading.RLock()
 
 
 class Own:
@@ -46,8 +48,9 @@ class Own:
         """Sets a joint and a place, and reads them back."""
         angle, joint = self._random.uniform(-1.0, 1.0), 13
         place = self._place()
-        p.resetBasePositionAndOrientation(self.body, place, [0, 0, 0, 1])
-        found, _ = p.getBasePositionAndOrientation(self.body)
+        with _WHERE_BODIES_ARE:
+            p.resetBasePositionAndOrientation(self.body, place, [0, 0, 0, 1])
+            found, _ = p.getBasePositionAndOrientation(self.body)
         assert found == tuple(place), (found, place)
         p.changeDynamics(self.body, joint, lateralFriction=abs(angle))
         assert p.getDynamicsInfo(self.body, joint)[1] == abs(angle)
@@ -75,11 +78,17 @@ def _calls(random: Random) -> dict[str, Callable[[], object]]:
         p.removeBody(p.createMultiBody(1.0, shape, basePosition=[0, 0, random.uniform(1.0, 5.0)]))
 
     def saved() -> None:
-        state = p.saveState()
-        p.stepSimulation()
-        with contextlib.suppress(p.error):
-            p.restoreState(state)
-        p.removeState(state)
+        # A signal handler must not wait: another thread may wait for the call that it interrupts.
+        if not _WHERE_BODIES_ARE.acquire(blocking=False):
+            return
+        try:
+            state = p.saveState()
+            p.stepSimulation()
+            with contextlib.suppress(p.error):
+                p.restoreState(state)
+            p.removeState(state)
+        finally:
+            _WHERE_BODIES_ARE.release()
 
     return {
         "step": p.stepSimulation,
