@@ -15,7 +15,7 @@ except ImportError as missing:
     raise ImportError("carom.jax needs JAX; install it with: pip install jax", name="jax") from missing
 
 from carom.worlds.algorithms.packed import Packing
-from carom.worlds.algorithms.step_function import StepArrays, StepFunction
+from carom.worlds.algorithms.step_function import NamedColumns, StepArrays, StepFunction
 
 if TYPE_CHECKING:
     from carom.worlds.worlds import Worlds
@@ -39,7 +39,7 @@ class State(NamedTuple):
     memory: Any
 
 
-class Stepper:
+class Stepper(NamedColumns):
     """Steps of worlds as a function from a state to the next, for `jax.grad`, `jax.vjp` and `jax.jit`.
 
     The same as `carom.torch.Stepper`: steps have the bits of `Worlds.step`, depend on their arguments only,
@@ -89,13 +89,7 @@ class Stepper:
             raise ValueError(
                 'steps are computed in doubles: call jax.config.update("jax_enable_x64", True) first'
             )
-        self._function = StepFunction(worlds, controls, parameters, smoothing, where)
-        self.count: int = len(self._function.numbers)
-        self.coordinates: tuple[str, ...] = self._function.coordinates
-        self.velocities: tuple[str, ...] = self._function.velocities
-        self.activations: tuple[str, ...] = self._function.activations
-        self.controls: tuple[str, ...] = self._function.controls
-        self.parameters: tuple[str, ...] = self._function.parameters
+        super().__init__(StepFunction(worlds, controls, parameters, smoothing, where))
         memory, _ = self._function.present()
         most = max(memory.contacts[name].shape[1] for name in ("contact_distance", "overlap_place"))
         room = max(_CONTACT_ROOM, most) if contact_room is None else contact_room

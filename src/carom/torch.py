@@ -16,7 +16,7 @@ except ImportError as missing:
         "carom.torch needs PyTorch; install it with: pip install 'carom[train]'", name="torch"
     ) from missing
 
-from carom.worlds.algorithms.step_function import StepArrays, StepFunction
+from carom.worlds.algorithms.step_function import NamedColumns, StepArrays, StepFunction
 from carom.worlds.saved import SavedWorlds
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class State:
         )
 
 
-class Stepper:
+class Stepper(NamedColumns):
     """Steps of worlds as a function from a state to the next, which `backward` goes through.
 
     A step is, bit for bit, that of `Worlds.step`, and depends on its arguments only: call it from any state
@@ -105,13 +105,7 @@ class Stepper:
         smoothing: float = 0.0,
         where: ArrayLike | None = None,
     ) -> None:
-        self._function = StepFunction(worlds, controls, parameters, smoothing, where)
-        self.count: int = len(self._function.numbers)
-        self.coordinates: tuple[str, ...] = self._function.coordinates
-        self.velocities: tuple[str, ...] = self._function.velocities
-        self.activations: tuple[str, ...] = self._function.activations
-        self.controls: tuple[str, ...] = self._function.controls
-        self.parameters: tuple[str, ...] = self._function.parameters
+        super().__init__(StepFunction(worlds, controls, parameters, smoothing, where))
 
     def state(self) -> State:
         """The present state of the worlds, as new tensors."""

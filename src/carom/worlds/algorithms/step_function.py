@@ -216,3 +216,20 @@ class StepFunction:
         state["actuator_activation"][numbers[:, None], space.activations] = given.activations
         self._controls.write(engine, numbers, given.controls)
         self._parameters.write(engine, numbers, given.parameters)
+
+
+class NamedColumns:
+    """Base class of what wraps a step function for another library: the names of its columns.
+
+    Args:
+        function: The step function.
+    """
+
+    def __init__(self, function: StepFunction) -> None:
+        self._function = function
+        self.count: int = len(function.numbers)
+        self.coordinates: tuple[str, ...] = function.coordinates
+        self.velocities: tuple[str, ...] = function.velocities
+        self.activations: tuple[str, ...] = function.activations
+        self.controls: tuple[str, ...] = function.controls
+        self.parameters: tuple[str, ...] = function.parameters
