@@ -16,6 +16,13 @@ GEARBOX = "gearbox"
 _TURNS = (JointType.REVOLUTE, JointType.CONTINUOUS)
 
 
+def names_within(links: Sequence[Link], prefix: str) -> dict[str, int]:
+    """Indices of the links of a model by their names in it; those of the whole file begin with a prefix."""
+    return {
+        link.name[len(prefix) :]: index for index, link in enumerate(links) if link.name.startswith(prefix)
+    }
+
+
 def with_gearboxes(
     context: SdfContext,
     links: Sequence[Link],
@@ -33,11 +40,7 @@ def with_gearboxes(
     """
     changed = list(joints)
     for element, prefix in gearboxes:
-        names = {
-            link.name[len(prefix) :]: index
-            for index, link in enumerate(links)
-            if link.name.startswith(prefix)
-        }
+        names = names_within(links, prefix)
         ends = [_end(context, element, tag, names) for tag in ("gearbox_reference_body", "parent", "child")]
         ratio = context.value(element, "gearbox_ratio")
         leader, follower = (_joint_between(changed, ends[0], end) for end in ends[1:])

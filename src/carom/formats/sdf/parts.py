@@ -13,7 +13,7 @@ from carom.formats.robot.joint import read_joint_type, unit_axis
 from carom.formats.robot.link import MASSLESS, read_link
 from carom.formats.sdf.context import SdfContext
 from carom.formats.sdf.frames import Frames
-from carom.formats.sdf.gearboxes import GEARBOX, with_gearboxes
+from carom.formats.sdf.gearboxes import GEARBOX, names_within, with_gearboxes
 from carom.formats.sdf.geometry import read_sdf_geometry
 from carom.formats.sdf.joint import TYPES, WORLD, Z, read_bounds, read_end
 from carom.formats.sdf.looks import read_material
@@ -85,6 +85,10 @@ def _add_links(context: SdfContext, parts: Parts, model: Element, prefix: str, p
 
 def _add_joints(context: SdfContext, parts: Parts, model: Element, prefix: str, place: Pose) -> None:
     frames = Frames(context, model)
+    # The world is the same in models inside others.
+    whole = names_within(parts.links, "")
+    world = {WORLD: whole[WORLD]} if WORLD in whole else {}
+    names = world | names_within(parts.links, prefix)
     lines: dict[str, int] = {}
     for element in model.all("joint"):
         name = context.required(element, "name")
@@ -92,27 +96,18 @@ def _add_joints(context: SdfContext, parts: Parts, model: Element, prefix: str, 
         if element.attributes.get("type") == GEARBOX:
             parts.gearboxes.append((element, prefix))
             continue
-        parts.joints.append(_read_joint(context, parts, element, frames, prefix, place))
+        parts.joints.append(_read_joint(context, names, element, frames, prefix, place))
         parts.elements.append(element)
     for inner, own, pose in _inside(context, model, prefix, place):
         _add_joints(context, parts, inner, own, pose)
 
 
 def _read_joint(
-    context: SdfContext, parts: Parts, element: Element, frames: Frames, prefix: str, place: Pose
+    context: SdfContext, names: dict[str, int], element: Element, frames: Frames, prefix: str, place: Pose
 ) -> Joint:
-    """A joint; its `frame` is its place in the frame of the outermost model."""
-    indices = {
-        link.name[len(prefix) :]: index
-        for index, link in enumerate(parts.links)
-        if link.name.startswith(prefix)
-    }
-    if WORLD in indices or not prefix:
-        own = indices
-    else:
-        own = indices | {link.name: index for index, link in enumerate(parts.links) if link.name == WORLD}
+    """A joint between links of these names; its `frame` is its place in the frame of the outermost model."""
     kind = read_joint_type(context, element, TYPES)
-    parent, child = (read_end(context, element, end, own) for end in ("parent", "child"))
+    parent, child = (read_end(context, element, end, names) for end in ("parent", "child"))
     in_model = frames.of(element)
     joint = Joint(prefix + element.attributes["name"], kind, parent, child, frame=compose(place, in_model))
     axis = element.first("axis")
