@@ -20,7 +20,7 @@ PAGES = ("carom.md", "worlds.md")
 # for users has an underscore in front, or has to be named here.
 INTERNAL: dict[str, set[str]] = {
     "World": {
-        *("arrays", "contact_arrays", "engine", "quick", "undo", "listing", "links_loaded", "free_ids"),
+        *("arrays", "contact_arrays", "engine", "quick", "listing", "links_loaded", "free_ids"),
         *("next_id", "constraints", "user_constraints", "unspent_time", "view", "motor", "pd"),
         *(
             "add_constraint",
@@ -28,9 +28,14 @@ INTERNAL: dict[str, set[str]] = {
             "constraints_changed",
             "link_columns",
             "link_places",
-            "list_bodies",
+            "change_constraints",
+            "change_scene",
+            "grow",
             "load_all",
+            "note_link_poses",
+            "note_time",
             "prepare",
+            "take_arrays",
         ),
         *(
             "present_poses",

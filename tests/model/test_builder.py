@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from tests.changes import at_once
 from tests.physics.robots import free_body, random_tree
 
 from carom.description import JointType, Pose
@@ -23,7 +24,7 @@ SPECS = [
 
 def filled(specs: list[BodySpec]) -> tuple[WorldArrays, list[TreeRows]]:
     arrays = WorldArrays()
-    return arrays, [arrays.append(spec, Pose((float(n), 0.0, 0.0))) for n, spec in enumerate(specs)]
+    return arrays, [at_once(arrays.append, spec, Pose((float(n), 0.0, 0.0))) for n, spec in enumerate(specs)]
 
 
 def used_rows(arrays: WorldArrays) -> dict[str, np.ndarray]:
@@ -49,31 +50,31 @@ def assert_same_content(arrays: WorldArrays, expected: WorldArrays) -> None:
 def test_a_removed_body_leaves_no_trace(removed):
     arrays, rows = filled(SPECS)
     gone = rows.pop(removed)
-    arrays.removal(gone, rows)()
+    at_once(arrays.remove, gone, rows)
     expected = WorldArrays()
     for n, spec in enumerate(SPECS):
         if n != removed:
-            kept = expected.append(spec, Pose((float(n), 0.0, 0.0)))
+            kept = at_once(expected.append, spec, Pose((float(n), 0.0, 0.0)))
             assert rows[n - (n > removed)] == kept
     assert_same_content(arrays, expected)
 
 
 def test_bodies_added_after_removals_are_as_in_a_fresh_world():
     arrays, rows = filled(SPECS)
-    arrays.removal(rows.pop(1), rows)()
-    arrays.removal(rows.pop(0), rows)()
-    late = arrays.append(SPECS[0], IDENTITY)
+    at_once(arrays.remove, rows.pop(1), rows)
+    at_once(arrays.remove, rows.pop(0), rows)
+    late = at_once(arrays.append, SPECS[0], IDENTITY)
     expected = WorldArrays()
     for n in (2, 3):
-        expected.append(SPECS[n], Pose((float(n), 0.0, 0.0)))
-    assert late == expected.append(SPECS[0], IDENTITY)
+        at_once(expected.append, SPECS[n], Pose((float(n), 0.0, 0.0)))
+    assert late == at_once(expected.append, SPECS[0], IDENTITY)
     assert_same_content(arrays, expected)
 
 
 def test_everything_can_be_removed():
     arrays, rows = filled(SPECS)
     while rows:
-        arrays.removal(rows.pop(), rows)()
+        at_once(arrays.remove, rows.pop(), rows)
     assert not any(arrays.used.values())
     for table in arrays.tables:
         assert not any(array.any() for array in table.numpy.values())
@@ -84,7 +85,7 @@ def test_arrays_grow_with_their_contents():
     grew = []
     for _ in range(20):
         before = arrays.state.replacements
-        rows.append(arrays.append(SPECS[1], IDENTITY))
+        rows.append(at_once(arrays.append, SPECS[1], IDENTITY))
         grew.append(arrays.state.replacements > before)
     assert any(grew)
     assert not all(grew)
@@ -94,7 +95,7 @@ def test_arrays_grow_with_their_contents():
     expected.reserve(**dict.fromkeys(expected.used, 10_000))
     for _ in range(20):
         before = expected.state.replacements
-        expected.append(SPECS[1], IDENTITY)
+        at_once(expected.append, SPECS[1], IDENTITY)
         assert expected.state.replacements == before
     assert_same_content(arrays, expected)
 
@@ -182,7 +183,7 @@ def test_joints_are_told_in_inertial_frames():
 def test_worlds_of_a_batch_start_alike():
     arrays = WorldArrays(world_count=3)
     for spec in SPECS:
-        arrays.append(spec, Pose((1.0, 2.0, 3.0)))
+        at_once(arrays.append, spec, Pose((1.0, 2.0, 3.0)))
     state = arrays.state.numpy
     for name, array in state.items():
         np.testing.assert_array_equal(array[1], array[0], err_msg=name)

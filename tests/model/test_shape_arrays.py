@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.changes import at_once
 from tests.thorough.profiles import cases
 
 from carom.description import (
@@ -59,15 +60,15 @@ class Scene:
         self.bodies: list[tuple[BodySpec, TreeRows]] = []
 
     def add(self, spec: BodySpec) -> int:
-        rows = self.arrays.append(spec, IDENTITY)
-        self.shapes.append(spec, rows, [LinkDynamics.of(link) for link in (spec.base, *spec.links)])
+        rows = at_once(self.arrays.append, spec, IDENTITY)
+        at_once(self.shapes.append, spec, rows, [LinkDynamics.of(link) for link in (spec.base, *spec.links)])
         self.bodies.append((spec, rows))
         return rows.first["link"]
 
     def remove(self, index: int) -> None:
         _, rows = self.bodies.pop(index)
-        self.shapes.removal(rows)()
-        self.arrays.removal(rows, [other for _, other in self.bodies])()
+        at_once(self.shapes.remove, rows)
+        at_once(self.arrays.remove, rows, [other for _, other in self.bodies])
 
     def column(self, name: str) -> np.ndarray:
         axis = name.partition("_")[0]
@@ -256,7 +257,7 @@ def test_a_landscape_can_get_other_heights() -> None:
     row = scene.add(SPECS[3]) + 1
     higher = Heightfield(LANDSCAPE.heights + 1.0, LANDSCAPE.scale, LANDSCAPE.middle)
     spec = LinkSpec("link 1", mass=1.0, collisions=one(higher))
-    scene.shapes.replace_pieces(row, spec, implicit_cylinder=False)
+    at_once(scene.shapes.replace_pieces, row, spec, implicit_cylinder=False)
     fresh = Scene()
     fresh.add(SPECS[0])
     fresh.add(body(one(TRIANGLES), one(higher), fixed=True, flags=int(LoadFlags.USE_SELF_COLLISION)))
@@ -271,9 +272,9 @@ def test_a_mesh_without_area_is_refused_and_nothing_changes() -> None:
     before = dict(scene.shapes.used)
     sliver = TriangleMesh(np.zeros((3, 3)), np.array([(0, 1, 2)], np.int32))
     spec = body(one(sliver))
-    rows = scene.arrays.append(spec, IDENTITY)
+    rows = at_once(scene.arrays.append, spec, IDENTITY)
     with pytest.raises(DescriptionError, match="area"):
-        scene.shapes.append(spec, rows, [LinkDynamics.of(spec.base)])
+        at_once(scene.shapes.append, spec, rows, [LinkDynamics.of(spec.base)])
     assert scene.shapes.used == before
 
 

@@ -3,6 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.changes import at_once
 
 from carom.model.solver_order import IslandTags, batch_islands, quicksort_order, remove_unordered
 
@@ -127,26 +128,26 @@ def test_island_tags_follow_the_list_of_objects(data):
         if action == "add":
             moving = data.draw(st.lists(st.booleans(), min_size=1, max_size=4))
             bodies[number] = len(moving)
-            tags.add(number, moving)
+            at_once(tags.add, number, moving)
             expected.add(number, moving)
         else:
             body = data.draw(st.sampled_from(sorted(bodies)))
             if action == "remove":
                 count = bodies.pop(body)
-                tags.remove(body, count)
+                at_once(tags.remove, body, count)
                 expected.remove(body, count)
             else:
                 moving = data.draw(st.lists(st.booleans(), min_size=bodies[body], max_size=bodies[body]))
-                tags.move_base_to_end(body, moving)
+                at_once(tags.move_base_to_end, body, moving)
                 expected.move_base_to_end(body, moving)
         assert tags.tags() == expected.tags()
 
 
 def test_a_body_is_named_after_its_last_moving_link():
     tags = IslandTags()
-    tags.add("fixed arm", [False, True, True])
-    tags.add("table", [False])
-    tags.add("free arm", [True, True])
+    at_once(tags.add, "fixed arm", [False, True, True])
+    at_once(tags.add, "table", [False])
+    at_once(tags.add, "free arm", [True, True])
     assert tags.tags() == {"fixed arm": 1, "free arm": 3}
-    tags.remove("fixed arm", 3)
+    at_once(tags.remove, "fixed arm", 3)
     assert set(tags.tags()) == {"free arm"}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.changes import at_once
 
 from carom.layouts.model import Model, State
 from carom.native.tables import ArrayTable
@@ -50,20 +51,17 @@ def test_numbers_of_later_rows_change_when_rows_are_taken_out() -> None:
     for place in range(3):
         first = {axis: place * number for axis, number in count.items()}
         table.row_changes.put(rows, first, table.row_changes.packed(count))
-    remove = table.removal(count, count, used)
-    # Once more has no effect.
-    for _ in range(2):
-        remove()
-        assert table.numpy["tree_first_link"][:3].tolist() == [0, 2, 0]
-        assert table.numpy["link_parent"][:6].tolist() == [-1, 0, -1, 2, 0, 0]
-        assert table.numpy["link_first_dof"][:6].tolist() == [0, 1, 2, 3, 0, 0]
+    at_once(table.cut, count, count, used)
+    assert table.numpy["tree_first_link"][:3].tolist() == [0, 2, 0]
+    assert table.numpy["link_parent"][:6].tolist() == [-1, 0, -1, 2, 0, 0]
+    assert table.numpy["link_first_dof"][:6].tolist() == [0, 1, 2, 3, 0, 0]
 
 
 def test_numbers_of_rows_elsewhere_change_as_well() -> None:
     # Trees stay; they refer to links that move.
     table = table_of_tree(6, 1)
     table.numpy["tree_first_link"][:3] = [0, 2, 4]
-    table.removal({"link": 2}, {"link": 2}, {"tree": 3, "link": 6})()
+    at_once(table.cut, {"link": 2}, {"link": 2}, {"tree": 3, "link": 6})
     assert table.numpy["tree_first_link"][:3].tolist() == [0, 2, 2]
 
 
@@ -89,5 +87,5 @@ def test_arrays_that_were_replaced_are_found(change: str) -> None:
     else:
         table = table.copy()
     assert table.row_changes is not before
-    table.removal({}, {"link": 1}, {"link": 4, "tree": 1, "dof": 3})()
+    at_once(table.cut, {}, {"link": 1}, {"link": 4, "tree": 1, "dof": 3})
     assert (table.numpy["link_mass"][:, :4] == [1.5, 2.5, 3.5, 0.0]).all()

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.changes import at_once
 
 from carom.layouts.model import ENTRY_VIEWS, Model, Scratch, State
 from carom.native.tables import ArrayTable, array_view, fields_of, room_ahead
@@ -91,7 +92,7 @@ def test_deleted_rows_close_up_and_leave_zeros(table, start, count, used):
     other[:] = 5
     kept = np.delete(view[:used], np.s_[start : start + count], axis=0)
     expected = np.concatenate([kept, 0 * view[:count], view[used:]])
-    table.removal({"link": start}, {"link": count}, {"link": used})()
+    at_once(table.cut, {"link": start}, {"link": count}, {"link": used})
     np.testing.assert_array_equal(view, expected)
     assert (other == 5).all()
 
@@ -226,11 +227,9 @@ def test_rows_that_are_removed_leave_zeros_in_every_world(first, table):
         for row in range(5):
             array[row] = row + 2
     before = {name: array.copy() for name, array in arrays.items()}
-    remove = table.removal({"link": first}, {"link": 2}, {"link": 5})
-    for _ in range(2):
-        remove()
-        for name, array in arrays.items():
-            kept = np.delete(before[name][:5], [first, first + 1], axis=0)
-            assert np.array_equal(array[:3], kept), name
-            assert not array[3:5].any(), name
-            assert np.array_equal(array[5:], before[name][5:]), name
+    at_once(table.cut, {"link": first}, {"link": 2}, {"link": 5})
+    for name, array in arrays.items():
+        kept = np.delete(before[name][:5], [first, first + 1], axis=0)
+        assert np.array_equal(array[:3], kept), name
+        assert not array[3:5].any(), name
+        assert np.array_equal(array[5:], before[name][5:]), name

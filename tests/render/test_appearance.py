@@ -92,7 +92,7 @@ def test_a_change_shows_in_the_next_image(world):
 def test_texture_numbers_follow_the_order_of_loading_and_are_never_used_twice(world):
     plane = add_shape(world, Plane())
     appearance = appearance_of(world)
-    appearance.number_textures(world)
+    appearance.number_textures(list(world.bodies.values()))
     assert appearance.textures.add(np.zeros((1, 1, 3), np.uint8)) == 1
     assert only_look(world, plane).texture == 0
     world.reset()

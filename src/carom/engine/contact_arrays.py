@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import deepcopy
 from typing import Any
 
 import numpy as np
 
-from carom.engine.lost_contacts import kept_rows, renumber, write_rows
+from carom.engine.lost_contacts import Rows, counts_of, kept_rows, renumber
 from carom.layouts.contacts import (
     CONTACT_COLUMNS,
     KNOWN,
@@ -24,6 +24,7 @@ from carom.layouts.contacts import (
 from carom.model.builder import TreeRows, WorldArrays
 from carom.model.shape_arrays import ShapeArrays
 from carom.model.soft_arrays import SoftArrays
+from carom.native.change import Change
 from carom.native.tables import ArrayTable
 
 # Initial number of contacts in each of many worlds.
@@ -68,64 +69,63 @@ class ContactArrays:
         """Current number of overlaps in the first world."""
         return int(self.contacts.numpy["count_contacts"][0, OVERLAPS])
 
+    def drop_contacts(self, change: Change) -> None:
+        """Drop all contacts and overlaps with a change; the next step finds them anew."""
+        change.write(self.contacts.numpy["count_contacts"][:, :RESETS], 0)
+
     def forget_contacts(self) -> None:
         """Drop all contacts and overlaps, because the rows of their shapes will change."""
         self.contacts.numpy["count_contacts"][:, :RESETS] = 0
 
-    def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove a body's shapes and contacts from a single world; all others keep theirs.
+    def remove(self, change: Change, rows: TreeRows) -> None:
+        """Remove a body's shapes and contacts from a single world with a change; all others keep theirs.
 
         Args:
+            change: The change.
             rows: Rows of its tree, which are still present.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
         """
         first, count = self.shapes.shape_rows(rows)
         links = rows.first["link"], rows.count["link"]
-        counts = self.contacts.numpy["count_contacts"][0]
         kept = kept_rows(self.contacts, range(first, first + count))
         renumber(kept, (first, count), links)
         # As if the body had been moved, see `forget_warm_start`.
         kept["contact_warm_start"].fill(0.0)
-        known = int(counts[KNOWN])
-        known -= max(0, min(count, known - first))
-        remove_shapes = self.shapes.removal(rows)
+        counts = self.contacts.numpy["count_contacts"][0].copy()
+        counts[KNOWN] -= max(0, min(count, int(counts[KNOWN]) - first))
+        self.shapes.remove(change, rows)
+        self._replace_contacts(change, kept, counts)
 
-        def remove() -> None:
-            remove_shapes()
-            write_rows(self.contacts, kept)
-            counts[KNOWN], counts[SORTED] = known, 0
-
-        return remove
-
-    def parting(self, links: Sequence[int]) -> Callable[[], None]:
-        """Prepare to drop the contacts of links of a single world, which may collide with others now.
+    def part(self, change: Change, *parted: Sequence[int]) -> None:
+        """Drop the contacts of links of a single world, which may collide with others after a change.
 
         The next step finds them anew, after those of all other bodies, as in Bullet.
 
         Args:
-            links: Rows of the links.
-
-        Returns:
-            A function that drops the contacts; it can be called again if it was interrupted.
+            change: The change.
+            *parted: Rows of links, of one body after the other.
         """
         rows = self.shapes.table.numpy
         first, count = rows["link_first_shape"], rows["link_shape_count"]
-        shapes = [row for link in links for row in range(first[link], first[link] + count[link])]
-        kept = kept_rows(self.contacts, shapes)
-        trees = [int(rows["shape_tree"][shape]) for shape in shapes]
-        counts = self.contacts.numpy["count_contacts"][0]
-        resets = min(int(counts[RESETS]) + 1, MAX_RESETS)
-
-        def drop() -> None:
-            write_rows(self.contacts, kept)
-            self.forget_order()
+        counts = self.contacts.numpy["count_contacts"][0].copy()
+        numbers = self._arrays.state.numpy["tree_reset"][0]
+        lost: list[int] = []
+        for links in parted:
+            shapes = [row for link in links for row in range(first[link], first[link] + count[link])]
+            lost += shapes
             # As if they had been moved, see `note_reset`.
-            counts[RESETS] = resets
-            self._arrays.state.numpy["tree_reset"][0, trees] = -resets
+            counts[RESETS] = resets = min(int(counts[RESETS]) + 1, MAX_RESETS)
+            for tree in {int(rows["shape_tree"][shape]) for shape in shapes}:
+                change.write(numbers[tree : tree + 1], -resets)
+        self._replace_contacts(change, kept_rows(self.contacts, lost), counts)
 
-        return drop
+    def _replace_contacts(self, change: Change, kept: Rows, counts: np.ndarray) -> None:
+        """Replace contacts, overlaps and counts of a single world; counts lack the numbers of both."""
+        numpy = self.contacts.numpy
+        for name, rows in kept.items():
+            change.write(numpy[name][0, : len(rows)], rows)
+        counts[THERE], counts[OVERLAPS] = counts_of(kept)
+        counts[SORTED] = 0
+        change.write(numpy["count_contacts"][0], counts)
 
     def forget_order(self) -> None:
         """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""

@@ -23,6 +23,7 @@ from carom.engine.workspace import Workspace
 from carom.layouts.programs import LANES
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
+from carom.native.change import Change
 from carom.native.kernels import link_poses_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import ArrayTable
@@ -120,15 +121,21 @@ class Engine:
 
     def changed(self) -> None:
         """Renew the launches before the next step: arrays have moved, or other parts of a step are needed."""
-        self._plan = self._plan_before = None
-        self._loaded_for = self._prepared_for = None
-        self._detection_ready = False
-        self.changes += 1
+        change = Change()
+        self.note_change(change)
+        change.commit()
 
-    def constraints_changed(self) -> None:
-        """Check the launches before the next step: the constraints have changed, and nothing else."""
-        self._plan_before = self._plan or self._plan_before
-        self._plan = None
+    def note_change(self, change: Change) -> None:
+        """The same with a change."""
+        for name in ("_plan", "_plan_before", "_loaded_for", "_prepared_for"):
+            change.set(self, name, None)
+        change.set(self, "_detection_ready", False)
+        change.set(self, "changes", self.changes + 1)
+
+    def note_constraints(self, change: Change) -> None:
+        """Check the launches before the next step: a change is one of constraints, and of nothing else."""
+        change.set(self, "_plan_before", self._plan or self._plan_before)
+        change.set(self, "_plan", None)
 
     # Structs
 

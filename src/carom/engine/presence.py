@@ -7,7 +7,7 @@ for bit as in a world made without it. Its own state stays as it is until it com
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 from carom.engine.lost_contacts import kept_rows, write_rows
 from carom.layouts.codes import ABSENT, ACTIVE, ASLEEP
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
+from carom.native.change import Change
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
     from carom.model.builder import TreeRows, WorldArrays
+    from carom.native.tables import ArrayTable
 
 Mask = NDArray[np.bool_]
 
@@ -55,9 +57,14 @@ def absent_links(arrays: WorldArrays, links: np.ndarray, worlds: np.ndarray) -> 
 
 
 def change_presence(
-    arrays: WorldArrays, contact_arrays: ContactArrays, rows: TreeRows, worlds: np.ndarray, present: Mask
-) -> Callable[[], None]:
-    """Prepare to let a body come or go in some worlds.
+    arrays: WorldArrays,
+    contact_arrays: ContactArrays,
+    rows: TreeRows,
+    worlds: np.ndarray,
+    present: Mask,
+    change: Change | None = None,
+) -> None:
+    """Let a body come or go in some worlds.
 
     Where it goes, its contacts are dropped. Where it comes or goes, bodies are woken, and contacts are not
     warm started in the next step.
@@ -68,9 +75,7 @@ def change_presence(
         rows: Rows of the body.
         worlds: Indices of the worlds, (n,).
         present: Whether it is to be present in each, (n,).
-
-    Returns:
-        A function that makes the change; it can be called again if it was interrupted.
+        change: Notes what is written; without it, it is written at once.
 
     Raises:
         ValueError: The body is soft, or a soft body is anchored to it.
@@ -79,13 +84,13 @@ def change_presence(
         raise ValueError("a soft body is present in all worlds; only bodies of rigid links can be absent")
     if any(it.body is not None and it.body.tree == rows.tree for it in contact_arrays.soft.anchors.values()):
         raise ValueError("a soft body is anchored to this body, which has to be present; remove the anchor")
-    state, tree = arrays.state.numpy, rows.tree
+    state, tree = _numpy(arrays.state, change), rows.tree
     activity = state["tree_activity"]
     was_present = activity[worlds, tree] != ABSENT
     going, coming = worlds[was_present & ~present], worlds[~was_present & present]
     changed = np.concatenate([going, coming])
     first, count = contact_arrays.shapes.shape_rows(rows)
-    contacts, counts = contact_arrays.contacts, contact_arrays.contacts.numpy["count_contacts"]
+    contacts = contact_arrays.contacts
     kept = {
         world: kept_rows(contacts, range(first, first + count), world)
         for world in going[_are_met(contact_arrays, first, count, going)].tolist()
@@ -93,18 +98,20 @@ def change_presence(
     users = contact_arrays.users.numpy
     own = (users["user_tree_a"] == tree) | (users["user_tree_b"] == tree)
     tied = np.flatnonzero(own[: contact_arrays.user_count])
+    numpy = _numpy(contacts, change)
+    for world, left in kept.items():
+        write_rows(numpy, left, world)
+    activity[going, tree], activity[coming, tree] = ABSENT, ACTIVE
+    for user in tied.tolist():
+        state["user_impulse"][changed, user] = 0.0
+    _wake(arrays, state, changed)
+    numpy["count_contacts"][changed, SORTED] = 0
+    numpy["contact_warm_start"][changed] = 0.0
 
-    def change() -> None:
-        for world, left in kept.items():
-            write_rows(contacts, left, world)
-        activity[going, tree], activity[coming, tree] = ABSENT, ACTIVE
-        for user in tied.tolist():
-            state["user_impulse"][changed, user] = 0.0
-        _wake(arrays, changed)
-        counts[changed, SORTED] = 0
-        contact_arrays.forget_warm_start(changed)
 
-    return change
+def _numpy(table: ArrayTable, change: Change | None) -> Mapping[str, np.ndarray]:
+    """The arrays of a table to write to."""
+    return table.numpy if change is None else change.arrays(table.numpy)
 
 
 def _are_met(contact_arrays: ContactArrays, first: int, count: int, worlds: np.ndarray) -> Mask:
@@ -120,9 +127,9 @@ def _are_met(contact_arrays: ContactArrays, first: int, count: int, worlds: np.n
     return met
 
 
-def _wake(arrays: WorldArrays, worlds: np.ndarray) -> None:
+def _wake(arrays: WorldArrays, state: Mapping[str, np.ndarray], worlds: np.ndarray) -> None:
     """Wake all bodies that are asleep in some worlds and may wake: what they rested on may be gone."""
-    state, count = arrays.state.numpy, arrays.used["tree"]
+    count = arrays.used["tree"]
     asleep = state["tree_activity"][worlds, :count] == ASLEEP
     if not asleep.any():
         return

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from ctypes import addressof, c_char
+from ctypes import addressof, c_char, c_int64
 from sys import intern
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.layouts.quick_world import DAMPING, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
+from carom.native.change import Change, blank
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
 
@@ -29,6 +30,19 @@ _NAMES = [intern(name) for name in SURFACE]
 # Without contacts, a step of so few links ends within some microseconds.
 _FEW_LINKS, _FEW_SWEEPS = 32, 100
 _MASS, _INERTIA, _FIXED_BASE = intern("mass"), intern("inertia"), intern("fixed_base")
+# Fields of the record without which the other addresses are not used.
+_OF_STEP = "step.run", "detection.run"
+_CHANGES = "placement.changes"
+_ALL = (
+    "find_poses.call.function",
+    "find_twists.call.function",
+    *_OF_STEP,
+    "report.call.function",
+    "placement.place.function",
+    _CHANGES,
+    "nearest.search.function",
+)
+_MINUS_ONE = c_int64(-1)
 
 
 class QuickScene:
@@ -42,6 +56,7 @@ class QuickScene:
         "_detection",
         "_is_empty",
         "_kept",
+        "_known_blanks",
         "_posed",
         "_posing",
         "_run",
@@ -61,24 +76,34 @@ class QuickScene:
         # The last launch that updates link poses, and the structs that it and other addresses are made for.
         self._posing: TreeLaunch | None = None
         self._posed: tuple[Any, ...] = ()
+        self._known_blanks: dict[tuple[str, ...], list[bytes]] = {}
         # Nothing was set since everything was forgotten.
         self._is_empty = True
 
-    def forget(self) -> None:
-        """Forget all addresses: the world has changed."""
+    def forget(self, change: Change) -> None:
+        """Forget all addresses with a change, after which the world is another."""
         if self._is_empty:
             return
-        self.record.find_poses.call.function = None
-        self.record.find_twists.call.function = None
-        self.pause_step()
-        self._run, self._stepped = None, ()
-        self.forget_queries()
-        self._kept.clear()
-        self._is_empty = True
+        change.copy_blocks(self._blanks(_ALL), self.record)
+        change.set(self, "_run", None)
+        change.set(self, "_stepped", ())
+        change.set(self, "_kept", [])
+        change.set(self, "_is_empty", True)
 
-    def pause_step(self) -> None:
+    def pause_step(self, change: Change) -> None:
         """Forget the addresses that detect collisions, and perform no steps until they are known again."""
-        self._step.run = self._detection.run = None
+        change.copy_blocks(self._blanks(_OF_STEP), self.record)
+
+    def _blanks(self, fields: tuple[str, ...]) -> list[bytes]:
+        """Blocks of memory that blank some fields of the record."""
+        known = self._known_blanks.get(fields)
+        if known is None:
+            known = [
+                blank(self.record, field, _MINUS_ONE) if field == _CHANGES else blank(self.record, field)
+                for field in fields
+            ]
+            self._known_blanks[fields] = known
+        return known
 
     def resume_step(self) -> None:
         """Perform steps again as before `pause_step`."""

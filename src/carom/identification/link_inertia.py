@@ -13,8 +13,8 @@ from carom.description.pose import Pose
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.flags import LoadFlags
+from carom.native.change import Change
 from carom.native.products import product
-from carom.scene.changes import part
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -57,16 +57,19 @@ def set_link_inertia(body: Body, link: int, mass: float, centre: ArrayLike, iner
     links[link] = changed
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
     row = body.first_link + 1 + link
-    world.contact_arrays.shapes.replace_pieces(row, changed, implicit_cylinder=implicit)
-    body.spec = replace(body.spec, links=links)
-    dynamics = body.dynamics(link)
-    dynamics.mass, dynamics.inertia = changed.mass, changed.inertia
-    world.arrays.write_inertia(row, changed.mass, changed.inertia)
-    world.arrays.write_joints(body.rows, body.spec)
-    body.derived.clear()
-    world.scene_changed()
-    part(world, [row])
-    body.update_link_poses()
+    change = Change()
+    world.contact_arrays.shapes.replace_pieces(change, row, changed, implicit_cylinder=implicit)
+    spec = replace(body.spec, links=links)
+    change.set(body, "spec", spec)
+    change.set(body, "derived", {})
+    change.set(body.dynamics(link), "mass", changed.mass)
+    change.set(body.dynamics(link), "inertia", changed.inertia)
+    world.arrays.note_inertia(change, row, changed.mass, changed.inertia)
+    world.arrays.note_joints(change, body.rows, spec)
+    world.contact_arrays.part(change, [row])
+    world.note_link_poses(change, body)
+    world.change_scene(change)
+    change.commit()
 
 
 def _check(body: Body, link: int) -> None:

@@ -1,5 +1,6 @@
-"""Rows of tables, as native code puts them in and takes them out, and blocks of memory, as it copies them."""
+"""Rows of tables that native code puts in and takes out, and memory that it copies."""
 
+from carom.layouts.programs import TreeCall
 from carom.layouts.records import Bytes, Int64, Read, c_record
 
 
@@ -42,3 +43,33 @@ class Block:
     source: Bytes
     target: Bytes
     size: Int64
+
+
+@c_record()
+class RowCut:
+    """Consecutive rows to be taken out of each axis of a table; there are `used` rows."""
+
+    table: Read[RowTable]
+    first: Read[Int64]
+    count: Read[Int64]
+    used: Read[Int64]
+
+
+@c_record()
+class KernelRun:
+    """A launch of a kernel, on a tree where it has one."""
+
+    call: TreeCall
+    tree: Int64
+
+
+@c_record()
+class Write:
+    """The part of a change that is in memory: rows are taken out, then blocks copied, then kernels run."""
+
+    cuts: Read[RowCut]
+    blocks: Read[Block]
+    runs: Read[KernelRun]
+    cut_count: Int64
+    block_count: Int64
+    run_count: Int64

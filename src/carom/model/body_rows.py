@@ -10,6 +10,7 @@ from carom.model.body_spec import BodySpec
 from carom.model.bounds import Bounds
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays, Surface
+from carom.native.change import Change
 
 MAX_BYTES = 1 << 20
 """Bodies with larger rows, those of large triangle meshes, are written anew each time [bytes]."""
@@ -58,26 +59,27 @@ def body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
     """
     # Tables are kept for the next body; those of a body that could not be written are not.
     arrays, shapes = _spare.pop() if _spare else (WorldArrays(), ShapeArrays())
-    shorten = shapes.way_back(), arrays.way_back()
-    rows = arrays.append(spec, IDENTITY)
-    shapes.append(spec, rows, surfaces)
-    body = shapes.body_of(rows)
+    change = Change()
+    rows = arrays.append(change, spec, IDENTITY)
+    # The change is not made: the tables stay empty, and the rows are written.
+    body = shapes.append(change, spec, rows, surfaces)
+    used: dict[str, int] = change.get(shapes, "used")
     # A longer table would hold its memory for ever.
     is_small = max(*shapes.capacity.values(), *arrays.model.capacity.values()) <= MAX_ROWS
     written = BodyRows(
         rows.count,
-        dict(shapes.used),
+        dict(used),
         arrays.row_changes.packed(rows.count),
-        shapes.table.row_changes.packed(shapes.used),
+        shapes.table.row_changes.packed(used),
         arrays.row_changes.first_rows(rows.count),
-        shapes.table.row_changes.first_rows(shapes.used),
+        shapes.table.row_changes.first_rows(used),
         tuple(body.bounds),
         tuple(body.margins),
         tuple(body.widening),
         shapes.breaking_fraction,
     )
     if is_small and not _spare:
-        for step in shorten:
-            step()
+        arrays.clear_unused()
+        shapes.clear_unused()
         _spare.append((arrays, shapes))
     return written if len(written.rows) + len(written.shape_rows) <= MAX_BYTES else None

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,6 +29,7 @@ from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
 from carom.model.actuator_rows import check_joint_ranges, join_actuators, write_actuator
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
+from carom.native.change import Change
 from carom.native.products import length, product
 from carom.native.row_changes import RowChanges
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
@@ -113,6 +113,8 @@ class WorldArrays:
         )
         # The numbers of replacements for which it was made, and it.
         self._row_changes: tuple[tuple[int, int], RowChanges] | None = None
+        # Whether rows that are not in use are zero.
+        self._is_clear = True
 
     def repeated(self, world_count: int) -> WorldArrays:
         """Arrays for `world_count` worlds, all copies of the first; they share its parameters."""
@@ -120,6 +122,7 @@ class WorldArrays:
         other.world_count = world_count
         other.used = self.used.copy()
         other._row_changes = None
+        other._is_clear = True
         other.model = self.model.copy()
         other.state = self.state.copy(world_count, self.used)
         return other
@@ -148,16 +151,18 @@ class WorldArrays:
 
     def reserve(self, **more: int) -> None:
         """Make room for more rows on the named axes."""
-        self._make_room({axis: self.used[axis] + count for axis, count in more.items()})
+        self._make_room(Change(), {axis: self.used[axis] + count for axis, count in more.items()})
 
-    def _make_room(self, needed: dict[str, int]) -> None:
+    def _make_room(self, change: Change, needed: dict[str, int]) -> None:
         if self.model.lacks(needed) or self.state.lacks(needed):
             # Both at once: what is derived from their arrays is made again if either of them grows.
-            for table in self.tables:
-                table.reserve(room_ahead(needed))
+            change.make_room(self.tables, room_ahead(needed))
 
-    def append(self, spec: BodySpec, base_pose: Pose) -> TreeRows:
-        """Add a body at rest, its joints at zero, the inertial frame of its base at a world pose."""
+    def append(self, change: Change, spec: BodySpec, base_pose: Pose) -> TreeRows:
+        """Add a body at rest, its joints at zero, the inertial frame of its base at a world pose.
+
+        It is written to rows that are not in use before the change.
+        """
         codes = [JOINT_CODE[link.joint_type] for link in spec.links]
         joint_dofs = sum(DOF_COUNT[code] for code in codes)
         dofs = BASE_VELOCITIES + joint_dofs
@@ -175,8 +180,10 @@ class WorldArrays:
             "sensor": sum(sensor.memory for sensor in spec.sensors),
         }
         check_joint_ranges(spec.actuators)
-        self.reserve(**count)
-        rows = TreeRows(self.used["tree"], {axis: self.used[axis] for axis in count}, count)
+        used = self._begin(change)
+        needed = {**used, **{axis: used[axis] + number for axis, number in count.items()}}
+        self._make_room(change, {axis: needed[axis] for axis in count})
+        rows = TreeRows(used["tree"], {axis: used[axis] for axis in count}, count)
         self._write_tree(rows, spec)
         self._write_links(rows, spec, codes)
         for row, actuator in enumerate(spec.actuators, start=rows.first["actuator"]):
@@ -190,19 +197,18 @@ class WorldArrays:
             self.state.numpy["node_position"][:, nodes] = (
                 product(spec.soft.nodes, turn.T) + base_pose.position
             )
-        for axis, number in count.items():
-            self.used[axis] += number
+        self._end(change, needed)
         return rows
 
-    def put(self, known: BodyRows, base_pose: Pose) -> TreeRows:
+    def put(self, change: Change, known: BodyRows, base_pose: Pose) -> TreeRows:
         """Add a body at rest whose rows are known, and return its rows here; see `append`."""
-        used, count = self.used, known.count
+        used, count = self._begin(change), known.count
         needed = {axis: used[axis] + number for axis, number in count.items()}
-        self._make_room(needed)
+        self._make_room(change, needed)
         rows = TreeRows(used["tree"], {axis: used[axis] for axis in count}, count)
         self.row_changes.put(known.rows, rows.first, known.packed_count)
         self._write_start(rows, base_pose)
-        used.update(needed)
+        self._end(change, {**used, **needed})
         return rows
 
     def _write_tree(self, rows: TreeRows, spec: BodySpec) -> None:
@@ -260,7 +266,7 @@ class WorldArrays:
             model["link_dof_count"][row] = DOF_COUNT[code]
             self.write_inertia(row, link.mass, link.inertia)
             model["link_gravity_compensation"][:, row] = link.gravity_compensation
-            self._write_joint(row, link, parent, code)
+            _write_joint(model, row, link, parent, code)
             last_dof[j] = last_dof[link.parent]
             for _ in range(DOF_COUNT[code]):
                 model["dof_parent"][dof] = last_dof[j]
@@ -276,9 +282,9 @@ class WorldArrays:
             model["position_spring"][:, position : position + POSITION_COUNT[code]] = link.spring_rest
             position += POSITION_COUNT[code]
 
-    def set_base_freedom(self, rows: TreeRows, *, free: bool) -> None:
-        """Free the base of a body, or fix it in the world."""
-        model = self.model.numpy
+    def set_base_freedom(self, rows: TreeRows, *, free: bool, change: Change | None = None) -> None:
+        """Free the base of a body, or fix it in the world; with a change, if there is one."""
+        model = self.model.numpy if change is None else change.arrays(self.model.numpy)
         tree, first, count = rows.tree, rows.first["dof"], rows.count["dof"]
         joints = first + BASE_VELOCITIES
         last_base_dof = joints - 1
@@ -287,60 +293,28 @@ class WorldArrays:
         parents[roots] = last_base_dof if free else -1
         parents[first:joints] = np.arange(first - 1, last_base_dof)
         parents[first] = -1
-        self._link_dofs(rows, last_base_dof if free else -1)
+        _link_dofs(model, rows, last_base_dof if free else -1)
         model["tree_fixed"][tree] = not free
         model["tree_first_dof"][tree] = first if free else joints
         model["tree_dof_count"][tree] = count if free else count - BASE_VELOCITIES
         model["link_dof_count"][rows.first["link"]] = BASE_VELOCITIES if free else 0
-
-    def _link_dofs(self, rows: TreeRows, base_dof: int) -> None:
-        """Record for each link the last of the dofs that move it."""
-        model = self.model.numpy
-        first = rows.first["link"]
-        nearest = model["link_nearest_dof"]
-        nearest[first] = base_dof
-        for row in range(first + 1, first + rows.count["link"]):
-            dofs = model["link_dof_count"][row]
-            last = model["link_first_dof"][row] + dofs - 1
-            nearest[row] = last if dofs else nearest[model["link_parent"][row]]
 
     def write_inertia(self, row: int, mass: float, inertia: Vector3) -> None:
         """Set a link's mass [kg] and principal moments [kg m²]."""
         self.model.numpy["link_mass"][:, row] = mass
         self.model.numpy["link_inertia"][:, row] = inertia
 
-    def write_joints(self, rows: TreeRows, spec: BodySpec) -> None:
-        """Write the frames and axes of a body's joints again after inertial frames have changed."""
+    def note_inertia(self, change: Change, row: int, mass: float, inertia: Vector3) -> None:
+        """The same with a change."""
+        change.write(self.model.numpy["link_mass"][:, row], mass)
+        change.write(self.model.numpy["link_inertia"][:, row], inertia)
+
+    def note_joints(self, change: Change, rows: TreeRows, spec: BodySpec) -> None:
+        """Write the frames and axes of a body's joints again with a change of inertial frames."""
+        model = change.arrays(self.model.numpy)
         for j, link in enumerate(spec.links):
             row = rows.first["link"] + 1 + j
-            self._write_joint(row, link, spec.link(link.parent), JOINT_CODE[link.joint_type])
-
-    def _write_joint(self, row: int, link: LinkSpec, parent: LinkSpec, code: JointCode) -> None:
-        model = self.model.numpy
-        to_parent_inertial = conjugate(parent.inertial_frame.orientation)
-        to_inertial = conjugate(link.inertial_frame.orientation)
-        from_parent_com = subtracted(link.joint_frame.position, parent.inertial_frame.position)
-        axis = rotate(to_inertial, link.joint_axis)
-        # The length of an axis scales the joint's velocity, not its angle.
-        rate = link.joint_axis_length
-        model["link_joint_rotation"][row] = multiplied(
-            multiplied(to_parent_inertial, link.joint_frame.orientation), link.inertial_frame.orientation
-        )
-        model["link_pivot_in_parent"][row] = rotate(to_parent_inertial, from_parent_com)
-        model["link_com_from_pivot"][row] = rotate(to_inertial, link.inertial_frame.position)
-        model["link_unit_axis"][row] = axis
-        model["link_axis"][row] = (axis[0] * rate, axis[1] * rate, axis[2] * rate)
-        if code == JointCode.PLANAR:
-            # Bullet's planar joint acts at the centre of mass.
-            model["link_com_from_pivot"][row] = 0.0
-            normal = np.asarray(axis) / length(np.asarray(axis))
-            aside = np.array([0.0, 1.0, 0.0]) if normal[0] > 0.999 else np.array([1.0, 0.0, 0.0])
-            axis1 = np.cross(normal, aside)
-            axis1 /= length(axis1)
-            model["link_unit_axis"][row] = normal
-            model["link_axis"][row] = normal
-            model["link_planar_axis1"][row] = axis1
-            model["link_planar_axis2"][row] = np.cross(axis1, normal)
+            _write_joint(model, row, link, spec.link(link.parent), JOINT_CODE[link.joint_type])
 
     def _reset_motor(self, dof: int, code: JointCode, *, held: bool) -> None:
         """Write the initial motor of a dof: its target velocity is zero, and without `held` its force too."""
@@ -367,36 +341,80 @@ class WorldArrays:
         start = self.state.numpy["position"][:, first : first + BASE_POSITIONS]
         start[:] = (*base_pose.position, *base_pose.orientation)
 
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes all bodies that are appended from now on."""
-        return partial(self._shorten, self.used.copy())
-
-    def _shorten(self, used: dict[str, int]) -> None:
+    def clear_unused(self) -> None:
+        """Make rows that are not in use zero: a body that was not added in the end may be in them."""
+        if self._is_clear:
+            return
         for table in self.tables:
-            table.clear_beyond(used)
-        self.used.update(used)
+            table.clear_beyond(self.used)
+        self._is_clear = True
 
-    def removal(self, rows: TreeRows, others: Sequence[TreeRows]) -> Callable[[], None]:
-        """Prepare to remove a body's rows; those of others after it move up.
+    def _begin(self, change: Change) -> dict[str, int]:
+        """Begin to write to unused rows for a change; returns those in use by what was noted so far."""
+        used: dict[str, int] = change.get(self, "used")
+        if used is self.used:
+            self.clear_unused()
+        self._is_clear = False
+        return used
 
-        The function that is returned can be called again if it was interrupted.
-        """
-        remove_rows = self.row_changes.removal(rows.first, rows.count, self.used)
+    def _end(self, change: Change, used: dict[str, int]) -> None:
+        """Note that rows are used, in which a body has been written."""
+        change.set(self, "used", used)
+        change.set(self, "_is_clear", True)
+
+    def remove(self, change: Change, rows: TreeRows, others: Sequence[TreeRows]) -> None:
+        """Remove a body's rows with a change; those of others after it move up."""
+        self.row_changes.cut(change, rows.first, rows.count, self.used)
         used = {axis: self.used[axis] - count for axis, count in rows.count.items()}
-        moved = [
-            (other, {axis: first - rows.count[axis] for axis, first in other.first.items()})
-            for other in others
-            if other.tree > rows.tree
-        ]
-
-        def remove() -> None:
-            remove_rows()
-            self.used.update(used)
-            for other, first in moved:
-                other.first, other.tree = first, first["tree"]
-
-        return remove
+        change.set(self, "used", {**self.used, **used})
+        for other in others:
+            if other.tree < rows.tree:
+                continue
+            first = {axis: first - rows.count[axis] for axis, first in other.first.items()}
+            change.set(other, "first", first)
+            change.set(other, "tree", first["tree"])
 
     def structs(self) -> dict[str, Any]:
         """C structs whose fields are views of the present arrays, by the names of kernel arguments."""
         return {"model": self.model.struct(), "state": self.state.struct()}
+
+
+def _link_dofs(model: Mapping[str, np.ndarray], rows: TreeRows, base_dof: int) -> None:
+    """Record for each link the last of the dofs that move it."""
+    first = rows.first["link"]
+    nearest = model["link_nearest_dof"]
+    nearest[first] = base_dof
+    for row in range(first + 1, first + rows.count["link"]):
+        dofs = model["link_dof_count"][row]
+        last = model["link_first_dof"][row] + dofs - 1
+        nearest[row] = last if dofs else nearest[model["link_parent"][row]]
+
+
+def _write_joint(
+    model: Mapping[str, np.ndarray], row: int, link: LinkSpec, parent: LinkSpec, code: JointCode
+) -> None:
+    """Write the frames and axes of a joint."""
+    to_parent_inertial = conjugate(parent.inertial_frame.orientation)
+    to_inertial = conjugate(link.inertial_frame.orientation)
+    from_parent_com = subtracted(link.joint_frame.position, parent.inertial_frame.position)
+    axis = rotate(to_inertial, link.joint_axis)
+    # The length of an axis scales the joint's velocity, not its angle.
+    rate = link.joint_axis_length
+    model["link_joint_rotation"][row] = multiplied(
+        multiplied(to_parent_inertial, link.joint_frame.orientation), link.inertial_frame.orientation
+    )
+    model["link_pivot_in_parent"][row] = rotate(to_parent_inertial, from_parent_com)
+    model["link_com_from_pivot"][row] = rotate(to_inertial, link.inertial_frame.position)
+    model["link_unit_axis"][row] = axis
+    model["link_axis"][row] = (axis[0] * rate, axis[1] * rate, axis[2] * rate)
+    if code == JointCode.PLANAR:
+        # Bullet's planar joint acts at the centre of mass.
+        model["link_com_from_pivot"][row] = 0.0
+        normal = np.asarray(axis) / length(np.asarray(axis))
+        aside = np.array([0.0, 1.0, 0.0]) if normal[0] > 0.999 else np.array([1.0, 0.0, 0.0])
+        axis1 = np.cross(normal, aside)
+        axis1 /= length(axis1)
+        model["link_unit_axis"][row] = normal
+        model["link_axis"][row] = normal
+        model["link_planar_axis1"][row] = axis1
+        model["link_planar_axis2"][row] = np.cross(axis1, normal)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Mapping
 
 import numpy as np
 
 from carom.description.compliance import Compliance, PairContact
+from carom.native.change import Change
 from carom.native.tables import ArrayTable
 
 _FIELDS = (
@@ -57,19 +57,28 @@ class PairFilters:
 
         With `contact` their contacts are as it says, whatever the links say; without, that stays as it is.
         """
+        change = Change()
+        self.note(change, link_a, link_b, enabled=enabled, contact=contact)
+        change.commit()
+
+    def note(
+        self, change: Change, link_a: int, link_b: int, *, enabled: bool, contact: PairContact | None = None
+    ) -> None:
+        """The same with a change, which has no other rule."""
         pair = (min(link_a, link_b), max(link_a, link_b))
+        count = len(self._pairs)
         at = bisect_left(self._pairs, pair)
-        if at == len(self._pairs) or self._pairs[at] != pair:
-            self._table.reserve({"filter": len(self._pairs) + 1})
+        numpy = self._table.numpy
+        if at == count or self._pairs[at] != pair:
+            numpy = {**numpy, **self._table.grow(change, {"filter": count + 1})}
             for name in _FIELDS:
-                rows = self._table.numpy[name]
-                rows[at + 1 : len(self._pairs) + 1] = rows[at : len(self._pairs)].copy()
-                rows[at] = 0
-            self._pairs.insert(at, pair)
+                change.write(numpy[name][at + 1 : count + 1], self._table.numpy[name][at:count])
+                change.write(numpy[name][at : at + 1], 0)
+            change.set(self, "_pairs", [*self._pairs[:at], pair, *self._pairs[at:]])
         for name, value in zip(_FIELDS, (*pair, int(enabled)), strict=False):
-            self._table.numpy[name][at] = value
+            change.write(numpy[name][at : at + 1], value)
         if contact is not None:
-            self._write(at, contact)
+            self._note_contact(change, numpy, pair, at, contact)
 
     def _contact(self, row: int) -> PairContact | None:
         if not self.has_contacts:
@@ -82,7 +91,14 @@ class PairFilters:
         compliance = Compliance(*reference[:2], *impedance[:3], *reference[2:])
         return PairContact(compliance, tuple(friction), impedance[3], tuple(lateral[:2]))
 
-    def _write(self, row: int, contact: PairContact) -> None:
+    def _note_contact(
+        self,
+        change: Change,
+        numpy: Mapping[str, np.ndarray],
+        pair: tuple[int, int],
+        row: int,
+        contact: PairContact,
+    ) -> None:
         yielding = contact.compliance
         values = (
             yielding.reference,
@@ -91,43 +107,30 @@ class PairFilters:
             (*contact.lateral_reference, 0.0, 0.0),
         )
         for name, value in zip(_OF_CONTACTS, values, strict=True):
-            self._table.numpy[name][row] = value
-        margins, twists = (self._table.numpy[f"link_pair_{name}"] for name in ("margin", "twists"))
-        for link in self._pairs[row]:
-            margins[link] = max(margins[link], contact.margin)
-            twists[link] |= max(contact.friction[1:]) > 0.0
-        self.has_contacts = True
+            change.write(numpy[name][row], value)
+        margins, twists = (numpy[f"link_pair_{name}"] for name in ("margin", "twists"))
+        for link in pair:
+            change.write(margins[link : link + 1], max(margins[link], contact.margin))
+            change.write(twists[link : link + 1], twists[link] | (max(contact.friction[1:]) > 0.0))
+        change.set(self, "has_contacts", True)
 
-    def way_back(self) -> Callable[[], None]:
-        """A function that restores the present rules."""
+    def remove(self, change: Change, first: int, count: int) -> None:
+        """Drop the rules of links that are removed with a change; later links move up."""
         if not self._pairs:
-            return self._forget_all
-        return partial(self._write_all, self._pairs.copy(), self._columns(range(len(self._pairs))))
-
-    def _forget_all(self) -> None:
-        self._write_all([], self._columns(range(0)))
-
-    def removal(self, first: int, count: int) -> Callable[[], None]:
-        """Prepare to drop the rules of removed links; later links move up. It can be called again."""
+            return
         after = first + count
         kept, rows = [], []
         for row, (a, b) in enumerate(self._pairs):
             if not (first <= a < after or first <= b < after):
                 kept.append((a - count if a >= after else a, b - count if b >= after else b))
                 rows.append(row)
-        return partial(self._write_all, kept, self._columns(rows))
+        links = np.array(kept, dtype=np.int32).reshape(-1, 2).T
+        for name, column in zip(_FIELDS, (*links, *self._columns(rows)), strict=True):
+            target = self._table.numpy[name]
+            change.write(target[: len(kept)], column)
+            change.write(target[len(kept) : len(self._pairs)], 0)
+        change.set(self, "_pairs", kept)
 
     def _columns(self, rows: range | list[int]) -> list[np.ndarray]:
         """Copies of some rows of all fields but those of the links."""
         return [self._table.numpy[name][list(rows)].copy() for name in _FIELDS[2:]]
-
-    def _write_all(self, pairs: list[tuple[int, int]], columns: list[np.ndarray]) -> None:
-        if not pairs and not self._pairs:
-            return
-        links = np.array(pairs, dtype=np.int32).reshape(-1, 2).T
-        for name, column in zip(_FIELDS, (*links, *columns), strict=True):
-            rows = self._table.numpy[name]
-            rows[: len(pairs)] = column
-            rows[len(pairs) :] = 0
-        # Assigned last, so that a call after an interruption repeats everything.
-        self._pairs = pairs.copy()

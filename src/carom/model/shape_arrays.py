@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import hypot
 from typing import TYPE_CHECKING, Any, Protocol
@@ -21,6 +21,7 @@ from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
+from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
 if TYPE_CHECKING:
@@ -122,6 +123,8 @@ class ShapeArrays:
         self.changes: int = 0
         self.looks_ahead: bool = False
         self._bodies: dict[int, BodyShapes] = {}
+        # Whether rows that are not in use are zero.
+        self._is_clear = True
 
     @property
     def capacity(self) -> dict[str, int]:
@@ -146,7 +149,9 @@ class ShapeArrays:
         """A C struct whose fields are views of the arrays."""
         return self.table.struct()
 
-    def append(self, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]) -> None:
+    def append(
+        self, change: Change, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]
+    ) -> BodyShapes:
         """Add the shapes of a body whose links were appended to the model just before.
 
         `rows` are those of its tree; this object is kept, and read again whenever the body changes.
@@ -158,30 +163,30 @@ class ShapeArrays:
         links = [spec.base, *spec.links]
         implicit = bool(spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         pieces = [piece for j, link in enumerate(links) for piece in placed_pieces(link, j, implicit)]
-        body = BodyShapes(
-            rows, {axis: self.used[axis] for axis in AXES}, row_counts([placed.piece for placed in pieces])
-        )
+        used = self._begin(change)
+        count = row_counts([placed.piece for placed in pieces])
+        body = BodyShapes(rows, {axis: used[axis] for axis in AXES}, count)
         body.bounds = [link_bounds(link, implicit_cylinder=implicit) for link in links]
         body.margins = [collision_margin(link) for link in links]
         body.widening = [
             widens_bounds(link, [placed.piece.kind for placed in pieces if placed.link == j])
             for j, link in enumerate(links)
         ]
-        needed = {axis: self.used[axis] + body.count[axis] for axis in AXES}
-        needed["link"] = self.used["link"] + len(links)
-        self._make_room(needed)
-        self._bodies[rows.first["link"]] = body
+        needed = {axis: used[axis] + body.count[axis] for axis in AXES}
+        needed["link"] = used["link"] + len(links)
+        self._make_room(change, needed)
         self._write_links(body, spec, links)
         self._write_pieces(body, pieces)
-        self.used.update(needed)
-        for link_row, surface in enumerate(surfaces, start=self.used["link"] - len(links)):
-            self.write_surface(link_row, surface)
+        for link, surface in enumerate(surfaces):
+            self._write_whole_surface(change, body, link, surface)
+        self._end(change, body, needed)
+        return body
 
-    def put(self, known: BodyRows, rows: TreeRows) -> None:
+    def put(self, change: Change, known: BodyRows, rows: TreeRows) -> None:
         """Add the shapes of a body whose rows are known and are in the model already; see `append`."""
-        used, count = self.used, known.shape_count
+        used, count = self._begin(change), known.shape_count
         needed = {axis: used[axis] + number for axis, number in count.items()}
-        self._make_room(needed)
+        self._make_room(change, needed)
         first = {axis: used[axis] for axis in AXES}
         body = BodyShapes(
             rows,
@@ -191,17 +196,21 @@ class ShapeArrays:
             [*known.margins],
             [*known.widening],
         )
-        self._bodies[rows.first["link"]] = body
         first_row = {**first, "link": used["link"], "tree": rows.tree}
         self.table.row_changes.put(known.shape_rows, first_row, known.packed_shape_count)
-        used.update(needed)
-        self.changes += 1
+        self._end(change, body, {**used, **needed})
+        change.set(self, "changes", change.get(self, "changes") + 1)
         if self.breaking_fraction != known.breaking_fraction:
             self._write_breaking(body)
 
-    def _make_room(self, needed: dict[str, int]) -> None:
+    def _make_room(self, change: Change, needed: dict[str, int]) -> None:
         if self.table.lacks(needed):
-            self.table.reserve(room_ahead(needed))
+            change.make_room([self.table], room_ahead(needed))
+
+    @property
+    def bodies(self) -> list[BodyShapes]:
+        """The rows of the shapes of all bodies."""
+        return list(self._bodies.values())
 
     def body_of(self, rows: TreeRows) -> BodyShapes:
         """The rows of a body's shapes."""
@@ -237,19 +246,24 @@ class ShapeArrays:
             if numpy["link_shape_count"][link] == 0:
                 numpy["link_first_shape"][link] = row
             numpy["link_shape_count"][link] += 1
-            self._write_piece(body, placed, at)
+            self._write_piece(numpy, body.bounds[placed.link], placed, at)
             at["shape"] += 1
         for link in {placed.link for placed in pieces}:
-            self._write_link_bounds(body, link)
+            self._write_link_bounds(numpy, first_link + link, body.bounds[link])
 
-    def _write_piece(self, body: BodyShapes, placed: PlacedPiece, at: dict[str, int]) -> None:
-        """Write what can change in a piece, to the rows `at`; those of vertices, faces and nodes advance."""
-        numpy, piece, row = self.table.numpy, placed.piece, at["shape"]
+    def _write_piece(
+        self, numpy: Mapping[str, np.ndarray], bounds: Bounds, placed: PlacedPiece, at: dict[str, int]
+    ) -> None:
+        """Write what can change in a piece, to the rows `at`; those of vertices, faces and nodes advance.
+
+        `bounds` are those of its link.
+        """
+        piece, row = placed.piece, at["shape"]
         numpy["shape_pose"][row] = placed.pose
         numpy["shape_size"][row] = piece.size
         numpy["shape_margin"][row] = piece.margin
         numpy["shape_center"][row] = piece.center
-        numpy["shape_breaking"][row] = self.breaking_fraction * reach(body.bounds[placed.link])
+        numpy["shape_breaking"][row] = self.breaking_fraction * reach(bounds)
         polyhedron, hierarchy = piece.polyhedron, piece.hierarchy
         if polyhedron is None:
             return
@@ -269,110 +283,131 @@ class ShapeArrays:
         for axis in ("vertex", "face", "corner", "node"):
             at[axis] += counts[axis]
 
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes the shapes of all bodies appended from now on, and restores the rules."""
-        used, bodies, looks_ahead = self.used.copy(), len(self._bodies), self.looks_ahead
-        forget_rules = self.filters.way_back()
+    def clear_unused(self) -> None:
+        """Make rows that are not in use zero: a body that was not added in the end may be in them."""
+        if not self._is_clear:
+            self.table.clear_beyond(self.used)
+            self._is_clear = True
 
-        def go_back() -> None:
-            forget_rules()
-            self.table.clear_beyond(used)
-            self.used.update(used)
-            while len(self._bodies) > bodies:
-                self._bodies.popitem()
-            self.looks_ahead = looks_ahead
+    def _begin(self, change: Change) -> dict[str, int]:
+        """Begin to write to unused rows for a change; returns those in use by what was noted so far."""
+        used: dict[str, int] = change.get(self, "used")
+        if used is self.used:
+            self.clear_unused()
+        self._is_clear = False
+        return used
 
-        return go_back
+    def _end(self, change: Change, body: BodyShapes, used: dict[str, int]) -> None:
+        """Note that rows are used, in which a body has been written."""
+        change.put(self._bodies, body.rows.first["link"], body)
+        change.set(self, "used", used)
+        change.set(self, "_is_clear", True)
 
     def shape_rows(self, rows: TreeRows) -> tuple[int, int]:
         """First row and number of a body's shapes."""
         body = self._bodies[rows.first["link"]]
         return body.first["shape"], body.count["shape"]
 
-    def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove a body's shapes, while its tree still has rows; it can be called again."""
+    def remove(self, change: Change, rows: TreeRows) -> None:
+        """Remove a body's shapes with a change, while its tree still has rows."""
         first_link, link_count = rows.first["link"], rows.count["link"]
         body = self._bodies[first_link]
         count = {**body.count, "link": link_count}
-        remove_rows = self.table.removal(
-            {**body.first, "link": first_link, "tree": rows.tree}, {**count, "tree": 1}, self.used
-        )
-        forget_rules = self.filters.removal(first_link, link_count)
-        used = {axis: self.used[axis] - number for axis, number in count.items()}
-        moved = [
-            (other, {axis: first - count[axis] for axis, first in other.first.items()})
-            for link, other in self._bodies.items()
-            if link > first_link
-        ]
-        bodies = {
-            link - link_count if link > first_link else link: other
-            for link, other in self._bodies.items()
-            if other is not body
-        }
+        first = {**body.first, "link": first_link, "tree": rows.tree}
+        self.table.cut(change, first, {**count, "tree": 1}, self.used)
+        self.filters.remove(change, first_link, link_count)
+        change.set(self, "used", {axis: self.used[axis] - number for axis, number in count.items()})
+        bodies = {}
+        for link, other in self._bodies.items():
+            if link > first_link:
+                change.set(other, "first", {axis: row - count[axis] for axis, row in other.first.items()})
+                bodies[link - link_count] = other
+            elif other is not body:
+                bodies[link] = other
+        change.set(self, "_bodies", bodies)
 
-        def remove() -> None:
-            forget_rules()
-            remove_rows()
-            self.used.update(used)
-            for other, first in moved:
-                other.first = first
-            self._bodies = bodies
+    def write_surface(self, link_row: int, surface: Surface) -> None:
+        """Write the contact parameters of a link."""
+        change = Change()
+        self._write_whole_surface(change, *self._body_of(link_row), surface)
+        change.commit()
 
-        return remove
+    def _write_whole_surface(self, change: Change, body: BodyShapes, link: int, surface: Surface) -> None:
+        values = {name: getattr(surface, name) for name in SURFACE_FIELDS}
+        if values["collision_margin"] == body.margins[link]:
+            del values["collision_margin"]
+        self._write_surface(change, self.table.numpy, body, link, values)
 
-    def write_surface(self, link_row: int, surface: Surface, names: Iterable[str] | None = None) -> None:
-        """Write the contact parameters of a link, or only those among `names`; ignores other names."""
-        numpy = self.table.numpy
-        for name in SURFACE_FIELDS if names is None else names:
-            field = SURFACE_FIELDS.get(name)
-            if field is None:
-                continue
+    def note_surface(self, change: Change, link_row: int, values: Mapping[str, Any]) -> None:
+        """Write some contact parameters of a link with a change."""
+        numpy = change.arrays(self.table.numpy)
+        self._write_surface(change, numpy, *self._body_of(link_row), values)
+
+    def _write_surface(
+        self,
+        change: Change,
+        numpy: Mapping[str, np.ndarray],
+        body: BodyShapes,
+        link: int,
+        values: Mapping[str, Any],
+    ) -> None:
+        """Write contact parameters of a link to arrays, and note what else changes."""
+        link_row = body.rows.first["link"] + link
+        for name, value in values.items():
+            field = SURFACE_FIELDS[name]
             if field.startswith("link"):
-                numpy[field][:, link_row] = getattr(surface, name)
-                continue
-            if field == "shape_margin":
-                if names is not None or surface.collision_margin != self._margin(link_row):
-                    self._set_margin(link_row, surface.collision_margin)
-                continue
-            if field == "shape_ccd_radius" and surface.ccd_swept_sphere_radius > 0.0:
-                self.looks_ahead = True
-            numpy[field][self._shapes_of(link_row)] = getattr(surface, name)
+                numpy[field][:, link_row] = value
+            elif field == "shape_margin":
+                self._set_margin(change, numpy, body, link, value)
+            else:
+                if field == "shape_ccd_radius" and value > 0.0:
+                    change.set(self, "looks_ahead", True)
+                numpy[field][self._shapes_of(link_row)] = value
 
-    def _margin(self, link_row: int) -> float:
-        body, link = self._body_of(link_row)
-        return body.margins[link]
-
-    def _set_margin(self, link_row: int, margin: float) -> None:
+    def _set_margin(
+        self, change: Change, numpy: Mapping[str, np.ndarray], body: BodyShapes, link: int, margin: float
+    ) -> None:
         """Set the margin of a link [m]: that of its compound, and of all shapes in it whose radius it is not.
 
         As in Bullet the bounds grow by as much as the margin, whatever those of the shapes within were.
         """
-        numpy = self.table.numpy
-        body, link = self._body_of(link_row)
+        link_row = body.rows.first["link"] + link
         shapes = self._shapes_of(link_row)
         kinds = numpy["shape_kind"][shapes]
         numpy["shape_margin"][shapes][~np.isin(kinds, (ShapeKind.SPHERE, ShapeKind.CAPSULE))] = margin
         swept = (kinds == ShapeKind.CAPSULE) & (numpy["shape_size"][shapes, 2] > 0.0)
         if swept.all() and len(kinds) == 1:
             numpy["shape_size"][shapes, 2] = margin
+        margins: list[float] = change.get(body, "margins").copy()
         if body.widening[link]:
-            grown = body.bounds[link].grown(margin - body.margins[link])
-            body.bounds[link], body.margins[link] = grown, margin
-            self._write_link_bounds(body, link)
+            bounds: list[Bounds] = change.get(body, "bounds").copy()
+            grown = bounds[link].grown(margin - margins[link])
+            bounds[link] = grown
+            change.set(body, "bounds", bounds)
+            numpy["link_center"][link_row] = grown.center
+            numpy["link_extents"][link_row] = np.minimum(grown.half, _UNBOUNDED)
             numpy["shape_breaking"][shapes] = self.breaking_fraction * reach(grown)
-        body.margins[link] = margin
-        self.changes += 1
+        margins[link] = margin
+        change.set(body, "margins", margins)
+        change.set(self, "changes", change.get(self, "changes") + 1)
 
     def set_default_group(self, link_row: int, *, fixed: bool) -> None:
         """Put a link in the group of fixed bases, which do not collide with each other, or of the rest."""
-        numpy = self.table.numpy
-        numpy["link_group"][link_row] = FIXED_GROUP if fixed else MOVING_GROUP
-        numpy["link_mask"][link_row] = FIXED_MASK if fixed else MOVING_MASK
+        _write_default_group(self.table.numpy, link_row, fixed)
+
+    def note_default_group(self, change: Change, link_row: int, *, fixed: bool) -> None:
+        """The same with a change."""
+        _write_default_group(change.arrays(self.table.numpy), link_row, fixed)
 
     def set_group_and_mask(self, link_row: int, group: int, mask: int) -> None:
         """Set the collision groups a link is in, and those it collides with, as bits."""
         self.table.numpy["link_group"][link_row] = _as_int32(group)
         self.table.numpy["link_mask"][link_row] = _as_int32(mask)
+
+    def note_group_and_mask(self, change: Change, link_row: int, group: int, mask: int) -> None:
+        """The same with a change."""
+        change.write(self.table.numpy["link_group"][link_row : link_row + 1], _as_int32(group))
+        change.write(self.table.numpy["link_mask"][link_row : link_row + 1], _as_int32(mask))
 
     def set_breaking_fraction(self, fraction: float) -> None:
         """Set the breaking distance of contacts, relative to the reach of a link's shapes."""
@@ -393,8 +428,10 @@ class ShapeArrays:
         body, link = self._body_of(link_row)
         return body.bounds[link]
 
-    def replace_pieces(self, link_row: int, spec: LinkSpec, *, implicit_cylinder: bool) -> None:
-        """Write a link's shapes again after their data changed; the number of rows is the same.
+    def replace_pieces(
+        self, change: Change, link_row: int, spec: LinkSpec, *, implicit_cylinder: bool
+    ) -> None:
+        """Write a link's shapes again with a change of their data; the number of rows is the same.
 
         Raises:
             ValueError: The number of rows or a kind of shape would change; nothing has changed.
@@ -408,20 +445,21 @@ class ShapeArrays:
             raise ValueError(
                 "its shapes would be of another kind, or have another number of parts or corners"
             )
-        self.changes += 1
-        body.bounds[link] = link_bounds(spec, implicit_cylinder=implicit_cylinder)
-        body.margins[link] = collision_margin(spec)
-        numpy = self.table.numpy
+        change.set(self, "changes", self.changes + 1)
+        bounds = link_bounds(spec, implicit_cylinder=implicit_cylinder)
+        for name, value in (("bounds", bounds), ("margins", collision_margin(spec))):
+            values = change.get(body, name)
+            change.set(body, name, [*values[:link], value, *values[link + 1 :]])
+        numpy = change.arrays(self.table.numpy)
         for row, placed in enumerate(pieces, start=shapes.start):
             at = {axis: int(numpy[f"shape_first_{axis}"][row]) for axis in ("vertex", "face", "node")}
             at["corner"] = int(numpy["face_first_corner"][at["face"]]) if placed.piece.polyhedron else 0
-            self._write_piece(body, placed, at | {"shape": row})
+            self._write_piece(numpy, bounds, placed, at | {"shape": row})
         if pieces:
-            self._write_link_bounds(body, link)
+            self._write_link_bounds(numpy, link_row, bounds)
 
-    def _write_link_bounds(self, body: BodyShapes, link: int) -> None:
+    def _write_link_bounds(self, numpy: Mapping[str, np.ndarray], row: int, bounds: Bounds) -> None:
         """Write the bounds of a link with shapes, and whether these are in a compound."""
-        numpy, row, bounds = self.table.numpy, body.rows.first["link"] + link, body.bounds[link]
         shapes = self._shapes_of(row)
         pose = numpy["shape_pose"][shapes.start]
         alone = shapes.stop - shapes.start == 1 and hypot(*pose[:6]) <= _IDENTITY_TOLERANCE
@@ -458,6 +496,11 @@ class ShapeArrays:
             return body, 0
         first = max(first for first in self._bodies if first <= link_row)
         return self._bodies[first], link_row - first
+
+
+def _write_default_group(numpy: Mapping[str, np.ndarray], link_row: int, fixed: bool) -> None:
+    numpy["link_group"][link_row] = FIXED_GROUP if fixed else MOVING_GROUP
+    numpy["link_mask"][link_row] = FIXED_MASK if fixed else MOVING_MASK
 
 
 def _as_int32(bits: int) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,6 +11,7 @@ from carom.description.pose import Vector3
 from carom.layouts.soft import ANCHORS, BODIES, SoftModel
 from carom.model.builder import TreeRows
 from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
+from carom.native.change import Change
 from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
 
@@ -86,7 +86,10 @@ class SoftArrays:
         self.anchors: dict[int, Anchor] = {}
 
     def append(self, spec: SoftSpec, rows: TreeRows) -> SoftRows:
-        """Add a soft body whose tree and nodes were appended to the arrays of the world just before."""
+        """Add a soft body whose tree and nodes were appended to the arrays of the world just before.
+
+        This is no change but is seen at once: soft bodies are added to drafts of worlds.
+        """
         count = {
             "soft": 1,
             "node": len(spec.nodes),
@@ -162,56 +165,28 @@ class SoftArrays:
             if anchor.body is None:
                 numpy["node_inverse_mass"][anchor.soft.first["node"] + anchor.node] = 0.0
 
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes all soft bodies and anchors that are added from now on."""
-        used, bodies, anchors = self.used.copy(), len(self.bodies), len(self.anchors)
-
-        def go_back() -> None:
-            self.table.clear_beyond(used)
-            self.used.update(used)
-            del self.bodies[bodies:]
-            while len(self.anchors) > anchors:
-                self.anchors.popitem()
-            self.table.numpy["count_soft"][BODIES] = bodies
-
-        return go_back
-
-    def removal(self, rows: TreeRows) -> Callable[[], None]:
-        """Prepare to remove the soft rows and anchors of a body, soft or not, while its tree still has rows.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
-        """
+    def remove(self, change: Change, rows: TreeRows) -> None:
+        """Remove the soft rows and anchors of a body, soft or not, with a change; its tree still has rows."""
         if not self.bodies:
-            return _nothing
+            return
         gone = next((soft for soft in self.bodies if soft.rows is rows), None)
         count: dict[str, int] = dict.fromkeys(_AXES, 0) if gone is None else gone.count
         first = {} if gone is None else gone.first
-        remove_rows = self.table.removal({**first, "tree": rows.tree}, {**count, "tree": 1}, self.used)
-        used = {axis: self.used[axis] - number for axis, number in count.items()}
-        bodies = [soft for soft in self.bodies if soft is not gone]
+        self.table.cut(change, {**first, "tree": rows.tree}, {**count, "tree": 1}, self.used)
+        change.set(self, "used", {axis: self.used[axis] - number for axis, number in count.items()})
         later = [] if gone is None else self.bodies[self.bodies.index(gone) + 1 :]
-        moved = [(soft, {axis: first - count[axis] for axis, first in soft.first.items()}) for soft in later]
+        for soft in later:
+            change.set(soft, "first", {axis: row - count[axis] for axis, row in soft.first.items()})
+        bodies = [soft for soft in self.bodies if soft is not gone]
         anchors = {
             number: anchor
             for number, anchor in self.anchors.items()
             if anchor.soft is not gone and anchor.body is not rows
         }
-
-        def remove() -> None:
-            remove_rows()
-            self.used.update(used)
-            for soft, first in moved:
-                soft.first = first
-            self.bodies, self.anchors = bodies, anchors
-            self.table.numpy["count_soft"][BODIES] = len(bodies)
-
-        return remove
+        change.set(self, "bodies", bodies)
+        change.set(self, "anchors", anchors)
+        change.write(self.table.numpy["count_soft"][BODIES : BODIES + 1], len(bodies))
 
     def struct(self) -> Any:
         """A C struct whose fields are views of the arrays."""
         return self.table.struct()
-
-
-def _nothing() -> None:
-    """Remove nothing: there are no soft bodies."""

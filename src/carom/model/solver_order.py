@@ -8,8 +8,10 @@ quicksort that is not stable.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Hashable, Sequence
 from typing import TypeVar
+
+from carom.native.change import Change
 
 T = TypeVar("T")
 
@@ -92,29 +94,14 @@ class IslandTags:
         self._objects = [(link, moves[link]) for link in links]
         self._tags = None
 
-    def add(self, body: Hashable, moving: Sequence[bool]) -> None:
-        """Append the links of a body, base first; `moving` says which are not static."""
-        self._tags = None
-        self._objects.extend([((body, link), moves) for link, moves in enumerate(moving)])
+    def add(self, change: Change, body: Hashable, moving: Sequence[bool]) -> None:
+        """Append the links of a body, base first, with a change; `moving` says which are not static."""
+        change.set(self, "_tags", None)
+        change.extend(self._objects, [((body, link), moves) for link, moves in enumerate(moving)])
 
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes all objects added from now on, and restores the order."""
-        objects, count = self._objects, len(self._objects)
-
-        def go_back() -> None:
-            self._tags = None
-            del objects[count:]
-            self._objects = objects
-
-        return go_back
-
-    def remove(self, body: Hashable, link_count: int) -> None:
-        """Remove the links of a body, base first."""
-        self.removal(body, link_count)()
-
-    def removal(self, body: Hashable, link_count: int) -> Callable[[], None]:
-        """Prepare to remove the links of a body; the returned function removes them and can be repeated."""
-        kept = self._objects.copy()
+    def remove(self, change: Change, body: Hashable, link_count: int) -> None:
+        """Remove the links of a body, base first, with a change."""
+        kept = change.get(self, "_objects").copy()
         index = {key: i for i, (key, _) in enumerate(kept)}
         for link in range(link_count):
             i = index.pop((body, link))
@@ -122,16 +109,11 @@ class IslandTags:
             if i < len(kept):
                 kept[i] = (last_key, last_moves)
                 index[last_key] = i
+        self._replace(change, kept)
 
-        def remove() -> None:
-            self._tags = None
-            self._objects = kept
-
-        return remove
-
-    def move_base_to_end(self, body: Hashable, moving: Sequence[bool]) -> None:
-        """Remove the base of a body and append it again; `moving` says which links move now."""
-        objects = self._objects.copy()
+    def move_base_to_end(self, change: Change, body: Hashable, moving: Sequence[bool]) -> None:
+        """Remove the base of a body and append it again; `moving` says which links move then."""
+        objects = change.get(self, "_objects").copy()
         index = [key for key, _ in objects].index((body, 0))
         last = objects.pop()
         if index < len(objects):
@@ -141,8 +123,11 @@ class IslandTags:
             owner, link = key  # type: ignore[misc]
             if owner == body:
                 objects[i] = (key, moving[link])
-        self._tags = None
-        self._objects = objects
+        self._replace(change, objects)
+
+    def _replace(self, change: Change, objects: list[tuple[Hashable, bool]]) -> None:
+        change.set(self, "_tags", None)
+        change.set(self, "_objects", objects)
 
     def tags(self) -> dict[Hashable, int]:
         """Island number of each body that has a moving link."""

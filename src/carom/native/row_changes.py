@@ -1,4 +1,4 @@
-"""Rows of all arrays of one table or several, put in and taken out by one native call each.
+"""Rows of all arrays of one table or several, put in by one native call, and taken out with a change.
 
 The functions are in `native/source/table_rows.cpp`. They are called with the GIL held, so no signal handler
 runs between the first array and the last.
@@ -7,7 +7,7 @@ runs between the first array and the last.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from math import prod
 from struct import Struct
@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom.layouts.table_rows import RowField, RowReference, RowTable
+from carom.native.change import Change
 
 _PACK_FIELD = Struct("5q").pack
 
@@ -75,7 +76,7 @@ class RowChanges:
         self._kept = *records, table
         self._table = ctypes.addressof(table)
         self._pack = Struct(f"{len(self._axes)}q").pack
-        self._put, self._take = _functions()
+        self._put = _function()
 
     def first_rows(self, count: Mapping[str, int]) -> bytes:
         """The first rows of each array in turn, so many on each axis, of the first world."""
@@ -96,17 +97,11 @@ class RowChanges:
         """
         self._put(self._table, rows, self.packed(first), count)
 
-    def removal(
-        self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
-    ) -> Callable[[], None]:
-        """Prepare to remove rows; see `ArrayTable.removal`."""
-        cut = self.packed(first), self.packed(count), self.packed(used)
-        done = ctypes.c_int32()
-
-        def remove() -> None:
-            self._take(self._table, *cut, done)
-
-        return remove
+    def cut(
+        self, change: Change, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
+    ) -> None:
+        """Remove rows with a change; see `ArrayTable.cut`."""
+        change.cut(self._table, self.packed(first), self.packed(count), self.packed(used), self)
 
 
 def _packed_field(field: RowsOfAxis, axis: int) -> bytes:
@@ -119,11 +114,9 @@ def _packed_field(field: RowsOfAxis, axis: int) -> bytes:
 
 
 @cache
-def _functions() -> tuple[Any, Any]:
-    """The native functions that put rows in and take them out."""
+def _function() -> Any:
+    """The native function that puts rows in."""
     from carom.native.library import library
 
-    symbols = library().symbols
     put = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, *[ctypes.c_char_p] * 3)
-    take = ctypes.PYFUNCTYPE(None, ctypes.c_void_p, *[ctypes.c_char_p] * 3, ctypes.POINTER(ctypes.c_int32))
-    return put(("carom_put_rows", symbols)), take(("carom_take_rows", symbols))
+    return put(("carom_put_rows", library().symbols))

@@ -10,7 +10,7 @@ share it: kernels see a stride of zero.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from ctypes import addressof, c_char
 from functools import cache, lru_cache, partial
 from math import prod
@@ -21,8 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from carom.layouts.types import ArrayType, ArrayView, Struct, Type
+from carom.native.change import Change
 from carom.native.row_changes import RowChanges, RowNumbers, RowsOfAxis
-from carom.native.undo import Undo
 from carom.native.zeros import zeros
 
 ROOM_AT_FIRST = 64
@@ -201,7 +201,7 @@ class ArrayTable:
         self._bytes: dict[str, memoryview[int]] = {}
         self._by_axis: dict[str, list[np.ndarray]] = {}
         self._row_changes: RowChanges | None = None
-        self._replace(self._first_arrays(first_capacity))
+        self._take(self._first_arrays(first_capacity))
 
     def _first_arrays(self, capacity: int) -> dict[str, np.ndarray]:
         """Arrays with so many rows, those of a single world next to each other in memory."""
@@ -226,29 +226,34 @@ class ArrayTable:
         """An array of zeros in the kind of memory that this table uses."""
         return zeros(shape, dtype)
 
-    def _replace(self, arrays: Mapping[str, np.ndarray]) -> None:
-        """Replace arrays by others, all at once."""
+    def _replace(self, arrays: Mapping[str, np.ndarray], change: Change) -> None:
+        """Replace arrays by others, and what is derived from them, with a change."""
+        # Others hold these dictionaries.
+        change.put_all(self._memory, arrays)
+        change.put_all(self.capacity, self._lengths(arrays))
+        change.put_all(self.numpy, _by_part(arrays))
+        change.set(self, "replacements", self.replacements + 1)
+        change.set(self, "_made", None)
+        change.set(self, "_bytes", {})
+        change.set(self, "_by_axis", {})
+        change.set(self, "_row_changes", None)
 
-        def put() -> None:
-            self._memory.update(arrays)
-            self._follow(arrays)
+    def take_over(self, change: Change, other: ArrayTable, *, but: Collection[str] = ()) -> None:
+        """Replace the arrays by those of an equal table with a change, except for those that are named."""
+        self._replace({name: array for name, array in other._memory.items() if name not in but}, change)
+        change.put_all(self._world_counts, other._world_counts)
 
-        Undo().at_once(put)
-
-    def _follow(self, arrays: Mapping[str, np.ndarray]) -> None:
-        """Update everything derived from arrays that were replaced."""
+    def _take(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Take the first arrays of a table that nobody has yet."""
+        self._memory.update(arrays)
+        self.capacity.update(self._lengths(arrays))
+        self.numpy.update(_by_part(arrays))
         self.replacements += 1
-        self._made = None
-        self._bytes.clear()
-        self._by_axis.clear()
-        self._row_changes = None
-        for name, array in arrays.items():
-            field = self._fields[name]
-            self.capacity[field.axis] = array.shape[int(field.per_world)]
-            if array.dtype.names is None:
-                self.numpy[name] = array
-            for part in array.dtype.names or ():
-                self.numpy[f"{name}_{part}"] = array[part]
+
+    def _lengths(self, arrays: Mapping[str, np.ndarray]) -> dict[str, int]:
+        """The number of rows by axis."""
+        fields = self._fields
+        return {fields[name].axis: array.shape[int(fields[name].per_world)] for name, array in arrays.items()}
 
     def is_per_world(self, name: str) -> bool:
         """Whether the array of that name in `numpy` has a world axis."""
@@ -282,23 +287,33 @@ class ArrayTable:
 
     def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
         """Make room for `needed` rows by axis, growing by a least factor; true if arrays were replaced."""
-        if not self.lacks(needed):
+        change = Change()
+        if not self.grow(change, needed, growth):
             return False
+        change.commit()
+        return True
+
+    def grow(self, change: Change, needed: Mapping[str, int], growth: float = 2.0) -> dict[str, np.ndarray]:
+        """Make room for `needed` rows by axis with a change.
+
+        Returns:
+            The new arrays, by their names in `numpy`, which nobody else has yet; none if there is room.
+        """
+        if not self.lacks(needed):
+            return {}
         capacity = self.capacity
         grown = {
             axis: max(count, int(growth * capacity[axis]))
             for axis, count in needed.items()
             if count > capacity.get(axis, count)
         }
-        # All are allocated before the first is replaced: memory may be short, or Ctrl-C may interrupt this.
-        self._replace(
-            {
-                name: self._lengthened(name, grown[field.axis])
-                for name, field in self._fields.items()
-                if field.axis in grown
-            }
-        )
-        return True
+        longer = {
+            name: self._lengthened(name, grown[field.axis])
+            for name, field in self._fields.items()
+            if field.axis in grown
+        }
+        self._replace(longer, change)
+        return _by_part(longer)
 
     def _lengthened(self, name: str, capacity: int) -> np.ndarray:
         """A longer copy of a field's array."""
@@ -312,8 +327,10 @@ class ArrayTable:
         if self._world_counts[name] == world_count:
             return False
         spread = np.repeat(self._memory[name], world_count, axis=0)
-        self._world_counts[name] = world_count
-        self._replace({name: spread})
+        change = Change()
+        change.put(self._world_counts, name, world_count)
+        self._replace({name: spread}, change)
+        change.commit()
         return True
 
     def copy(self, world_count: int | None = None, rows: Mapping[str, int] | None = None) -> ArrayTable:
@@ -340,7 +357,7 @@ class ArrayTable:
             else:
                 array = array[:count].copy()
             arrays[name] = array
-        other._replace(arrays)
+        other._take(arrays)
         return other
 
     def bytes_per_world(self, rows: Mapping[str, int] | None = None) -> int:
@@ -356,15 +373,14 @@ class ArrayTable:
         memo[id(self)] = other = self.copy()
         return other
 
-    def removal(
-        self, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
-    ) -> Callable[[], None]:
-        """Prepare to remove `count` rows, from the row `first` on, of the `used` ones of some axes.
+    def cut(
+        self, change: Change, first: Mapping[str, int], count: Mapping[str, int], used: Mapping[str, int]
+    ) -> None:
+        """With a change, remove `count` rows, from the row `first` on, of the `used` ones of some axes.
 
-        Later rows move up and the freed rows are zero. The function returned removes the rows; it can be
-        called again if it was interrupted.
+        Later rows move up and the freed rows are zero.
         """
-        return self.row_changes.removal(first, count, used)
+        self.row_changes.cut(change, first, count, used)
 
     @property
     def row_changes(self) -> RowChanges:
@@ -460,6 +476,17 @@ class ArrayTable:
         """Set every entry to zero."""
         for array in self.numpy.values():
             array.fill(0)
+
+
+def _by_part(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The arrays by the names that `ArrayTable.numpy` has for them."""
+    shown: dict[str, np.ndarray] = {}
+    for name, array in arrays.items():
+        if array.dtype.names is None:
+            shown[name] = array
+        for part in array.dtype.names or ():
+            shown[f"{name}_{part}"] = array[part]
+    return shown
 
 
 def _repeated(rows: np.ndarray, count: int) -> np.ndarray:

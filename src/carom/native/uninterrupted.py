@@ -5,7 +5,7 @@ allocated, a trace function at every line. In a section they do not: handlers ru
 collected later, and trace functions wait. So none of them sees half a change.
 
 Ctrl-C is the exception while its handler is Python's own, which raises `KeyboardInterrupt`: it ends a long
-call. What it breaks off, `carom.native.undo` repairs.
+call. What it breaks off has not happened, see `carom.native.change`.
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.body_spec import BASE, LinkSpec
+from carom.native.change import Change
 from carom.render.images import Texels, read_image
 from carom.render.lights import Light
 from carom.render.meshes import shape_mesh
@@ -121,16 +122,16 @@ class Appearance:
         """Whether the appearance of a body has been read or changed already."""
         return body in self._looks
 
-    def number_textures(self, world: World) -> None:
-        """Number the textures of all bodies, in the order the bodies were loaded."""
-        for body in list(world.bodies.values()):
+    def number_textures(self, bodies: Sequence[Body]) -> None:
+        """Number the textures of bodies, in the order the bodies were loaded."""
+        for body in bodies:
             if body not in self._looks:
                 self._looks[body] = self._first_of(body)
 
     def _of(self, body: Body) -> list[list[ShapeLook]]:
         if body not in self._looks:
             # The textures of bodies that were loaded before come first.
-            self.number_textures(body.world)
+            self.number_textures(list(body.world.bodies.values()))
         if body not in self._looks:
             self._looks[body] = self._first_of(body)
         return self._looks[body]
@@ -239,6 +240,16 @@ def copy_appearance(world: World, other: World) -> None:
             copied._looks[other.bodies[number]] = [
                 [replace(look) for look in looks] for looks in appearance._of(body)
             ]
+
+
+def take_over_appearance(change: Change, world: World, draft: World) -> None:
+    """Give a world the appearance of its draft, which has the same bodies and new ones, with a change."""
+    if draft not in _appearances:
+        return
+    ours, theirs = appearance_of(world), appearance_of(draft)
+    for name in ("textures", "light", "_looks"):
+        change.set(ours, name, getattr(theirs, name))
+    change.set(ours, "changes", ours.changes + 1)
 
 
 _appearances: WeakKeyDictionary[World, tuple[ref, Appearance]] = WeakKeyDictionary()

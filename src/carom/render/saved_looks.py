@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from carom.description.link import Rgba
 from carom.description.pose import Vector3
 from carom.model.body_spec import BASE
-from carom.render.appearance import appearance_of
+from carom.native.change import Change
+from carom.render.appearance import appearance_of, copy_appearance, take_over_appearance
 from carom.render.textures import NO_TEXTURE
 from carom.world_files.records import Reader, Writer
 
@@ -71,6 +72,11 @@ def save(world: World, writer: Writer) -> Any:
     return writer.write(SavedLooks(images, bodies))
 
 
+def begin(world: World, draft: World) -> None:
+    """Give the draft of a world its colours and textures."""
+    copy_appearance(world, draft)
+
+
 def load(bodies: list[Body], reader: Reader, data: Any) -> None:
     """Apply the saved colours and textures to these bodies.
 
@@ -108,3 +114,8 @@ def load(bodies: list[Body], reader: Reader, data: Any) -> None:
                     texture=numbers[look.texture],
                     two_sided=look.two_sided,
                 )
+
+
+def publish(change: Change, world: World, draft: World) -> None:
+    """Give a world the colours and textures of its draft, with a change."""
+    take_over_appearance(change, world, draft)

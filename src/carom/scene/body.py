@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from functools import cached_property
 from math import sqrt
@@ -25,6 +25,7 @@ from carom.layouts.codes import (
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
+from carom.native.change import Change
 from carom.native.tables import NUMPY_REAL
 from carom.scene.dynamics_changes import change_dynamics, set_present, write_link
 from carom.scene.handles import world_of
@@ -96,25 +97,37 @@ class Body:
         self.joint_types: tuple[int, ...] = mine.joint_types
         self.position_count: tuple[int, ...] = mine.position_count
         self.velocity_count: tuple[int, ...] = mine.velocity_count
-        self.first_link = 0
-        self.first_position = 0
-        self.first_velocity = 0
-        self.position_index: tuple[int, ...] = ()
-        self.velocity_index: tuple[int, ...] = ()
+        first = rows.first
+        self.first_link: int = first["link"]
+        self.first_position: int = first["position"]
+        self.first_velocity: int = first["dof"]
+        self.position_index: tuple[int, ...] = _first_rows(
+            self.first_position + BASE_POSITIONS, self.position_count
+        )
+        self.velocity_index: tuple[int, ...] = _first_rows(
+            self.first_velocity + BASE_VELOCITIES, self.velocity_count
+        )
         self.fixed_base: bool = spec.fixed_base
         self.links_before = 0
         self._encoded_names: tuple[bytes, bytes] | None = None
         self.derived: dict[Any, Any] = {}
         self._dynamics = mine.dynamics if outline is None else [it.copy() for it in mine.dynamics]
-        self.relocate()
 
-    def relocate(self) -> None:
-        """Update the rows of the body in the flat arrays."""
-        self.first_link: int = self.rows.first["link"]
-        self.first_position: int = self.rows.first["position"]
-        self.first_velocity: int = self.rows.first["dof"]
-        self.position_index = _first_rows(self.first_position + BASE_POSITIONS, self.position_count)
-        self.velocity_index = _first_rows(self.first_velocity + BASE_VELOCITIES, self.velocity_count)
+    def relocate(self, change: Change) -> None:
+        """Update the rows of the body in the flat arrays with a change of them."""
+        for name, value in self._places(change.get(self.rows, "first")).items():
+            change.set(self, name, value)
+
+    def _places(self, first: Mapping[str, int]) -> dict[str, Any]:
+        """The attributes that say where the body is in the flat arrays."""
+        positions, velocities = first["position"] + BASE_POSITIONS, first["dof"] + BASE_VELOCITIES
+        return {
+            "first_link": first["link"],
+            "first_position": first["position"],
+            "first_velocity": first["dof"],
+            "position_index": _first_rows(positions, self.position_count),
+            "velocity_index": _first_rows(velocities, self.velocity_count),
+        }
 
     def __repr__(self) -> str:
         base = "fixed base" if self.fixed_base else "free base"

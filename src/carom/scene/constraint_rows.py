@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from carom.layouts.codes import MAX_ROWS_PER_CONSTRAINT
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import batch_islands, quicksort_order
+from carom.native.change import Change
 
 if TYPE_CHECKING:
     from carom.scene.joint_constraints import JointConstraint
@@ -54,17 +55,18 @@ class ConstraintRows:
         # User constraints that have come (or gone) since the rows were written.
         self._changes: list[tuple[JointConstraint, bool]] = []
 
-    def forget(self) -> None:
-        """Make all rows anew the next time: they, or the arrays, may be others now."""
-        self._rows = None
-        self._changes = []
+    def forget(self, change: Change) -> None:
+        """Make all rows anew the next time: with a change they, or the arrays, become others."""
+        change.set(self, "_rows", None)
+        change.set(self, "_changes", [])
 
-    def note(self, constraint: JointConstraint, *, added: bool) -> None:
-        """A user constraint was added at the end of Bullet's list, or removed from it."""
-        if self._rows is None or len(self._changes) > len(self._rows):
-            self.forget()
+    def note(self, change: Change, constraint: JointConstraint, *, added: bool) -> None:
+        """With a change, a user constraint is added at the end of Bullet's list, or removed from it."""
+        rows = change.get(self, "_rows")
+        if rows is None or len(self._changes) > len(rows):
+            self.forget(change)
         else:
-            self._changes.append((constraint, added))
+            change.set(self, "_changes", [*change.get(self, "_changes"), (constraint, added)])
 
     def update(self, arrays: WorldArrays, user_rows: Mapping[int, int]) -> bool:
         """Write the rows that have changed; false if all have to be made anew by `sort`.
@@ -185,7 +187,7 @@ def _use(arrays: WorldArrays, count: int) -> None:
     used = {"constraint": count, "row": count * MAX_ROWS_PER_CONSTRAINT}
     arrays.model.reserve(used)
     arrays.state.reserve(used)
-    arrays.used.update(used)
+    arrays.used = {**arrays.used, **used}
 
 
 def _count(arrays: WorldArrays, changes: Iterable[tuple[JointConstraint, bool]]) -> None:

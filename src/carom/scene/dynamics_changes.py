@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,15 +13,16 @@ from carom.layouts.flags import ActivationChange, LoadFlags
 from carom.layouts.quick_world import DAMPING
 from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
+from carom.model.shape_arrays import SURFACE_FIELDS
+from carom.native.change import Change
 from carom.native.uninterrupted import uninterrupted
-from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, checked_terms, set_terms, write_terms
+from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, checked_terms, note_terms, write_terms
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
     from carom.model.inertia import MassTerms
     from carom.scene.body import Body
     from carom.scene.link_dynamics import LinkDynamics
-    from carom.world.world import World
 
 
 OF_BODY = {**DAMPING, "max_joint_velocity": "tree_max_velocity"}
@@ -45,17 +45,14 @@ _NOT_OF_SURFACE = {
 
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
-    undo = body.world.undo
     with uninterrupted:
-        undo.settle()
-        undo.at_once(dynamics_change(body, link, changes))
+        change = Change()
+        note_dynamics(change, body, link, changes)
+        change.commit()
 
 
-def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
-    """Prepare a change of the dynamics of a link.
-
-    Returns:
-        A function that makes the change; if interrupted, it can be called again, with the same result.
+def note_dynamics(change: Change, body: Body, link: int, changes: Mapping[str, Any]) -> None:
+    """Note a change of the dynamics of a link.
 
     Raises:
         AttributeError: There is no such parameter.
@@ -64,34 +61,20 @@ def dynamics_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callab
     dynamics = body.dynamics(link)
     for name, value in changes.items():
         _check(dynamics, name, value)
-    if changes.keys().isdisjoint(_NOT_OF_SURFACE):
-        return _surface_change(body, link, changes)
-    steps = _other_changes(body, link, changes)
-    surface = {name: value for name, value in changes.items() if name not in _NOT_OF_SURFACE}
+    is_other = not changes.keys().isdisjoint(_NOT_OF_SURFACE)
+    renews = is_other and _note_others(change, body, link, changes)
+    surface = changes
+    if is_other:
+        surface = {name: value for name, value in changes.items() if name not in _NOT_OF_SURFACE}
     if surface:
-        steps.append(_surface_change(body, link, surface))
-
-    def change() -> None:
-        for step in steps:
-            step()
-
-    return change
-
-
-def _surface_change(body: Body, link: int, changes: Mapping[str, Any]) -> Callable[[], None]:
-    """Prepare changes of contact parameters of a link."""
-    shapes = body.world.contact_arrays.shapes
-    will_look_ahead = not shapes.looks_ahead and changes.get("ccd_swept_sphere_radius", 0.0) > 0.0
-    return partial(_change_surface, body, link, changes, will_look_ahead)
-
-
-def _change_surface(body: Body, link: int, changes: Mapping[str, Any], will_look_ahead: bool) -> None:
-    dynamics = body.dynamics(link)
-    for name, value in changes.items():
-        setattr(dynamics, name, value)
-    body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics, changes)
-    if will_look_ahead:
-        body.world.scene_changed()
+        shapes = body.world.contact_arrays.shapes
+        for name, value in surface.items():
+            change.set(dynamics, name, value)
+        written = {name: value for name, value in surface.items() if name in SURFACE_FIELDS}
+        shapes.note_surface(change, body.first_link + 1 + link, written)
+        renews = renews or (not shapes.looks_ahead and surface.get("ccd_swept_sphere_radius", 0.0) > 0.0)
+    if renews:
+        body.world.change_scene(change)
 
 
 def _check(dynamics: LinkDynamics, name: str, value: Any) -> None:
@@ -116,109 +99,115 @@ def _check_number(value: Any) -> None:
     float(value)
 
 
-def _other_changes(body: Body, link: int, changes: Mapping[str, Any]) -> list[Callable[[], None]]:
-    """Prepare all changes except those of contact parameters; each function can be called again."""
-    steps: list[Callable[[], None]] = []
+def _note_others(change: Change, body: Body, link: int, changes: Mapping[str, Any]) -> bool:
+    """Note all changes except those of contact parameters; whether what is derived from the scene changes."""
     model, tree = body.world.arrays.model.numpy, body.rows.tree
+    renews = False
     for name, field in OF_BODY.items():
         if name in changes:
-            steps.append(partial(model[field][:, tree].fill, changes[name]))
+            change.write(model[field][:, tree], changes[name])
     if _SLEEP_THRESHOLD in changes:
-        steps.append(partial(model["tree_sleep_threshold"].__setitem__, tree, changes[_SLEEP_THRESHOLD]))
+        change.write(model["tree_sleep_threshold"][tree : tree + 1], changes[_SLEEP_THRESHOLD])
     if _ACTIVATION in changes:
-        steps.append(_activation_change(body, ActivationChange(changes[_ACTIVATION])))
+        _note_activation(change, body, ActivationChange(changes[_ACTIVATION]))
+        renews = True
     if "mass" in changes:
-        steps.append(_mass_change(body, link, changes["mass"], changes.get("inertia")))
+        renews |= _note_mass(change, body, link, changes["mass"], changes.get("inertia"))
     elif "inertia" in changes:
-        steps.append(partial(_set_inertia, body, link, changes["inertia"]))
+        change.set(body.dynamics(link), "inertia", changes["inertia"])
+        _note_inertia(change, body, link)
     if link != BASE:
-        steps += _joint_changes(body, link, changes)
+        renews |= _note_joint(change, body, link, changes)
     elif own := [name for name in _ONLY_OF_JOINT if name in changes]:
         raise ValueError(f"the base has no joint, and no {own[0]}")
     else:
-        dynamics = body.dynamics(link)
-        steps += [partial(setattr, dynamics, name, changes[name]) for name in changes.keys() & _OF_JOINT]
-    if "joint_limit_force" in changes:
-        steps.append(partial(_set_limit_force, body, link, changes["joint_limit_force"]))
-    return steps
+        for name in changes.keys() & _OF_JOINT:
+            change.set(body.dynamics(link), name, changes[name])
+    return renews
 
 
-def _activation_change(body: Body, change: ActivationChange) -> Callable[[], None]:
-    """Prepare to put a body to sleep, wake it up, or change whether it may fall asleep by itself.
+def _note_activation(change: Change, body: Body, wanted: ActivationChange) -> None:
+    """Put a body to sleep, wake it up, or change whether it may fall asleep by itself.
 
     As in Bullet, this takes effect at the end of the next step, and whether a body may fall asleep cannot be
     changed while the body may not wake up.
     """
     model, state = body.world.arrays.model.numpy, body.world.arrays.state.numpy
     tree = body.rows.tree
+    one = slice(tree, tree + 1)
     can_sleep, can_wake = bool(model["tree_can_sleep"][tree]), bool(model["tree_can_wake"][tree])
     if can_wake:
-        can_sleep = can_sleep or bool(change & ActivationChange.ENABLE_SLEEPING)
-        can_sleep = can_sleep and not change & ActivationChange.DISABLE_SLEEPING
-    can_wake = can_wake or bool(change & ActivationChange.ENABLE_WAKEUP)
-    can_wake = can_wake and not change & ActivationChange.DISABLE_WAKEUP
-
-    def set_activation() -> None:
-        if change & ActivationChange.WAKE_UP:
-            state["tree_wants_sleep"][0, tree], state["tree_idle_time"][0, tree] = False, 0.0
-        if change & ActivationChange.SLEEP:
-            state["tree_wants_sleep"][0, tree] = True
-        model["tree_can_sleep"][tree], model["tree_can_wake"][tree] = can_sleep, can_wake
-        body.world.scene_changed()
-
-    return set_activation
+        can_sleep = can_sleep or bool(wanted & ActivationChange.ENABLE_SLEEPING)
+        can_sleep = can_sleep and not wanted & ActivationChange.DISABLE_SLEEPING
+    can_wake = can_wake or bool(wanted & ActivationChange.ENABLE_WAKEUP)
+    can_wake = can_wake and not wanted & ActivationChange.DISABLE_WAKEUP
+    if wanted & ActivationChange.WAKE_UP:
+        change.write(state["tree_wants_sleep"][0, one], False)
+        change.write(state["tree_idle_time"][0, one], 0.0)
+    if wanted & ActivationChange.SLEEP:
+        change.write(state["tree_wants_sleep"][0, one], True)
+    change.write(model["tree_can_sleep"][one], can_sleep)
+    change.write(model["tree_can_wake"][one], can_wake)
 
 
-def _joint_changes(body: Body, joint: int, changes: Mapping[str, Any]) -> Iterator[Callable[[], None]]:
-    dynamics = body.dynamics(joint)
+def _note_joint(change: Change, body: Body, joint: int, changes: Mapping[str, Any]) -> bool:
+    """Note changes of a joint's terms and limits; whether what is derived from the scene changes."""
+    world, dynamics = body.world, body.dynamics(joint)
     terms = checked_terms(body, joint, changes)
     if terms:
-        yield partial(set_terms, body, joint, terms)
+        note_terms(change, body, joint, terms)
+    limit = world.constraints.limit_of(body, joint)
+    renews = False
     if "joint_lower_limit" in changes or "joint_upper_limit" in changes:
         lower = changes.get("joint_lower_limit", dynamics.joint_lower_limit)
         upper = changes.get("joint_upper_limit", dynamics.joint_upper_limit)
-        yield partial(_set_limits, body, joint, lower, upper)
+        if lower > upper:
+            lower, upper = 1.0, -1.0
+        change.set(dynamics, "joint_lower_limit", lower)
+        change.set(dynamics, "joint_upper_limit", upper)
+        if body.velocity_count[joint] == 1:
+            limit = world.constraints.set_limit(change, body, joint, lower, upper)
+            renews = True
+    if "joint_limit_force" in changes and limit is not None:
+        # The maximum impulse of a limit: the force times the present duration of a substep.
+        impulse = changes["joint_limit_force"] * world.parameters.substep_time
+        change.set(limit, "max_impulse", impulse)
+        change.set(dynamics, "joint_limit_impulse", impulse)
+        renews = True
+    return renews
 
 
 def write_link(body: Body, link: int) -> None:
     """Write `Body.dynamics` of a link to the engine, except the limits of its joint."""
     dynamics = body.dynamics(link)
-    _write(body, link)
+    body.derived.clear()
+    body.world.arrays.write_inertia(body.first_link + 1 + link, dynamics.mass, dynamics.inertia)
     if link != BASE:
         write_terms(body, link)
     body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics)
 
 
-def _mass_change(body: Body, link: int, mass: float, inertia: Vector3 | None) -> Callable[[], None]:
-    """Prepare to set mass and inertia (by default scaled with the mass); mass 0 fixes a base."""
+def _note_mass(change: Change, body: Body, link: int, mass: float, inertia: Vector3 | None) -> bool:
+    """Note mass and inertia (by default scaled with the mass); whether the base is freed or fixed by it."""
     world, dynamics = body.world, body.dynamics(link)
-    moments = scaled_inertia(body, link, mass) if inertia is None else inertia
+    change.set(dynamics, "inertia", scaled_inertia(body, link, mass) if inertia is None else inertia)
+    change.set(dynamics, "mass", mass)
+    _note_inertia(change, body, link)
     frees_or_fixes = link == BASE and (mass > 0.0) == body.fixed_base
-    part = world.contact_arrays.parting([body.first_link]) if frees_or_fixes else None
-
-    def set_mass() -> None:
-        dynamics.mass, dynamics.inertia = mass, moments
-        _write(body, link)
-        if part is not None:
-            part()
-            change_base_freedom(world, body, free=mass > 0.0)
-            world.contact_arrays.shapes.set_default_group(body.first_link, fixed=mass == 0.0)
-            world.scene_changed()
-
-    return set_mass
+    if frees_or_fixes:
+        world.contact_arrays.part(change, [body.first_link])
+        change_base_freedom(change, body, free=mass > 0.0)
+        world.contact_arrays.shapes.note_default_group(change, body.first_link, fixed=mass == 0.0)
+    return frees_or_fixes
 
 
-def change_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """Free the base of a body, or fix it in the world, within a change; can be called again."""
-    set_base_freedom(world, body, free=free)
-    world.constraints.base_freedom_changed(body)
-
-
-def set_base_freedom(world: World, body: Body, *, free: bool) -> None:
-    """Free the base of a body, or fix it in the world, without renumbering the islands."""
-    world.arrays.set_base_freedom(body.rows, free=free)
-    body.fixed_base = not free
-    body.derived.clear()
+def change_base_freedom(change: Change, body: Body, *, free: bool) -> None:
+    """Free the base of a body, or fix it in the world, with a change."""
+    world = body.world
+    world.arrays.set_base_freedom(body.rows, free=free, change=change)
+    change.set(body, "fixed_base", not free)
+    change.set(body, "derived", {})
+    world.constraints.free_base(change, body, free=free)
 
 
 def scaled_inertia(body: Body, link: int, mass: float) -> Vector3:
@@ -272,47 +261,19 @@ def has_margin(body: Body, link: int) -> bool:
     return not margin_is_radius(body.link_spec(link))
 
 
-def _set_inertia(body: Body, link: int, inertia: Vector3) -> None:
-    body.dynamics(link).inertia = inertia
-    _write(body, link)
-
-
-def _write(body: Body, link: int) -> None:
+def _note_inertia(change: Change, body: Body, link: int) -> None:
     dynamics = body.dynamics(link)
-    body.derived.clear()
-    body.world.arrays.write_inertia(body.first_link + 1 + link, dynamics.mass, dynamics.inertia)
-
-
-def _set_limits(body: Body, joint: int, lower: float, upper: float) -> None:
-    dynamics = body.dynamics(joint)
-    if lower > upper:
-        lower, upper = 1.0, -1.0
-    dynamics.joint_lower_limit, dynamics.joint_upper_limit = lower, upper
-    if body.velocity_count[joint] == 1:
-        body.world.constraints.set_limit(body, joint, lower, upper)
-        body.world.scene_changed()
-
-
-def _set_limit_force(body: Body, joint: int, force: float) -> None:
-    """Set the maximum impulse of a limit: the force times the present duration of a substep."""
-    impulse = force * body.world.parameters.substep_time
-    limit = body.world.constraints.limit_of(body, joint)
-    if limit is not None:
-        limit.max_impulse = impulse
-        body.dynamics(joint).joint_limit_impulse = impulse
-        body.world.scene_changed()
+    mass, inertia = (change.get(dynamics, name) for name in ("mass", "inertia"))
+    change.set(body, "derived", {})
+    body.world.arrays.note_inertia(change, body.first_link + 1 + link, mass, inertia)
 
 
 def set_present(body: Body, present: bool) -> None:
     """Let a body come or go, or leave it as it is; see `Body.present`."""
     world = body.world
     with uninterrupted:
-        world.undo.settle()
         wanted, only = np.array([present]), np.zeros(1, dtype=np.int64)
-        change = change_presence(world.arrays, world.contact_arrays, body.rows, only, wanted)
-
-        def apply() -> None:
-            change()
-            world.scene_changed()
-
-        world.undo.at_once(apply)
+        change = Change()
+        change_presence(world.arrays, world.contact_arrays, body.rows, only, wanted, change)
+        world.change_scene(change)
+        change.commit()

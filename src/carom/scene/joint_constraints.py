@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
@@ -10,6 +10,7 @@ from carom.description.compliance import Compliance, Four
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
+from carom.native.change import Change
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.constraint_rows import ConstraintRows
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
@@ -89,16 +90,17 @@ class JointConstraints:
         self.tags: IslandTags = IslandTags()
         self.rows: ConstraintRows = ConstraintRows()
 
-    def add_body(self, body: Body) -> None:
-        """Append the limits, the motors, the friction, then the actuators, of a new body.
+    def add_body(self, change: Change, body: Body) -> None:
+        """Append the limits, the motors, the friction, then the actuators, of a new body with a change.
 
         A body that is read as PyBullet reads it has no friction.
         """
-        self.tags.add(body.id, moving_links(body))
+        self.tags.add(change, body.id, moving_links(body))
+        added: list[JointConstraint] = []
         for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
             if LIMIT_KIND.get(code) == ConstraintKind.SPHERICAL_LIMIT:
                 if link.lower > 0.0 and link.upper > 0.0 and link.twist > 0.0 and link.effort > 0.0:
-                    self.all.append(
+                    added.append(
                         JointConstraint(
                             body,
                             joint,
@@ -112,91 +114,64 @@ class JointConstraints:
             elif link.limited:
                 limit = JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper)
                 limit.yield_as_described()
-                self.all.append(limit)
+                added.append(limit)
         for joint, code in enumerate(body.joint_types):
             if code in MOTOR_KIND:
-                self.all.append(JointConstraint(body, joint, MOTOR_KIND[code]))
+                added.append(JointConstraint(body, joint, MOTOR_KIND[code]))
         if not body.spec.is_held:
             for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
                 if code in WITH_FRICTION and link.friction > 0.0:
                     friction = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=link.friction)
                     friction.yield_as_described()
-                    self.all.append(friction)
+                    added.append(friction)
         for number, actuator in enumerate(body.spec.actuators):
             if not drives_joint(actuator):
                 continue
             joint = actuated_joint(body, actuator)
-            self.all.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
+            added.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
+        change.extend(self.all, added)
 
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes everything that is added from now on."""
-        constraints, count = self.all, len(self.all)
-        forget_links = self.tags.way_back()
-
-        def go_back() -> None:
-            del constraints[count:]
-            self.all = constraints
-            self.rows.forget()
-            forget_links()
-
-        return go_back
-
-    def removal(self, body: Body) -> Callable[[], None]:
-        """Prepare to remove the constraints of a body, the last first.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
-        """
+    def remove(self, change: Change, body: Body) -> None:
+        """Remove the constraints of a body, the last first, with a change."""
         kept = self.all.copy()
         for constraint in reversed(self.all):
             if constraint.body is body or (constraint.user is not None and constraint.user.child is body):
                 remove_unordered(kept, constraint)
-        forget_links = self.tags.removal(body.id, 1 + body.joint_count)
+        change.set(self, "all", kept)
+        self.tags.remove(change, body.id, 1 + body.joint_count)
 
-        def remove() -> None:
-            self.all = kept
-            forget_links()
+    def set_limit(
+        self, change: Change, body: Body, joint: int, lower: float, upper: float
+    ) -> JointConstraint | None:
+        """Set, add or (with lower > upper) remove the limit of a joint with a change.
 
-        return remove
-
-    def set_limit(self, body: Body, joint: int, lower: float, upper: float) -> None:
-        """Set, add or (with lower > upper) remove the limit of a joint."""
+        Returns:
+            The limit that there will be.
+        """
         limit = self.limit_of(body, joint)
         if lower > upper:
             if limit is not None:
-                self.all = self._all_but(limit)
-        elif limit is None:
-            self.all.append(JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper))
+                change.set(self, "all", self._all_but(limit))
+            return None
+        if limit is None:
+            limit = JointConstraint(body, joint, ConstraintKind.LIMIT, lower, upper)
+            change.extend(self.all, [limit])
         else:
-            limit.lower, limit.upper = lower, upper
+            change.set(limit, "lower", lower)
+            change.set(limit, "upper", upper)
+        return limit
 
-    def add_user(self, user: UserConstraint) -> None:
-        """Append a user constraint."""
+    def add_user(self, change: Change, user: UserConstraint) -> None:
+        """Append a user constraint with a change."""
         constraint = JointConstraint(user.parent, user.parent_link, ConstraintKind.USER, user=user)
-        self.all.append(constraint)
-        if self._is_active(constraint):
-            self.rows.note(constraint, added=True)
+        change.extend(self.all, [constraint])
+        self.rows.note(change, constraint, added=True)
 
-    def drop_last_user(self, user: UserConstraint) -> None:
-        """Undo `add_user`; can be called again, or if it was interrupted."""
-        if self.all and self.all[-1].user is user:
-            self.all.pop()
-        self.rows.forget()
-
-    def user_removal(self, user: UserConstraint) -> Callable[[], None]:
-        """Prepare to remove a user constraint; the function returned can be called again."""
+    def remove_user(self, change: Change, user: UserConstraint) -> None:
+        """Remove a user constraint with a change."""
         constraint = next(constraint for constraint in reversed(self.all) if constraint.user is user)
-        kept = self._all_but(constraint)
-
-        def remove() -> None:
-            if self.all is not kept and self._is_active(constraint):
-                self.all = kept
-                self.rows.note(constraint, added=False)
-            else:
-                self.all = kept
-                self.rows.forget()
-
-        return remove
+        change.set(self, "all", self._all_but(constraint))
+        self.rows.note(change, constraint, added=False)
 
     def _all_but(self, constraint: JointConstraint) -> list[JointConstraint]:
         kept = self.all.copy()
@@ -222,9 +197,9 @@ class JointConstraints:
                 return constraint
         return None
 
-    def base_freedom_changed(self, body: Body) -> None:
-        """Renumber the islands after the base of a body was freed or fixed."""
-        self.tags.move_base_to_end(body.id, moving_links(body))
+    def free_base(self, change: Change, body: Body, *, free: bool) -> None:
+        """Renumber the islands with a change that frees or fixes the base of a body."""
+        self.tags.move_base_to_end(change, body.id, moving_links(body, free=free))
 
     def write(
         self,
@@ -251,9 +226,12 @@ class JointConstraints:
         self.rows.sort(arrays, active, self.tags.tags(), user_rows, minimum_island_size)
 
 
-def moving_links(body: Body) -> list[bool]:
-    """Which links, base first, are not rigidly connected to a fixed base."""
-    moving = [not body.fixed_base]
+def moving_links(body: Body, *, free: bool | None = None) -> list[bool]:
+    """Which links, base first, are not rigidly connected to a fixed base.
+
+    `free` says whether the base is free, if it is not to be as it is now.
+    """
+    moving = [not body.fixed_base if free is None else free]
     for link, code in zip(body.spec.links, body.joint_types, strict=True):
         moving.append(moving[link.parent + 1] or code != JointCode.FIXED)
     return moving

@@ -7,7 +7,7 @@ shapes of bodies, constraints, gravity and the other parameters are not part of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ import numpy as np
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
+from carom.native.change import Change
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
@@ -145,11 +146,11 @@ def take(world: World, layout: Layout) -> Snapshot:
     return snapshot
 
 
-def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], None]:
-    """Prepare to restore a world, which has this layout, from a snapshot.
+def return_to(change: Change, world: World, layout: Layout, snapshot: Snapshot) -> None:
+    """Restore a world, which has this layout, from a snapshot with a change, which notes nothing before.
 
     Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
-    and loaded in another order. The function that is returned can be called again if it was interrupted.
+    and loaded in another order.
 
     Raises:
         StateError: The world has other bodies.
@@ -157,28 +158,34 @@ def return_to(world: World, layout: Layout, snapshot: Snapshot) -> Callable[[], 
     same = layout == snapshot.layout
     if not same:
         snapshot = _reordered(snapshot, layout)
-    elif world.contact_arrays.contacts.reserve(counted_rows(snapshot.contacts["count_contacts"])):
-        world.scene_changed()
-    same_constraints = len(snapshot.user_impulses) == len(world.user_constraints.rows)
-    if same_constraints and world.arrays.state.reserve({"user": len(snapshot.user_impulses)}):
-        world.scene_changed()
+    else:
+        world.grow(world.contact_arrays.contacts, counted_rows(snapshot.contacts["count_contacts"]))
+    impulses, users = snapshot.user_impulses, world.user_constraints
+    if len(impulses) == len(users.rows):
+        world.grow(world.arrays.state, {"user": len(impulses)})
+        users.set_impulses(change, world.arrays.state, impulses)
+    for name, rows in _rows(world.arrays.state, world.arrays.used):
+        change.write(rows, _of_drives(rows, snapshot, name) if name in _DRIVES else snapshot.state[name])
+    counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
+    if same:
+        for name, rows in _contact_rows(world, snapshot.contacts["count_contacts"]):
+            change.write(rows, snapshot.contacts[name])
+        # The trees that can move may be others now.
+        change.write(counts[SORTED : SORTED + 1], 0)
+    else:
+        world.contact_arrays.drop_contacts(change)
+        change.write(world.arrays.state.numpy["tree_reset"][0], 0)
+    world.note_time(change, snapshot.time)
+    change.set(world, "unspent_time", snapshot.unspent_time)
+    if world.arrays.state.numpy["tree_activity"].any() or snapshot.state["tree_activity"].any():
+        world.change_scene(change)
 
-    def put_back() -> None:
-        activity = world.arrays.state.numpy["tree_activity"]
-        was_all_active = not activity.any()
-        _write(world, snapshot)
-        if same:
-            _write_contacts(world, snapshot)
-        else:
-            world.contact_arrays.forget_contacts()
-            world.arrays.state.numpy["tree_reset"][0] = 0
-        if same_constraints:
-            world.user_constraints.set_impulses(world.arrays.state, snapshot.user_impulses)
-        world.time, world.unspent_time = snapshot.time, snapshot.unspent_time
-        if not was_all_active or activity.any():
-            world.scene_changed()
 
-    return put_back
+def _of_drives(rows: np.ndarray, snapshot: Snapshot, name: str) -> np.ndarray:
+    """Rows of drives, of which a snapshot has those of joints."""
+    drives = rows.copy()
+    drives[snapshot.layout.joint_dofs] = snapshot.state[name]
+    return drives
 
 
 def _rows(table: ArrayTable, used: dict[str, int]) -> Iterator[tuple[str, np.ndarray]]:
@@ -199,18 +206,6 @@ def _contact_rows(world: World, counts: np.ndarray) -> Iterator[tuple[str, np.nd
     for name, array in world.contact_arrays.contacts.numpy.items():
         axis = name.partition("_")[0]
         yield name, array[0, : used[axis]] if axis in used else array[0]
-
-
-def _write(world: World, snapshot: Snapshot) -> None:
-    for name, rows in _rows(world.arrays.state, world.arrays.used):
-        rows[snapshot.layout.joint_dofs if name in _DRIVES else slice(None)] = snapshot.state[name]
-
-
-def _write_contacts(world: World, snapshot: Snapshot) -> None:
-    for name, rows in _contact_rows(world, snapshot.contacts["count_contacts"]):
-        rows[:] = snapshot.contacts[name]
-    # The trees that can move may be others now.
-    world.contact_arrays.contacts.numpy["count_contacts"][0, SORTED] = 0
 
 
 def _reordered(snapshot: Snapshot, layout: Layout) -> Snapshot:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.model.soft_arrays import Anchor
-from carom.scene.undoing import begin
+from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -31,29 +32,25 @@ def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Ancho
         qx, qy, qz, qw = turn
         local = compose(inverse(Pose((px, py, pz), (qx, qy, qz, qw))), Pose((x, y, z)))
         pivot = local.position
-    with begin(world) as undo:
-        undo.note(world.user_constraints.way_back())
-        undo.note(world.contact_arrays.soft.way_back())
-        number = world.user_constraints.take_id()
+    with uninterrupted:
+        change = Change()
+        number = world.user_constraints.take_id(change)
         rows = None if body is None else body.rows
         anchor = Anchor(number, soft.soft_rows, node, rows, link, pivot)
-        world.contact_arrays.soft.anchors[number] = anchor
+        change.put(world.contact_arrays.soft.anchors, number, anchor)
         if body is None:
-            soft.node_velocities[node] = 0.0
-        world.scene_changed()
-        undo.done()
-    world.update_soft_poses()
+            change.write(soft.node_velocities[node], 0.0)
+        world.change_scene(change)
+        change.commit()
+        world.update_soft_poses()
     return anchor
 
 
 def remove_anchor(world: World, number: int) -> None:
     """Remove the anchor with a number, if it exists."""
-    with begin(world) as undo:
-        anchors = {key: anchor for key, anchor in world.contact_arrays.soft.anchors.items() if key != number}
-
-        def remove() -> None:
-            world.contact_arrays.soft.anchors = anchors
-            world.scene_changed()
-
-        undo.at_once(remove)
-    world.update_soft_poses()
+    with uninterrupted:
+        change = Change()
+        change.drop(world.contact_arrays.soft.anchors, number)
+        world.change_scene(change)
+        change.commit()
+        world.update_soft_poses()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from carom.checks import Array
+from carom.native.change import Change
 from carom.native.tables import ArrayTable
 
 # Flat arrays of the state for users: attribute of `StateViews`, field of `State`.
@@ -47,9 +48,10 @@ class StateViews:
     link_force_memory: memoryview[float]
     joint_reaction_memory: memoryview[float]
 
-    def view(self, state: ArrayTable) -> None:
-        """Make the views of the present arrays."""
+    def view(self, change: Change, state: ArrayTable) -> None:
+        """Make the views of the arrays that there are after a change."""
+        numpy = change.content(state.numpy)
         for name, field in VIEWS.items():
-            array = state.numpy[field][0]
-            setattr(self, name, array)
-            setattr(self, f"{name}_memory", memoryview(array.reshape(-1)))
+            array = numpy[field][0]
+            change.set(self, name, array)
+            change.set(self, f"{name}_memory", memoryview(array.reshape(-1)))

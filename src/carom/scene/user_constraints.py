@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
+from carom.native.change import Change
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
@@ -237,6 +238,11 @@ class UserConstraints:
         """All constraints that are not hidden, in order of creation."""
         return [constraint for number, constraint in self._by_id.items() if number > 0]
 
+    @property
+    def everything(self) -> list[UserConstraint]:
+        """All constraints, also hidden ones."""
+        return list(self._by_id.values())
+
     def get(self, constraint_id: int) -> UserConstraint | None:
         """The constraint with a number, or None."""
         return self._by_id.get(constraint_id)
@@ -264,60 +270,29 @@ class UserConstraints:
             number, kind, parent, parent_link, child, child_link, axis, parent_frame, child_frame
         )
 
-    def take_id(self) -> int:
+    def take_id(self, change: Change) -> int:
         """Reserve the next number for the anchor of a soft body, which is not a constraint between links."""
-        self.next_id += 1
-        return self.next_id - 1
+        number = change.get(self, "next_id")
+        change.set(self, "next_id", number + 1)
+        return number
 
-    def put(self, constraint: UserConstraint) -> None:
-        """Add a constraint with its own number; later ones get higher numbers."""
-        self._by_id[constraint.id] = constraint
-        if constraint.id >= self.next_id:
-            self.next_id = constraint.id + 1
-        if constraint.id <= self._next_hidden_id:
-            self._next_hidden_id = constraint.id - 1
+    def put(self, change: Change, constraint: UserConstraint) -> None:
+        """Add a constraint with its own number with a change; later ones get higher numbers."""
+        change.put(self._by_id, constraint.id, constraint)
+        if constraint.id >= change.get(self, "next_id"):
+            change.set(self, "next_id", constraint.id + 1)
+        if constraint.id <= change.get(self, "_next_hidden_id"):
+            change.set(self, "_next_hidden_id", constraint.id - 1)
 
-    @property
-    def next_numbers(self) -> tuple[int, int]:
-        """The number of the next constraint, and of the next hidden one."""
-        return self.next_id, self._next_hidden_id
+    def discard(self, change: Change, constraint_id: int) -> None:
+        """Remove the constraint with a number, if it exists, with a change."""
+        change.drop(self._by_id, constraint_id)
 
-    def take_back(self, constraint: UserConstraint, next_numbers: tuple[int, int]) -> None:
-        """Undo `put`; `next_numbers` are those of before. Can be called again, or if it was interrupted."""
-        self.discard(constraint.id)
-        self.next_id, self._next_hidden_id = next_numbers
-
-    def discard(self, constraint_id: int) -> None:
-        """Remove the constraint with a number, if it exists."""
-        self._by_id.pop(constraint_id, None)
-
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes everything that is added from now on."""
-        count, numbers = len(self._by_id), (self.next_id, self._next_hidden_id)
-
-        def go_back() -> None:
-            while len(self._by_id) > count:
-                self._by_id.popitem()
-            self.next_id, self._next_hidden_id = numbers
-
-        return go_back
-
-    def removal(self, body: Body) -> Callable[[], None]:
-        """Prepare to remove every constraint of a body.
-
-        Returns:
-            A function that removes them; it can be called again if it was interrupted.
-        """
-        kept = {
-            number: constraint
-            for number, constraint in self._by_id.items()
-            if body is not constraint.parent and body is not constraint.child
-        }
-
-        def remove() -> None:
-            self._by_id = kept
-
-        return remove
+    def remove(self, change: Change, body: Body) -> None:
+        """Remove every constraint of a body with a change."""
+        for number, constraint in self._by_id.items():
+            if body is constraint.parent or body is constraint.child:
+                change.drop(self._by_id, number)
 
     @property
     def rows(self) -> dict[int, int]:
@@ -325,9 +300,9 @@ class UserConstraints:
         # The numbers are copied at once, because the viewer's thread may add a constraint in the meantime.
         return {number: row for row, number in enumerate(tuple(self._by_id))}
 
-    def forget_written(self) -> None:
-        """Write all rows the next time: the arrays may have other contents now."""
-        self._written = []
+    def forget_written(self, change: Change) -> None:
+        """Write all rows the next time: with a change the arrays may get other contents."""
+        change.set(self, "_written", [])
 
     def write(self, contact_arrays: ContactArrays, state: ArrayTable) -> None:
         """Write all constraints that have changed to the arrays of the engine; impulses follow their rows."""
@@ -367,12 +342,13 @@ class UserConstraints:
         """Impulses of all constraints in the last substep, in order of creation, shape (constraints, 6)."""
         return np.frombuffer(self._rows_of(tuple(self._by_id), state)).reshape(-1, _MAX_ROWS)
 
-    def set_impulses(self, state: ArrayTable, impulses: np.ndarray) -> None:
-        """Replace the impulses of all constraints; they are as `all_impulses` gives them.
+    def set_impulses(self, change: Change, state: ArrayTable, impulses: np.ndarray) -> None:
+        """Replace the impulses of all constraints with a change; they are as `all_impulses` gives them.
 
-        `state` may grow; then its `replacements` change.
+        `state` has room for them.
         """
-        self._write_impulses(state, impulses.astype(np.float64).tobytes())
+        change.write(state.numpy["user_impulse"][0, : len(impulses)].reshape(-1, _MAX_ROWS), impulses)
+        change.set(self, "_solved", list(self._by_id))
 
     def _write_impulses(self, state: ArrayTable, rows: bytes) -> None:
         numbers = list(self._by_id)

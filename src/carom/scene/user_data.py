@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from carom.model.body_spec import BASE, BodySpec
-from carom.native.undo import Undo
+from carom.native.change import Change
 
 WHOLE = -1
 """Used instead of a visual shape if the text belongs to the link, or, for the base, to the body."""
@@ -49,6 +48,11 @@ class UserData:
         """The text with a number, or None."""
         return self._by_id.get(number)
 
+    @property
+    def everything(self) -> list[UserDatum]:
+        """The texts of all bodies."""
+        return list(self._by_id.values())
+
     def find(self, body: int, link: int, shape: int, key: str) -> UserDatum | None:
         """The text with a name that is attached to this place, or None."""
         for datum in self.of_body(body):
@@ -64,14 +68,11 @@ class UserData:
             return datum
         number = self._free[-1] if self._free else len(self._by_id)
         datum = UserDatum(number, body, link, shape, key, value)
-        data, free = [*self.of_body(body), datum], self._free[:-1]
-
-        def put() -> None:
-            self._by_id[number] = datum
-            self._of_body[body] = data
-            self._free = free
-
-        Undo().at_once(put)
+        change = Change()
+        change.put(self._by_id, number, datum)
+        change.put(self._of_body, body, [*self.of_body(body), datum])
+        change.set(self, "_free", self._free[:-1])
+        change.commit()
         return datum
 
     def put(self, datum: UserDatum) -> None:
@@ -86,53 +87,39 @@ class UserData:
         self._by_id[datum.id] = datum
         self._of_body.setdefault(datum.body, []).append(datum)
 
-    def add_stated(self, body: int, spec: BodySpec) -> None:
-        """Attach the texts that the file of a new body contains."""
-        for key, value in spec.user_data.items():
-            self.add(body, BASE, WHOLE, key, value)
+    def add_stated(self, change: Change, body: int, spec: BodySpec) -> None:
+        """Attach the texts that the file of a new body contains, with a change."""
+        stated = {(BASE, WHOLE, key): value for key, value in spec.user_data.items()}
         for index, link in enumerate((spec.base, *spec.links), start=BASE):
-            for key, value in link.user_data.items():
-                self.add(body, index, WHOLE, key, value)
+            stated.update({(index, WHOLE, key): value for key, value in link.user_data.items()})
             for place, visual in enumerate(link.visuals):
-                for key, value in visual.user_data.items():
-                    self.add(body, index, place, key, value)
+                stated.update({(index, place, key): value for key, value in visual.user_data.items()})
+        if not stated:
+            return
+        taken, free = len(change.content(self._by_id)), change.get(self, "_free").copy()
+        data = []
+        for (index, place, key), value in stated.items():
+            number = free.pop() if free else taken + len(data)
+            data.append(UserDatum(number, body, index, place, key, value))
+        change.put_all(self._by_id, {datum.id: datum for datum in data})
+        change.put(self._of_body, body, data)
+        change.set(self, "_free", free)
 
     def remove(self, datum: UserDatum) -> None:
         """Remove a text."""
         others = self._of_body[datum.body].copy()
         others[others.index(datum)] = others[-1]
         others.pop()
-        free = [*self._free, datum.id]
+        change = Change()
+        change.drop(self._by_id, datum.id)
+        change.put(self._of_body, datum.body, others)
+        change.set(self, "_free", [*self._free, datum.id])
+        change.commit()
 
-        def remove() -> None:
-            self._by_id.pop(datum.id, None)
-            self._of_body[datum.body] = others
-            self._free = free
-
-        Undo().at_once(remove)
-
-    def way_back(self) -> Callable[[], None]:
-        """A function that removes the texts of all bodies that are added from now on."""
-        texts, bodies, free = len(self._by_id), len(self._of_body), self._free.copy()
-
-        def go_back() -> None:
-            while len(self._by_id) > texts:
-                self._by_id.popitem()
-            while len(self._of_body) > bodies:
-                self._of_body.popitem()
-            self._free = free.copy()
-
-        return go_back
-
-    def removal(self, body: int) -> Callable[[], None]:
-        """Prepare to remove all texts of a body; the function that is returned can be called again."""
+    def remove_all(self, change: Change, body: int) -> None:
+        """Remove all texts of a body with a change."""
         gone = [datum.id for datum in self.of_body(body)]
-        free = [*self._free, *gone]
-
-        def remove() -> None:
-            for number in gone:
-                self._by_id.pop(number, None)
-            self._of_body.pop(body, None)
-            self._free = free
-
-        return remove
+        for number in gone:
+            change.drop(self._by_id, number)
+        change.drop(self._of_body, body)
+        change.set(self, "_free", [*self._free, *gone])

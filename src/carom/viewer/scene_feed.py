@@ -180,7 +180,7 @@ class SceneFeed:
         everything, absent = list(self._world.bodies.values()), _absent_trees(self._world)
         bodies = [body for body in everything if not absent[body.rows.tree]]
         self._appearance = appearance = appearance_of(self._world)
-        appearance.number_textures(self._world)
+        appearance.number_textures(list(self._world.bodies.values()))
         looks = self._present_looks()
         known = set(map(id, self._bodies)) if looks == self._looks else set()
         new = {}

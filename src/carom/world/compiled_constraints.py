@@ -56,5 +56,4 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
 
 def _put(body: Body, tie: UserConstraint, *, enabled: bool) -> None:
     tie.enabled = enabled
-    body.world.user_constraints.put(tie)
-    body.world.constraints.add_user(tie)
+    body.world.add_constraint(tie)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from copy import deepcopy
 from typing import TYPE_CHECKING, Any
 
+from carom.native.change import Change
 from carom.render.appearance import copy_appearance
 from carom.scene.bodies import Bodies
 
@@ -24,10 +25,13 @@ def copy_world(world: World) -> World:
     memo.update((id(body.spec), body.spec) for body in world.bodies.values())
     other.parameters = deepcopy(world.parameters)
     other.bodies = Bodies((number, _copy_body(body, other, memo)) for number, body in world.bodies.items())
-    other.list_bodies({number: other.bodies[number] for number in world.listing})
-    other._take_arrays(deepcopy(world.arrays, memo), deepcopy(world.contact_arrays, memo))
+    other.listing.update({number: other.bodies[number] for number in world.listing})
+    arrays, contact_arrays = deepcopy(world.arrays, memo), deepcopy(world.contact_arrays, memo)
     other.constraints = deepcopy(world.constraints, memo)
     other.user_constraints = deepcopy(world.user_constraints, memo)
+    change = Change()
+    other.take_arrays(change, arrays, contact_arrays)
+    change.commit()
     other.user_data = deepcopy(world.user_data, memo)
     other.free_ids, other.next_id = world.free_ids.copy(), world.next_id
     other.links_loaded = world.links_loaded

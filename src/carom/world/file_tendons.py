@@ -68,8 +68,7 @@ def new_tendon_at_rest(body: Body, spec: TendonSpec) -> UserConstraint:
 
 
 def _put(body: Body, tie: UserConstraint) -> None:
-    body.world.user_constraints.put(tie)
-    body.world.constraints.add_user(tie)
+    body.world.add_constraint(tie)
 
 
 def _links(body: Body) -> dict[str, int]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, overload
 
 from carom.description.pose import Pose
 from carom.model.body_spec import BodySpec
+from carom.native.change import Change
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
@@ -32,7 +33,10 @@ class BodyAdding(ABC):
 
     @abstractmethod
     def _add_all(
-        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+        self,
+        bodies: Sequence[tuple[BodySpec, Pose]],
+        also: Callable[[list[Body]], None] | None,
+        note: Callable[[Change, list[Body]], None] | None,
     ) -> list[Body]:
         """Add bodies at rest, all or none."""
 
@@ -271,7 +275,7 @@ class DescriptionLoading(BodyAdding):
         from carom.description.pose import Pose
         from carom.world.compiled_constraints import constrain
         from carom.world.compiled_files import describe, finish
-        from carom.world.robot_files import couple, placed, read_robot_file, report
+        from carom.world.robot_files import couple, has_mimics, placed, read_robot_file, report
         from carom.world.scene import Scene
 
         place = vector(position, 3, "position").tolist()
@@ -287,20 +291,25 @@ class DescriptionLoading(BodyAdding):
                 frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
                 constraints.extend(constrain(bodies, source.model, frame))
 
-        bodies = self.load_all(placed(source.bodies, place, turn), also)
+        needs_more = source.model is not None or any(has_mimics(spec) for spec, _ in source.bodies)
+        bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)
         scene = Scene(self._as_world(), source.path, source.kind.value, bodies, source.ignored, constraints)
         if source.model is not None:
             describe(scene, source.model)
         return scene
 
     def load_all(
-        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None = None
+        self,
+        bodies: Sequence[tuple[BodySpec, Pose]],
+        also: Callable[[list[Body]], None] | None = None,
+        note: Callable[[Change, list[Body]], None] | None = None,
     ) -> list[Body]:
         """Add bodies at rest, all or none.
 
         Args:
             bodies: Specification of each body, and the world pose of its base's link frame.
-            also: Called with the new bodies; if it raises an exception they are removed again.
+            also: Called with the new bodies, which are in a draft of the world then and can be changed.
+            note: Called with the new bodies before they can be used; notes what else changes with them.
 
         Raises:
             carom.errors.DescriptionError: The file of a mesh cannot be used; the world is as before.
@@ -308,7 +317,7 @@ class DescriptionLoading(BodyAdding):
         from carom.model.from_files import make_shapes
 
         make_shapes(bodies)
-        return self._add_all(bodies, also)
+        return self._add_all(bodies, also, note)
 
 
 def _search() -> AssetSearch:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,8 +11,11 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
 from carom.engine.quick_scene import QuickScene
 from carom.model.builder import WorldArrays
+from carom.native.change import Change
 from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
+from carom.native.tables import ArrayTable
+from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 
 if TYPE_CHECKING:
@@ -40,11 +43,16 @@ class Derived:
 class PoseUpdates(ABC):
     """Updates of the poses and velocities that are computed only when they are asked for."""
 
+    bodies: Bodies
     arrays: WorldArrays
     contact_arrays: ContactArrays
     engine: Engine
     quick: QuickScene
     _derived: Derived
+
+    @abstractmethod
+    def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
+        """Make room for rows of a table of this world; nothing else of the world changes."""
 
     @abstractmethod
     def _kernel_structs(self) -> KernelStructs:
@@ -63,6 +71,12 @@ class PoseUpdates(ABC):
         """Bring `link_pose` up to date with the coordinates of a body."""
         (self._derived.pose_launch or self.prepare_poses())(body.rows.tree)
 
+    def note_link_poses(self, change: Change, *bodies: Body) -> None:
+        """Bring `link_pose` up to date with the coordinates of bodies, by default all, after a change."""
+        launch = self._derived.pose_launch or self.prepare_poses()
+        for body in bodies or self.bodies.values():
+            change.run(launch.addresses(), body.rows.tree, launch)
+
     def prepare_poses(self) -> TreeLaunch:
         """Set the addresses that the fast paths in the native library use, after a change of the scene.
 
@@ -70,7 +84,7 @@ class PoseUpdates(ABC):
             A function that updates the link poses of a body.
         """
         if self._derived.pose_launch is None:
-            self.contact_arrays.shapes.reserve({"link": self.arrays.model.capacity["link"]})
+            self.grow(self.contact_arrays.shapes.table, {"link": self.arrays.model.capacity["link"]})
             self._derived.pose_launch = self.quick.set_pose_addresses(self.arrays, self.contact_arrays)
         return self._derived.pose_launch
 

@@ -163,6 +163,11 @@ def placed(
     return [(spec, pose if own == IDENTITY else compose(pose, own)) for spec, own in bodies]
 
 
+def has_mimics(spec: BodySpec) -> bool:
+    """Whether joints of a body may mimic others."""
+    return not spec.is_held and any(link.mimic is not None for link in spec.links)
+
+
 def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
     """Couple the joints that mimic others, and place them; called while bodies are added."""
     from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling, place_followers
@@ -181,8 +186,7 @@ def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
                 leader, factor = None, 0.0
             coefficients = (mimic.offset, factor, 0.0, 0.0, 0.0)
             tie = new_coupling(body, follower, leader, coefficients, link.joint_name)
-            body.world.user_constraints.put(tie)
-            body.world.constraints.add_user(tie)
+            body.world.add_constraint(tie)
             made.append(JointCoupling(tie))
     for coupling in made:
         # From the first leaders on: a follower may lead others.

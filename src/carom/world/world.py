@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from ctypes import c_double
+from collections.abc import Callable, Collection, Mapping, Sequence
+from ctypes import addressof, c_double, sizeof
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,9 +21,9 @@ from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
+from carom.native.change import Change, packed_block
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
-from carom.native.undo import Undo
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
@@ -88,9 +88,20 @@ class World(
     # links_loaded: Number of links loaded since the world was empty, those of removed bodies included.
     # listing: The bodies in the order in which PyBullet counts them: the last one takes the place of one that
     #     is removed.
-    # undo: Repairs the world after a change that was interrupted.
     # quick: Addresses of its data for the fast paths in the native library.
     # `position_memory` and so on are the memory of the flat arrays as flat `memoryview`s of doubles.
+
+    arrays: WorldArrays
+    contact_arrays: ContactArrays
+    constraints: JointConstraints
+    user_constraints: UserConstraints
+    user_data: UserData
+    free_ids: list[int]
+    next_id: int
+    links_loaded: int
+    engine: Engine
+    _status: memoryview[int]
+    _growths: int
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
@@ -102,46 +113,50 @@ class World(
         self.unspent_time: float = 0.0
         self._viewed: ArrayTable | None = None
         self._replacements = 0
-        self.undo: Undo = Undo()
+        self._derived: Derived = Derived()
+        self._made_for: tuple[int, int] | None = None
         self.quick: QuickScene = QuickScene()
-        self._start_empty()
+        change = Change()
+        self._start_empty(change)
+        change.commit()
         self._close(World)
 
     def __repr__(self) -> str:
         names = ", ".join(repr(body.name) for body in self.bodies.values())
         return f"<World at {self.time:.4f} s with {names or 'no bodies'}>"
 
-    def _start_empty(self) -> None:
+    def _start_empty(self, change: Change) -> None:
+        """Remove everything with a change."""
         arrays = WorldArrays()
-        self.constraints: JointConstraints = JointConstraints()
-        self.user_constraints: UserConstraints = UserConstraints()
-        self._take_arrays(arrays, ContactArrays(arrays))
-        self.bodies.clear()
-        self.listing.clear()
-        self.user_data: UserData = UserData()
-        self.free_ids: list[int] = []
-        self.next_id: int = 0
-        self.links_loaded: int = 0
-        self.unspent_time = 0.0
+        change.set(self, "constraints", JointConstraints())
+        change.set(self, "user_constraints", UserConstraints())
+        change.set(self, "user_data", UserData())
+        change.refill(self.bodies, {})
+        change.refill(self.listing, {})
+        change.set(self, "free_ids", [])
+        change.set(self, "next_id", 0)
+        change.set(self, "links_loaded", 0)
+        change.set(self, "unspent_time", 0.0)
+        self.take_arrays(change, arrays, ContactArrays(arrays))
 
-    def list_bodies(self, listing: dict[int, Body]) -> None:
-        """Set the order of `listing`, which stays the same object; can be repeated."""
-        self.listing.clear()
-        self.listing.update(listing)
-
-    def _take_arrays(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        self.arrays: WorldArrays = arrays
-        self.contact_arrays: ContactArrays = contact_arrays
-        self.engine: Engine = Engine(arrays, contact_arrays)
-        self._status: memoryview[int] = memoryview(self.engine.status[0])
-        self._growths = 0
-        self.scene_changed()
+    def take_arrays(self, change: Change, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
+        """Replace all arrays with a change, which has noted the constraints that go with them."""
+        engine = Engine(arrays, contact_arrays)
+        change.set(self, "arrays", arrays)
+        change.set(self, "contact_arrays", contact_arrays)
+        change.set(self, "engine", engine)
+        change.set(self, "_status", memoryview(engine.status[0]))
+        change.set(self, "_growths", 0)
+        self.change_scene(change)
 
     def __enter__(self) -> World:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.undo.at_once(self._start_empty)
+        with uninterrupted:
+            change = Change()
+            self._start_empty(change)
+            change.commit()
 
     # Bodies
 
@@ -166,9 +181,12 @@ class World(
         return add_bodies(self, [(spec, Pose((px, py, pz), (qx, qy, qz, qw)))])[0]
 
     def _add_all(
-        self, bodies: Sequence[tuple[BodySpec, Pose]], also: Callable[[list[Body]], None] | None
+        self,
+        bodies: Sequence[tuple[BodySpec, Pose]],
+        also: Callable[[list[Body]], None] | None,
+        note: Callable[[Change, list[Body]], None] | None,
     ) -> list[Body]:
-        return add_bodies(self, bodies, also)
+        return add_bodies(self, bodies, also, note)
 
     def remove(self, body_id: int) -> None:
         """Remove a body from the world.
@@ -178,23 +196,21 @@ class World(
         """
         remove_body(self, self.bodies[body_id])
 
-    def reset(self, also: Callable[[], None] | None = None) -> None:
+    def reset(self, also: Callable[[Change], None] | None = None) -> None:
         """Remove all bodies and reset all parameters except the time step and the substeps.
 
         Args:
-            also: A function called as part of the reset, even if it is interrupted; may be called repeatedly.
+            also: A function that notes what else changes with the reset.
         """
         kept = self.parameters
-        parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
-
-        def start() -> None:
-            self.parameters = parameters
-            self._start_empty()
+        with uninterrupted:
+            change = Change()
+            parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
+            change.set(self, "parameters", parameters)
+            self._start_empty(change)
             if also is not None:
-                also()
-
-        self.undo.settle()
-        self.undo.at_once(start)
+                also(change)
+            change.commit()
 
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
@@ -297,17 +313,11 @@ class World(
             restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
             return
         with uninterrupted:
-            self.undo.settle()
-            put_back = return_to(self, self._layout, state)
-
-            def restore() -> None:
-                put_back()
-                for body in self.bodies.values() if update_poses else ():
-                    body.update_link_poses()
-
-            with self.undo:
-                self.undo.note(self.scene_changed)
-                self.undo.at_once(restore)
+            change = Change()
+            return_to(change, self, self._layout, state)
+            if update_poses:
+                self.note_link_poses(change)
+            change.commit()
 
     def log(self, *names: str, every: int = 1) -> Log:
         """Record state arrays after each step, until the log is stopped.
@@ -355,22 +365,45 @@ class World(
 
     def scene_changed(self) -> None:
         """Discard derived data: bodies, constraints or arrays have changed."""
-        self.quick.forget()
-        self._derived = Derived()
-        self._made_for: tuple[int, int] | None = None
-        self.constraints.rows.forget()
-        self.user_constraints.forget_written()
-        self.engine.changed()
-        if self.arrays.state is not self._viewed or self.arrays.state.replacements != self._replacements:
-            self.view(self.arrays.state)
-            self._viewed, self._replacements = self.arrays.state, self.arrays.state.replacements
+        change = Change()
+        self.change_scene(change)
+        change.commit()
+
+    def change_scene(self, change: Change) -> None:
+        """Discard derived data with a change of bodies, constraints or arrays, which has noted all else."""
+        self.quick.forget(change)
+        change.set(self, "_derived", Derived())
+        change.set(self, "_made_for", None)
+        change.get(self, "constraints").rows.forget(change)
+        change.get(self, "user_constraints").forget_written(change)
+        change.get(self, "engine").note_change(change)
+        state = change.get(change.get(self, "arrays"), "state")
+        replacements = change.get(state, "replacements")
+        if state is not self._viewed or replacements != self._replacements:
+            self.view(change, state)
+            change.set(self, "_viewed", state)
+            change.set(self, "_replacements", replacements)
 
     def constraints_changed(self) -> None:
         """Set the prepared step aside: constraints have changed, and nothing else."""
+        change = Change()
+        self.change_constraints(change)
+        change.commit()
+
+    def change_constraints(self, change: Change) -> None:
+        """Set the prepared step aside with a change of constraints, and of nothing else."""
         derived = self._derived
-        derived.step_before, derived.step = derived.step or derived.step_before, None
-        self.quick.pause_step()
-        self.engine.constraints_changed()
+        change.set(derived, "step_before", derived.step or derived.step_before)
+        change.set(derived, "step", None)
+        self.quick.pause_step(change)
+        self.engine.note_constraints(change)
+
+    def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
+        """Make room for rows of a table of this world; nothing else of the world changes."""
+        change = Change()
+        if table.grow(change, needed):
+            self.change_scene(change)
+            change.commit()
 
     # Time
 
@@ -382,6 +415,12 @@ class World(
     @time.setter
     def time(self, value: float) -> None:
         self._clock.value = value
+
+    def note_time(self, change: Change, time: float) -> None:
+        """Set the simulated time [s] with a change."""
+        value = c_double(time)
+        block = packed_block(addressof(value), addressof(self._clock), sizeof(value))
+        change.copy_blocks([block], value)
 
     def step(self, count: int = 1) -> None:
         """Advance the world by `count` time steps.
@@ -493,7 +532,6 @@ class World(
             return self._prepared_step()
 
     def _prepared_step(self) -> Callable[[], None]:
-        self.undo.settle()
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
         )
@@ -581,7 +619,6 @@ class World(
 
     def _kernel_structs(self) -> KernelStructs:
         """Structs of the present arrays, by the names of kernel arguments."""
-        self.undo.settle()
         self.engine.update_settings(self.parameters)
         return self.engine.structs()
 

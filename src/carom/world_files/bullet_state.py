@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 from carom.errors import DescriptionError, StateError
 from carom.formats.bullet import BulletState, MultiBodyState, RigidBodyState, is_bullet, read_bullet_state
+from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.soft_body import SoftBody
 
 if TYPE_CHECKING:
@@ -107,20 +109,13 @@ def _rows(body: Body, saved: MultiBodyState | RigidBodyState) -> Iterator[tuple[
 
 
 def _put(world: World, rows: list[tuple[_Rows, _Rows]], update_poses: bool) -> None:
-    world.undo.settle()
-
-    def put() -> None:
-        positions, velocities = world.position_memory, world.velocity_memory
+    with uninterrupted:
+        change = Change()
+        positions, velocities = world.position, world.velocity
         for (first_position, position), (first_velocity, velocity) in rows:
-            for place, number in enumerate(position, first_position):
-                positions[place] = number
-            for place, number in enumerate(velocity, first_velocity):
-                velocities[place] = number
-        world.contact_arrays.forget_contacts()
-        for body in world.bodies.values() if update_poses else ():
-            body.update_link_poses()
-
-    # The change is made completely, also when it is interrupted.
-    with world.undo:
-        world.undo.note(world.scene_changed)
-        world.undo.at_once(put)
+            change.write(positions[first_position : first_position + len(position)], position)
+            change.write(velocities[first_velocity : first_velocity + len(velocity)], velocity)
+        world.contact_arrays.drop_contacts(change)
+        if update_poses:
+            world.note_link_poses(change)
+        change.commit()

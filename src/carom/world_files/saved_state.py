@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
+from carom.native.change import Change
 from carom.scene.snapshot import BodyLayout, Layout, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader
 
@@ -152,14 +153,20 @@ def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: 
         raise ValueError("the state is that of other bodies")
     check_arrays(world, bodies, snapshot)
     if whole:
-        return_to(world, present, snapshot)()
+        _return_to(world, present, snapshot)
         return
     others = take(world, present)
     for name, rows in others.state.items():
         if not name.startswith("tree"):
             rows[len(rows) - len(snapshot.state[name]) :] = snapshot.state[name]
     world.contact_arrays.forget_contacts()
-    return_to(world, present, others)()
+    _return_to(world, present, others)
+
+
+def _return_to(world: World, present: Layout, snapshot: Snapshot) -> None:
+    change = Change()
+    return_to(change, world, present, snapshot)
+    change.commit()
 
 
 def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:

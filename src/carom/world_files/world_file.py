@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
-from functools import partial
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -31,14 +30,16 @@ from carom.layouts.codes import (
 )
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
+from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.actuators.actuated_joint import actuated_joint
-from carom.scene.changes import append, begin_to_measure, note_additions
-from carom.scene.dynamics_changes import change_base_freedom, dynamics_change
+from carom.scene.changes import append_now, free_base
+from carom.scene.draft import draft_of
+from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.link_dynamics import LinkDynamics
-from carom.scene.snapshot import check_same, layout, return_to
+from carom.scene.snapshot import check_same, layout
 from carom.scene.soft_body import SoftBody
-from carom.scene.undoing import begin
 from carom.scene.user_constraints import UserConstraint
 from carom.scene.user_data import UserDatum
 from carom.version import __version__
@@ -66,8 +67,16 @@ class Part(Protocol):
         """The data for the file, in the form that `Writer.write` returns."""
         ...
 
+    def begin(self, world: World, draft: World) -> None:
+        """Give the draft of a world what the world has."""
+        ...
+
     def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
-        """Apply the saved data to bodies that have just been loaded."""
+        """Apply the saved data to bodies that have just been loaded into the draft of a world."""
+        ...
+
+    def publish(self, change: Change, world: World, draft: World) -> None:
+        """Give a world what its draft has, with a change."""
         ...
 
 
@@ -227,25 +236,37 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
     refuse_to_load(data, path)
     with _guarded(path):
         document, reader, saved = _read(data, path)
-        state = read_state(reader, document.get("state"))
-        with begin(world) as undo:
-            undo.note(return_to(world, layout(world), world.snapshot()))
-            undo.note(partial(_set_parameters, world, world.parameters))
-            note_additions(world, undo)
-            alone = not world.bodies
-            bodies = _append(world, saved, alone)
-            for name, part in parts.items():
-                part.load(bodies, reader, document["parts"][name])
-            write_state(world, bodies, state, whole=alone)
-            if alone:
-                world.free_ids, world.next_id = saved.free_ids, saved.next_id
-                world.links_loaded = saved.links_loaded or world.links_loaded
-                world.user_constraints.next_id = saved.next_tie
-                _set_parameters(world, saved.parameters)
-            world.scene_changed()
-            begin_to_measure(world, bodies)
-            undo.done()
+        with uninterrupted:
+            draft = draft_of(world)
+            for part in parts.values():
+                part.begin(world, draft.world)
+            bodies = _load(draft.world, document, reader, saved, parts)
+            draft.measure(bodies)
+            change = Change()
+            for part in parts.values():
+                part.publish(change, world, draft.world)
+            draft.publish(change)
         return bodies
+
+
+def _load(
+    world: World, document: dict[str, Any], reader: Reader, saved: SavedWorld, parts: Parts
+) -> list[Body]:
+    """Add the bodies of a file to the draft of a world."""
+    state = read_state(reader, document.get("state"))
+    alone = not world.bodies
+    bodies = _append(world, saved, alone)
+    for name, part in parts.items():
+        part.load(bodies, reader, document["parts"][name])
+    write_state(world, bodies, state, whole=alone)
+    if alone:
+        world.free_ids, world.next_id = saved.free_ids, saved.next_id
+        world.links_loaded = saved.links_loaded or world.links_loaded
+        world.user_constraints.next_id = saved.next_tie
+        world.parameters = saved.parameters
+        world.apply_parameters()
+    world.scene_changed()
+    return bodies
 
 
 def restore_world(
@@ -362,11 +383,6 @@ def _saved_tie(tie: UserConstraint) -> SavedTie:
     return SavedTie(**values)
 
 
-def _set_parameters(world: World, parameters: EngineParameters) -> None:
-    world.parameters = parameters
-    world.apply_parameters()
-
-
 def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
     """Add the bodies, constraints, filters and texts, without appearance and state."""
     bodies: dict[int, Body] = {}
@@ -375,7 +391,7 @@ def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
             raise ValueError(f"the number {record.id} of a body is used twice or out of range")
         if alone:
             world.free_ids = [*world.free_ids, record.id]
-        bodies[record.id] = append(world, saved.specs[_index(record.spec, saved.specs)], IDENTITY)
+        bodies[record.id] = append_now(world, saved.specs[_index(record.spec, saved.specs)], IDENTITY)
         _give_dynamics(bodies[record.id], record)
     ties = _make_ties(world, saved, bodies, alone)
     _make_anchors(world, saved, bodies, alone)
@@ -408,7 +424,7 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
     if record.links_before is not None:
         body.links_before = record.links_before
     if record.fixed_base != body.fixed_base:
-        change_base_freedom(body.world, body, free=not record.fixed_base)
+        free_base(body.world, body, free=not record.fixed_base)
     for place in range(count):
         body.set_dynamics(place - 1, record.links[place])
         body.world.contact_arrays.shapes.set_group_and_mask(
@@ -423,7 +439,7 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
         "max_joint_velocity": record.max_velocity,
         "sleep_threshold": record.sleep_threshold,
     }
-    dynamics_change(body, BASE, damping)()
+    change_dynamics(body, BASE, damping)
     model = body.world.arrays.model.numpy
     model["tree_can_sleep"][body.rows.tree] = record.can_sleep
     model["tree_can_wake"][body.rows.tree] = record.can_wake
@@ -448,7 +464,9 @@ def _make_ties(
         elif record.id in ties or record.id < 1:
             raise ValueError(f"the number {record.id} of a constraint is used twice or out of range")
         ties[record.id] = UserConstraint(**values)
-        world.user_constraints.put(ties[record.id])
+        change = Change()
+        world.user_constraints.put(change, ties[record.id])
+        change.commit()
     return ties
 
 
@@ -491,13 +509,14 @@ def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alon
             raise ValueError(f"body {record.soft} has no node {record.node}")
         if body is not None and (body.spec.soft is not None or not BASE <= record.link < body.joint_count):
             raise ValueError(f"body {body.id} has no link {record.link} to which a node could be anchored")
-        number = record.id if alone else world.user_constraints.take_id()
+        change = Change()
+        number = record.id if alone else world.user_constraints.take_id(change)
         if number in world.contact_arrays.soft.anchors or number < 1:
             raise ValueError(f"the number {number} of an anchor is used twice or out of range")
         rows = None if body is None else body.rows
-        world.contact_arrays.soft.anchors[number] = Anchor(
-            number, soft.soft_rows, record.node, rows, record.link, record.pivot
-        )
+        anchor = Anchor(number, soft.soft_rows, record.node, rows, record.link, record.pivot)
+        change.put(world.contact_arrays.soft.anchors, number, anchor)
+        change.commit()
 
 
 def _order_constraints(

@@ -67,7 +67,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             raise ValueError("bodies cannot be absent in worlds on a GPU yet; use device='cpu'")
         worlds = self._chosen(where)
         wanted = worlds.values(np.asarray(present, dtype=bool), (), "present") != 0.0
-        change_presence(engine.arrays, engine.contact_arrays, self.rows, worlds.numbers, wanted)()
+        change_presence(engine.arrays, engine.contact_arrays, self.rows, worlds.numbers, wanted)
         engine.activity_changed()
 
     # Nodes of soft bodies

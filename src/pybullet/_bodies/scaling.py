@@ -6,6 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
+from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import Vector, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
@@ -54,24 +56,25 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
 
     from carom.layouts.flags import LoadFlags
     from carom.model.scaled_shapes import scaled_collisions
-    from carom.scene.changes import part
     from carom.scene.link_dynamics import LinkDynamics
 
     shapes = client.world.contact_arrays.shapes
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
-    with client.lock:
+    with client.lock, uninterrupted:
+        change = Change()
         base = body.spec.base
         unscaled = _unscaled.setdefault(body, base.collisions)
         try:
             # A copy, because bodies from the same file share their specification.
             base = replace(base, collisions=scaled_collisions(unscaled, base.inertial_frame, factors))
-            shapes.replace_pieces(body.first_link, base, implicit_cylinder=implicit)
+            shapes.replace_pieces(change, body.first_link, base, implicit_cylinder=implicit)
         except ValueError as reason:
             fail("unsupportedChangeScaling failed.", f"Body {body.id} ({body.name}): {reason}.")
-        body.spec = replace(body.spec, base=base)
-        body.dynamics(BASE).collision_margin = LinkDynamics.of(base).collision_margin
-        body.derived.clear()
+        change.set(body, "spec", replace(body.spec, base=base))
+        change.set(body.dynamics(BASE), "collision_margin", LinkDynamics.of(base).collision_margin)
+        change.set(body, "derived", {})
         client.bodies.forget(body.id)
         # As in PyBullet the base has no contacts until the next step, and getLinkState returns current poses.
-        part(client.world, [body.first_link])
-        body.update_link_poses()
+        client.world.contact_arrays.part(change, [body.first_link])
+        client.world.note_link_poses(change, body)
+        change.commit()

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from inspect import BoundArguments, signature
 from typing import TYPE_CHECKING, Any
 
+from carom.native.change import Change
 from carom.scene.user_data import UserData, UserDatum
 from pybullet._bodies.user_data import READERS
 
@@ -65,7 +66,7 @@ class UserDataView:
                 if datum is not None:
                     self._known.remove(datum)
             case "removeBody":
-                self._known.removal(given["bodyUniqueId"])()
+                self._forget(given["bodyUniqueId"])
             case "resetSimulation":
                 self._known = UserData()
             case _:
@@ -89,8 +90,14 @@ class UserDataView:
     def _read_anew(self, bodies: tuple[int, ...]) -> None:
         """Copy the texts of some bodies."""
         for body in bodies:
-            self._known.removal(body)()
+            self._forget(body)
             for place in range(self._ask("getNumUserData", body)):
                 number, key, _, link, shape = self._ask("getUserDataInfo", body, place)
                 value = self._ask("getUserData", number)
                 self._known.put(UserDatum(number, body, link, shape, key.decode(), value.decode()))
+
+    def _forget(self, body: int) -> None:
+        """Forget the texts of a body."""
+        change = Change()
+        self._known.remove_all(change, body)
+        change.commit()

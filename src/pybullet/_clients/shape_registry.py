@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from carom.description import Collision, Visual
-from carom.native.undo import Undo
+from carom.native.change import Change
 
 if TYPE_CHECKING:
     from pybullet._loading.kept_descriptions import KeptDescription
@@ -39,13 +39,10 @@ class ShapeTable(Generic[Shape]):
     def add(self, shape: Shape) -> int:
         """Adds a shape and returns its id."""
         number = self._free[-1] if self._free else len(self._shapes)
-        free = self._free[:-1]
-
-        def put() -> None:
-            self._shapes[number] = shape
-            self._free = free
-
-        Undo().at_once(put)
+        change = Change()
+        change.put(self._shapes, number, shape)
+        change.set(self, "_free", self._free[:-1])
+        change.commit()
         return number
 
     def get(self, number: int) -> Shape | None:
@@ -54,13 +51,10 @@ class ShapeTable(Generic[Shape]):
 
     def remove(self, number: int) -> None:
         """Removes a shape, which must exist."""
-        free = [*self._free, number]
-
-        def remove() -> None:
-            self._shapes.pop(number, None)
-            self._free = free
-
-        Undo().at_once(remove)
+        change = Change()
+        change.drop(self._shapes, number)
+        change.set(self, "_free", [*self._free, number])
+        change.commit()
 
 
 class ShapeRegistry:

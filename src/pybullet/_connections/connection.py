@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import atexit
 import sys
-from functools import partial
 from operator import index
 from types import FrameType
 from typing import Any, overload
 
+from carom.native.change import Change
 from pybullet._calls.arguments import by_name, integer, real, text
 from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.constants import (
@@ -356,8 +356,9 @@ def syncBodyInfo(physicsClientId: int = 0) -> None:
     client = client_of(physicsClientId)
     with client.lock:
         world = client.world
-        world.undo.settle()
-        world.undo.at_once(partial(world.list_bodies, dict(sorted(world.bodies.items()))))
+        change = Change()
+        change.refill(world.listing, dict(sorted(world.bodies.items())))
+        change.commit()
 
 
 def _target(arguments: tuple[int | str, ...], keywords: dict[str, int | str]) -> Target:

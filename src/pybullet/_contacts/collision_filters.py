@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import integer
 from pybullet._calls.builtin import exported
 from pybullet._clients.clients import Client, client_of
@@ -44,19 +46,19 @@ def setCollisionFilterPair(
         >>> p.getBasePositionAndOrientation(cube)[0][2] < -1
         True
     """
-    from carom.scene.changes import part
-
     client = client_of(physicsClientId)
     enabled = integer(enableCollision, "enableCollision") != 0
     row_a = _row(client, bodyUniqueIdA, linkIndexA, "setCollisionFilterPair")
     row_b = _row(client, bodyUniqueIdB, linkIndexB, "setCollisionFilterPair")
-    with client.lock:
+    with client.lock, uninterrupted:
+        world, change = client.world, Change()
         if row_a is not None and row_b is not None:
-            client.world.contact_arrays.shapes.filters.set(row_a, row_b, enabled=enabled)
-        for body in dict.fromkeys((client.body(bodyUniqueIdA), client.body(bodyUniqueIdB))):
-            if body is not None:
-                part(client.world, range(body.first_link, body.first_link + 1 + body.joint_count))
-        client.world.scene_changed()
+            world.contact_arrays.shapes.filters.note(change, row_a, row_b, enabled=enabled)
+        bodies = dict.fromkeys((client.body(bodyUniqueIdA), client.body(bodyUniqueIdB)))
+        links = [range(body.first_link, body.first_link + 1 + body.joint_count) for body in bodies if body]
+        world.contact_arrays.part(change, *links)
+        world.change_scene(change)
+        change.commit()
 
 
 @exported
@@ -88,18 +90,18 @@ def setCollisionFilterGroupMask(
     Examples:
         >>> p.setCollisionFilterGroupMask(cube, -1, collisionFilterGroup=0, collisionFilterMask=0)
     """
-    from carom.scene.changes import part
-
     client = client_of(physicsClientId)
     group = integer(collisionFilterGroup, "collisionFilterGroup")
     mask = integer(collisionFilterMask, "collisionFilterMask")
     row = _row(client, bodyUniqueId, linkIndexA, "setCollisionFilterGroupMask")
     if row is None:
         return
-    with client.lock:
-        client.world.contact_arrays.shapes.set_group_and_mask(row, group, mask)
-        part(client.world, [row])
-        client.world.scene_changed()
+    with client.lock, uninterrupted:
+        world, change = client.world, Change()
+        world.contact_arrays.shapes.note_group_and_mask(change, row, group, mask)
+        world.contact_arrays.part(change, [row])
+        world.change_scene(change)
+        change.commit()
 
 
 def _row(client: Client, body_id: Any, link_index: Any, function: str) -> int | None:

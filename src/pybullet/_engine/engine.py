@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from carom.errors import SimulationError
+from carom.native.change import Change, blank
 from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import integer, quantity, real
 from pybullet._calls.builtin import exported
@@ -142,16 +143,18 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
     with client.lock:
         client.bodies.forget_all()
 
-        def also() -> None:
-            client.shapes = ShapeRegistry()
-            client.states.clear()
-            client.origins.clear()
-            client.maximal.clear()
-            client.report_analytics = False
-            client.deformable = deformable
-            client.window.remove_drawings()
+        def also(change: Change) -> None:
+            change.set(client, "shapes", ShapeRegistry())
+            change.refill(client.states, {})
+            change.refill(client.origins, {})
+            change.set(client, "maximal", set())
+            record = client.bodies.quick.record
+            change.copy_blocks([blank(record, "reports_analytics")], record)
+            change.set(client, "deformable", deformable)
 
-        client.world.reset(also)
+        with uninterrupted:
+            client.world.reset(also)
+            client.window.remove_drawings()
 
 
 @exported
@@ -437,6 +440,11 @@ def _change(client: Client, **changes: Any) -> None:
 
 def _keep_forces_of_constraints(client: Client, ratio: float) -> None:
     """Let `getConstraintState` go on reporting the forces of the last step: impulses follow the time step."""
-    constraints, state = client.world.user_constraints, client.world.arrays.state
+    world = client.world
+    constraints, state = world.user_constraints, world.arrays.state
     if len(constraints):
-        constraints.set_impulses(state, constraints.all_impulses(state) * ratio)
+        impulses = constraints.all_impulses(state) * ratio
+        world.grow(state, {"user": len(impulses)})
+        change = Change()
+        constraints.set_impulses(change, state, impulses)
+        change.commit()

@@ -15,6 +15,7 @@ from pybullet._clients.origins import FileLoad, Origin
 if TYPE_CHECKING:
     from carom.description.pose import Pose
     from carom.model.body_spec import BodySpec
+    from carom.native.change import Change
     from carom.scene.body import Body
 
 
@@ -72,22 +73,25 @@ def add_bodies(
         with client.lock:
             client.bodies.forget_all()
 
-            def also(added: list[Body]) -> None:
+            def note(change: Change, added: list[Body]) -> None:
                 for index, body in enumerate(added):
-                    client.origins.pop(body.id, None)
-                    client.maximal.discard(body.id)
-                    if maximal:
-                        client.maximal.add(body.id)
                     if load is not None:
-                        client.origins[body.id] = Origin(load, index)
-                _look_at_fresh_files(client, [spec for spec, _ in bodies])
+                        change.put(client.origins, body.id, Origin(load, index))
+                    elif body.id in client.origins:
+                        change.drop(client.origins, body.id)
+                ids = {body.id for body in added}
+                if maximal:
+                    change.set(client, "maximal", client.maximal | ids)
+                elif not client.maximal.isdisjoint(ids):
+                    change.set(client, "maximal", client.maximal - ids)
+                _look_at_fresh_files(client, added)
 
-            return tuple(body.id for body in client.world.load_all(bodies, also))
+            return tuple(body.id for body in client.world.load_all(bodies, note=note))
     except CaromError as reason:
         fail(problem, str(reason))
 
 
-def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
+def _look_at_fresh_files(client: Client, bodies: Sequence[Body]) -> None:
     """Read the files of visual shapes now if they may be deleted before the first image.
 
     Otherwise the first image reads them, because they are larger than a robot's other files.
@@ -96,12 +100,13 @@ def _look_at_fresh_files(client: Client, specs: Sequence[BodySpec]) -> None:
 
     paths = {
         visual.geometry.path
-        for spec in specs
-        for link in (spec.base, *spec.links)
+        for body in bodies
+        for link in (body.spec.base, *body.spec.links)
         for visual in link.visuals
         if isinstance(visual.geometry, Mesh)
     }
     if any(map(is_fresh, paths)):
         from carom.render.appearance import appearance_of
 
-        appearance_of(client.world).number_textures(client.world)
+        appearance = appearance_of(client.world)
+        appearance.number_textures([*client.world.bodies.values(), *bodies])

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from carom.description import Collision, Heightfield, Visual
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
+from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from pybullet._calls.arguments import MAX_ITEMS
 from pybullet._calls.errors import fail
 from pybullet._calls.nested import nested
@@ -107,13 +109,15 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
         (columns, rows), (new_columns, new_rows) = old.heights.shape, heights.shape
         fail(problem, f"The heightfield has {rows} x {columns} points, not {new_rows} x {new_columns}.")
     new = Heightfield(heights, old.scale, old.middle)
-    shape.collisions = (Collision(new, shape.collisions[0].frame),)
-    shape.visuals = (Visual(new, shape.visuals[0].frame, stands_in=True),)
-    with client.lock:
-        _renew_bodies(client, old, new)
+    with client.lock, uninterrupted:
+        change = Change()
+        change.set(shape, "collisions", (Collision(new, shape.collisions[0].frame),))
+        change.set(shape, "visuals", (Visual(new, shape.visuals[0].frame, stands_in=True),))
+        _renew_bodies(change, client, old, new)
+        change.commit()
 
 
-def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
+def _renew_bodies(change: Change, client: Client, old: Heightfield, new: Heightfield) -> None:
     from carom.layouts.flags import LoadFlags
     from carom.render.appearance import appearance_of
 
@@ -122,20 +126,22 @@ def _renew_bodies(client: Client, old: Heightfield, new: Heightfield) -> None:
         implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)
         for link in range(-1, body.joint_count):
             spec = body.link_spec(link)
-            # Bodies made of the same shape may share their specification, which has the new heights then.
-            if not any(it.geometry is old or it.geometry is new for it in spec.collisions):
+            if not any(it.geometry is old for it in spec.collisions):
                 continue
-            spec.collisions = tuple(
+            collisions = tuple(
                 replace(it, geometry=new) if it.geometry is old else it for it in spec.collisions
             )
-            spec.visuals = tuple(
-                replace(it, geometry=new) if it.geometry is old else it for it in spec.visuals
-            )
+            visuals = tuple(replace(it, geometry=new) if it.geometry is old else it for it in spec.visuals)
+            change.set(spec, "collisions", collisions)
+            change.set(spec, "visuals", visuals)
             client.world.contact_arrays.shapes.replace_pieces(
-                body.first_link + 1 + link, spec, implicit_cylinder=implicit
+                change,
+                body.first_link + 1 + link,
+                replace(spec, collisions=collisions, visuals=visuals),
+                implicit_cylinder=implicit,
             )
             client.bodies.forget(body.id)
             for look in appearance.shapes(body, link):
                 if look.geometry is old:
-                    look.geometry = new
-                    appearance.changes += 1
+                    change.set(look, "geometry", new)
+                    change.set(appearance, "changes", change.get(appearance, "changes") + 1)

@@ -129,7 +129,7 @@ def getVisualShapeData(
     result: list[tuple[Any, ...]] = []
     with client.lock:
         appearance = appearance_of(client.world)
-        appearance.number_textures(client.world)
+        appearance.number_textures(list(client.world.bodies.values()))
         for link in range(BASE, body.joint_count):
             for look in appearance.shapes(body, link):
                 described = _visual_geometry(look.geometry)

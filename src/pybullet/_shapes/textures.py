@@ -62,7 +62,7 @@ def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
         fail(_CANNOT_LOAD, str(problem))
     with client.lock:
         appearance = appearance_of(client.world)
-        appearance.number_textures(client.world)
+        appearance.number_textures(list(client.world.bodies.values()))
         return appearance.textures.add(image)
 
 

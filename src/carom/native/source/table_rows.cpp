@@ -1,7 +1,8 @@
 // Bodies in the arrays of a world: their rows are put in or taken out in all arrays of a table by one call, which no
-// signal can interrupt. 
+// signal can interrupt.
+#include "table_rows.h"
+
 #include "export.h"
-#include "layouts.h"
 
 // Put rows into unused places. `data` has the rows of each field in turn, as in a table without other rows; `first` and
 // `count` say for each axis where they go and how many there are. Each world gets the same.
@@ -29,11 +30,8 @@ extern "C" CAROM_EXPORT void carom_put_rows(
 }
 
 // Take consecutive rows out of each axis, of the rows in use on it; later rows move up, and the rows that become free
-// are zero. Nothing happens if `done` is set, as this function does.
-extern "C" CAROM_EXPORT void carom_take_rows(
-    const RowTable* table, const int64_t* first, const int64_t* count, const int64_t* used, int32_t* done) {
-    if (*done)
-        return;
+// are zero.
+void carom_take_rows(const RowTable* table, const int64_t* first, const int64_t* count, const int64_t* used) {
     for (int64_t i = 0; i < table->column_count; ++i) {
         const RowField& field = table->columns[i];
         const int64_t size = field.row_bytes, from = first[field.axis], gone = count[field.axis];
@@ -56,7 +54,6 @@ extern "C" CAROM_EXPORT void carom_take_rows(
                     numbers[n] -= gone;
         }
     }
-    *done = 1;
 }
 
 // Copy blocks of memory, none of which overlaps its target.

@@ -9,6 +9,7 @@ from carom.description.actuator import Actuator
 from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
+from carom.native.change import Change
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
@@ -26,18 +27,19 @@ def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
         raise DescriptionError(f"actuator {name!r}: each one of a body needs a name of its own")
     check_joint_ranges((*body.spec.actuators, spec))
     number = len(body.spec.actuators)
+    change = Change()
     if drives_joint(spec):
         joint = actuated_joint(body, spec)
         made = JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number)
     else:
         transmission = new_transmission(body, number, spec)
         made = JointConstraint(body, transmission.parent_link, ConstraintKind.USER, user=transmission)
-        world.user_constraints.put(transmission)
+        world.user_constraints.put(change, transmission)
     row = insert_actuator(world.arrays, body.rows, [other.rows for other in world.bodies.values()])
     write_actuator(world.arrays.model.numpy, row, spec)
     body.spec = replace(body.spec, actuators=(*body.spec.actuators, spec))
     join_actuators(world.arrays.model.numpy, body.rows.first["actuator"], body.spec.actuators)
-    world.constraints.all.append(made)
-    world.constraints.rows.forget()
-    body.__dict__.pop("actuators", None)
-    world.scene_changed()
+    change.extend(world.constraints.all, [made])
+    change.drop(body.__dict__, "actuators")
+    world.change_scene(change)
+    change.commit()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.layouts.codes import WITH_FRICTION, ConstraintKind
+from carom.native.change import Change
 from carom.scene.joint_constraints import JointConstraint
 
 if TYPE_CHECKING:
@@ -36,12 +37,13 @@ def set_friction(body: Body, joint: int, friction: float) -> None:
         raise ValueError(
             f"joint {link.joint_name!r} is {link.joint_type.value}: friction is not built for such joints"
         )
-    constraint = friction_of(body, joint)
+    change, constraint = Change(), friction_of(body, joint)
     if constraint is not None:
-        constraint.upper = friction
+        change.set(constraint, "upper", friction)
     elif friction > 0.0:
-        constraints = body.world.constraints
-        constraints.all.append(JointConstraint(body, joint, ConstraintKind.FRICTION, upper=friction))
+        made = JointConstraint(body, joint, ConstraintKind.FRICTION, upper=friction)
+        change.extend(body.world.constraints.all, [made])
     else:
         return
-    body.world.scene_changed()
+    body.world.change_scene(change)
+    change.commit()

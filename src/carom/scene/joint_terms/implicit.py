@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 from carom.layouts.codes import JointCode
 from carom.model.builder import BASE_POSITIONS, has_base_terms
+from carom.native.change import Change
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from carom.scene.body import Body
     from carom.scene.link_dynamics import LinkDynamics
 
@@ -49,19 +52,25 @@ def _reference(body: Body, joint: int, value: Any) -> tuple[float, ...]:
     return numbers
 
 
-def set_terms(body: Body, joint: int, terms: Mapping[str, Any]) -> None:
-    """Set terms that were checked; can be called again."""
+def note_terms(change: Change, body: Body, joint: int, terms: Mapping[str, Any]) -> None:
+    """Set terms that were checked, with a change."""
     dynamics = body.dynamics(joint)
+    after = dynamics.copy()
     for name, value in terms.items():
-        setattr(dynamics, name, value)
-    write_terms(body, joint)
+        change.set(dynamics, name, value)
+        setattr(after, name, value)
+    _write_terms(change.arrays(body.world.arrays.model.numpy), body, joint, after)
     if "joint_armature" in terms:
-        body.derived.clear()
+        change.set(body, "derived", {})
 
 
 def write_terms(body: Body, joint: int) -> None:
     """Write the terms in `Body.dynamics` of a joint to the engine."""
-    dynamics, model = body.dynamics(joint), body.world.arrays.model.numpy
+    _write_terms(body.world.arrays.model.numpy, body, joint, body.dynamics(joint))
+
+
+def _write_terms(model: Mapping[str, np.ndarray], body: Body, joint: int, dynamics: LinkDynamics) -> None:
+    """Write the terms of a joint to the arrays of the model; `dynamics` are those it has then."""
     first, count = body.velocity_index[joint], body.velocity_count[joint]
     dofs = slice(first, first + count)
     model[body.spec.damping_field][:, dofs] = dynamics.joint_damping
@@ -70,7 +79,8 @@ def write_terms(body: Body, joint: int) -> None:
     if dynamics.joint_spring_reference:
         first, count = body.position_index[joint], body.position_count[joint]
         model["position_spring"][:, first : first + count] = dynamics.joint_spring_reference
-    links = body.all_dynamics[1:]
+    links = [*body.all_dynamics[1:]]
+    links[joint] = dynamics
     model["tree_joint_terms"][:, body.rows.tree] = has_base_terms(body.spec) or any(
         map(body_term_check(body), links)
     )

@@ -11,6 +11,7 @@ from carom.description.sensor import SensorKind, SensorSpec
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
+from carom.native.change import Change
 from carom.scene.handles import world_of
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
@@ -83,8 +84,23 @@ def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
         reference_frame(world.bodies, body, spec)
 
 
-def switch_on(world: World, bodies: list[Body]) -> None:
+def switch_on(world: World, bodies: Sequence[Body]) -> None:
     """Switch on what the sensors of bodies need: measurements of joints' forces, and of every step."""
+    if measure_loads(bodies):
+        change = Change()
+        note_watch(change, world)
+        world.change_scene(change)
+        change.commit()
+
+
+def note_watch(change: Change, world: World) -> None:
+    """Measure at every step of a world after a change."""
+    if not any(isinstance(it, SensorObserver) for it in world.observers):
+        change.extend(world.observers, [SensorObserver(world)])
+
+
+def measure_loads(bodies: Sequence[Body]) -> bool:
+    """Measure the forces of joints that sensors need; whether one needs measurements at every step."""
     watched = False
     for body in bodies:
         for spec in body.spec.sensors:
@@ -97,6 +113,4 @@ def switch_on(world: World, bodies: list[Body]) -> None:
                 continue
             if link >= 0:
                 body.measure_load(link)
-    if watched and not any(isinstance(it, SensorObserver) for it in world.observers):
-        world.observers.append(SensorObserver(world))
-        world.scene_changed()
+    return watched
