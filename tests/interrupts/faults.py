@@ -59,7 +59,7 @@ class Fuse:
         line: int | None = frame.f_lineno
         if event == "call" or not line:
             return self._trace
-        if not _enters_or_leaves_a_section(file, line):
+        if not enters_or_leaves_a_section(file, line):
             self.count += 1
             if self.count == self._place:
                 self.where = f"{file}:{line}"
@@ -68,7 +68,7 @@ class Fuse:
 
 
 @cache
-def _enters_or_leaves_a_section(file: str, line: int) -> bool:
+def enters_or_leaves_a_section(file: str, line: int) -> bool:
     """Whether signals cannot come there: Python lets no handler run between a lock and its `with` block."""
     code = linecache.getline(file, line).strip()
     return code.startswith("with ") or code in ("begin()", "end()")

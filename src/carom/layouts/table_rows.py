@@ -61,15 +61,3 @@ class KernelRun:
 
     call: TreeCall
     tree: Int64
-
-
-@c_record()
-class Write:
-    """The part of a change that is in memory: rows are taken out, then blocks copied, then kernels run."""
-
-    cuts: Read[RowCut]
-    blocks: Read[Block]
-    runs: Read[KernelRun]
-    cut_count: Int64
-    block_count: Int64
-    run_count: Int64

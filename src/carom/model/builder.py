@@ -362,17 +362,25 @@ class WorldArrays:
         change.set(self, "used", used)
         change.set(self, "_is_clear", True)
 
-    def remove(self, change: Change, rows: TreeRows, others: Sequence[TreeRows]) -> None:
-        """Remove a body's rows with a change; those of others after it move up."""
+    def remove(self, change: Change, rows: TreeRows, others: Sequence[TreeRows]) -> list[dict[str, int]]:
+        """Remove a body's rows with a change; those of others after it move up.
+
+        Returns:
+            The first rows that each of the others will have.
+        """
         self.row_changes.cut(change, rows.first, rows.count, self.used)
         used = {axis: self.used[axis] - count for axis, count in rows.count.items()}
         change.set(self, "used", {**self.used, **used})
-        for other in others:
-            if other.tree < rows.tree:
-                continue
-            first = {axis: first - rows.count[axis] for axis, first in other.first.items()}
-            change.set(other, "first", first)
-            change.set(other, "tree", first["tree"])
+        gone, count = rows.tree, rows.count
+        firsts = [
+            {axis: first - count[axis] for axis, first in other.first.items()}
+            if other.tree > gone
+            else other.first
+            for other in others
+        ]
+        change.set_each([(other, "first", first) for other, first in zip(others, firsts, strict=True)])
+        change.set_each([(other, "tree", first["tree"]) for other, first in zip(others, firsts, strict=True)])
+        return firsts
 
     def structs(self) -> dict[str, Any]:
         """C structs whose fields are views of the present arrays, by the names of kernel arguments."""

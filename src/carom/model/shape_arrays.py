@@ -317,14 +317,19 @@ class ShapeArrays:
         self.table.cut(change, first, {**count, "tree": 1}, self.used)
         self.filters.remove(change, first_link, link_count)
         change.set(self, "used", {axis: self.used[axis] - number for axis, number in count.items()})
-        bodies = {}
-        for link, other in self._bodies.items():
-            if link > first_link:
-                change.set(other, "first", {axis: row - count[axis] for axis, row in other.first.items()})
-                bodies[link - link_count] = other
-            elif other is not body:
-                bodies[link] = other
+        bodies = {
+            link - link_count if link > first_link else link: other
+            for link, other in self._bodies.items()
+            if other is not body
+        }
         change.set(self, "_bodies", bodies)
+        change.set_each(
+            [
+                (other, "first", {axis: row - count[axis] for axis, row in other.first.items()})
+                for link, other in self._bodies.items()
+                if link > first_link
+            ]
+        )
 
     def write_surface(self, link_row: int, surface: Surface) -> None:
         """Write the contact parameters of a link."""

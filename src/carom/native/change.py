@@ -10,15 +10,14 @@ from __future__ import annotations
 import ctypes
 import sys
 import sysconfig
-from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
 from struct import Struct
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from carom.layouts.table_rows import Write
 from carom.native.uninterrupted import uninterrupted
 
 T = TypeVar("T")
@@ -30,6 +29,8 @@ packed_block = Struct("=QQq").pack
 
 # `layouts.table_rows.RowCut` and `KernelRun`.
 _PACK_CUT, _PACK_RUN = Struct("=4Q").pack, Struct("=4Qq").pack
+# Types of prepared records and their numbers: cuts, blocks and runs.
+_MEMORY = (ctypes.c_char_p, ctypes.c_int64) * 3
 # Ctrl-C may come while Python makes a change: maximum number of attempts to complete it.
 _PATIENCE = 100
 
@@ -61,6 +62,7 @@ class Change:
         "_items",
         "_kept",
         "_more",
+        "_others",
         "_renew",
         "_runs",
     )
@@ -68,6 +70,7 @@ class Change:
     def __init__(self, renew: Callable[[Change], None] | None = None) -> None:
         self._renew = renew
         self._attributes: dict[tuple[int, str], tuple[Any, str, Any]] = {}
+        self._others: list[tuple[Any, str, Any]] = []
         self._items: list[tuple[dict[Any, Any], Any, Any]] = []
         self._contents: list[tuple[dict[Any, Any], dict[Any, Any]]] = []
         self._more: list[tuple[list[Any], list[Any]]] = []
@@ -81,6 +84,10 @@ class Change:
     def set(self, owner: object, name: str, value: object) -> None:
         """Set an attribute, which its object has in a dictionary or a slot: no code of Python runs for it."""
         self._attributes[id(owner), name] = owner, name, value
+
+    def set_each(self, values: Iterable[tuple[object, str, object]]) -> None:
+        """Set attributes (object, name, value) that `get` is not asked for: quicker where there are many."""
+        self._others += values
 
     def get(self, owner: object, name: str) -> Any:
         """An attribute as it will be."""
@@ -128,27 +135,42 @@ class Change:
         """Append items to a list."""
         self._more.append((items, more))
 
-    def write(self, target: np.ndarray, values: npt.ArrayLike) -> None:
-        """Write to an array, or to a view of a part of it; the values are broadcast to its shape."""
-        source = np.empty(target.shape, target.dtype)
-        source[...] = values
-        self._kept += source, target
-        if target.size:
-            self._note_blocks(source.ctypes.data, target)
+    def write(self, target: np.ndarray, values: npt.ArrayLike, *, lasting: bool = False) -> None:
+        """Write to an array, or to a view of a part of it; the values are broadcast to its shape.
+
+        A `lasting` array of values stays as it is until the change is made, and need not be copied.
+        """
+        if not target.size:
+            return
+        shape, dtype = target.shape, target.dtype
+        if not (
+            lasting
+            and isinstance(values, np.ndarray)
+            and values.shape == shape
+            and values.dtype == dtype
+            and values.flags.c_contiguous
+        ):
+            source = np.empty(shape, dtype)
+            source[...] = values
+            values = source
+        self._kept += values, target
+        self._note_blocks(_place(values), target)
 
     def _note_blocks(self, source: int, target: np.ndarray) -> None:
         """Copy contiguous memory to an array, whose entries need not be next to each other."""
-        address = target.ctypes.data
         if target.flags.c_contiguous:
-            self._blocks.append(packed_block(source, address, target.nbytes))
+            self._blocks.append(packed_block(source, _place(target), target.nbytes))
             return
         size = target.nbytes // len(target)
-        for place in range(len(target)):
-            start = source + place * size
-            if target.ndim > 1:
-                self._note_blocks(start, target[place])
-            else:
-                self._blocks.append(packed_block(start, address + place * target.strides[0], size))
+        if target.ndim > 1:
+            for place in range(len(target)):
+                self._note_blocks(source + place * size, target[place])
+            return
+        address, stride = target.ctypes.data, target.strides[0]
+        self._blocks += [
+            packed_block(source + place * size, address + place * stride, size)
+            for place in range(len(target))
+        ]
 
     def copy_blocks(self, blocks: Sequence[bytes], kept: object) -> None:
         """Copy blocks of memory, given as records (`layouts.table_rows.Block`), which point into `kept`."""
@@ -158,7 +180,7 @@ class Change:
     def cut(self, table: int, first: bytes, count: bytes, used: bytes, kept: object) -> None:
         """Take rows out of tables, before memory is written; see `RowChanges.cut`."""
         numbers = bytearray(first + count + used)
-        start, size = _address(numbers), len(first)
+        start, size = ctypes.addressof(ctypes.c_char.from_buffer(numbers)), len(first)
         self._cuts.append(_PACK_CUT(table, start, start + size, start + 2 * size))
         self._kept += numbers, kept
 
@@ -178,27 +200,23 @@ class Change:
 
     def commit(self) -> None:
         """Make the change, once; if memory is short, nothing of it."""
-        contents = [(dictionary, content, dictionary.copy()) for dictionary, content in self._contents]
-        parts = [*self._attributes.values()], self._items, contents, self._more
-        record = self._record()
-        address = None if record is None else ctypes.addressof(record)
-        commit = _commit()
-        if commit is None:
-            _make(*parts, address)
-        else:
-            commit(*parts, _MISSING, [_MISSING] * sum(map(len, parts)), address)
-
-    def _record(self) -> Any:
-        """The part of the change that is in memory; None if there is none."""
         for copies in self._copies.values():
             for name, copy in copies.items():
-                self.write(copies.originals[name], copy)
-        parts = self._cuts, self._blocks, self._runs
-        if not any(parts):
-            return None
-        memory = [bytearray(b"".join(part)) for part in parts]
-        self._kept += memory
-        return Write(*[_address(part) if part else None for part in memory], *map(len, parts))
+                self.write(copies.originals[name], copy, lasting=True)
+        parts = (
+            [*self._attributes.values(), *self._others],
+            self._items,
+            [(dictionary, content, dictionary.copy()) for dictionary, content in self._contents],
+            self._more,
+        )
+        memory: list[Any] = []
+        for packed in (self._cuts, self._blocks, self._runs):
+            memory += b"".join(packed) if packed else None, len(packed)
+        commit = _commit()
+        if commit is None:
+            _make(*parts, memory)
+        else:
+            commit(*parts, _MISSING, [_MISSING] * sum(map(len, parts)), *memory)
 
 
 def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 = _ZERO) -> bytes:
@@ -211,6 +229,14 @@ def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 = _ZERO) ->
     return packed_block(ctypes.addressof(value), ctypes.addressof(holder) + field.offset, field.size)
 
 
+def _place(array: np.ndarray) -> int:
+    """Address of an array of contiguous memory, which is not empty; quicker than with NumPy."""
+    if array.flags.writeable:
+        memory: Any = array
+        return ctypes.addressof(ctypes.c_char.from_buffer(memory))
+    return array.ctypes.data
+
+
 class _Copies(dict[str, np.ndarray]):
     """Copies of arrays by their names, made when they are asked for."""
 
@@ -221,10 +247,6 @@ class _Copies(dict[str, np.ndarray]):
     def __missing__(self, name: str) -> np.ndarray:
         copy = self[name] = self.originals[name].copy()
         return copy
-
-
-def _address(memory: bytearray) -> int:
-    return ctypes.addressof(ctypes.c_char.from_buffer(memory))
 
 
 @cache
@@ -243,21 +265,16 @@ def _commit() -> Callable[..., None] | None:
     addresses = [ctypes.addressof(ctypes.c_char.in_dll(ctypes.pythonapi, name)) for name in names]
     table = (ctypes.c_void_p * len(names))(*addresses)
     of_objects = [ctypes.py_object] * 6
-    declared = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.c_void_p, *of_objects, ctypes.c_void_p)
-    function = declared(("carom_commit", symbols))
-
-    def commit(*arguments: Any) -> None:
-        function(table, *arguments)
-
-    return commit
+    declared = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.c_void_p, *of_objects, *_MEMORY)
+    return partial(declared(("carom_commit", symbols)), table)
 
 
 @cache
-def _write() -> Callable[[int], None]:
+def _write() -> Callable[..., None]:
     """The native function that writes to memory."""
     from carom.native.library import library
 
-    return ctypes.PYFUNCTYPE(None, ctypes.c_void_p)(("carom_write", library().symbols))
+    return ctypes.PYFUNCTYPE(None, *_MEMORY)(("carom_write", library().symbols))
 
 
 def _make(
@@ -265,7 +282,7 @@ def _make(
     items: list[tuple[dict[Any, Any], Any, Any]],
     contents: list[tuple[dict[Any, Any], dict[Any, Any], dict[Any, Any]]],
     more: list[tuple[list[Any], list[Any]]],
-    write: int | None,
+    memory: list[Any],
 ) -> None:
     """Make a change in Python: in a section, and if an exception comes in the middle, first to the end."""
     ends: dict[int, int] = {}
@@ -295,8 +312,7 @@ def _make(
                 break
             except BaseException as problem:
                 error = problem
-        if write is not None:
-            _write()(write)
+        _write()(*memory)
     kept.clear()
     if error is not None:
         raise error

@@ -113,21 +113,18 @@ class Body:
         self.derived: dict[Any, Any] = {}
         self._dynamics = mine.dynamics if outline is None else [it.copy() for it in mine.dynamics]
 
-    def relocate(self, change: Change) -> None:
-        """Update the rows of the body in the flat arrays with a change of them."""
-        for name, value in self._places(change.get(self.rows, "first")).items():
-            change.set(self, name, value)
-
-    def _places(self, first: Mapping[str, int]) -> dict[str, Any]:
-        """The attributes that say where the body is in the flat arrays."""
-        positions, velocities = first["position"] + BASE_POSITIONS, first["dof"] + BASE_VELOCITIES
-        return {
-            "first_link": first["link"],
-            "first_position": first["position"],
-            "first_velocity": first["dof"],
-            "position_index": _first_rows(positions, self.position_count),
-            "velocity_index": _first_rows(velocities, self.velocity_count),
-        }
+    def relocate(self, change: Change, first: Mapping[str, int]) -> None:
+        """Update the rows of the body in the flat arrays with a change of them; they begin at `first`."""
+        position, velocity = first["position"], first["dof"]
+        change.set_each(
+            (
+                (self, "first_link", first["link"]),
+                (self, "first_position", position),
+                (self, "first_velocity", velocity),
+                (self, "position_index", _first_rows(position + BASE_POSITIONS, self.position_count)),
+                (self, "velocity_index", _first_rows(velocity + BASE_VELOCITIES, self.velocity_count)),
+            )
+        )
 
     def __repr__(self) -> str:
         base = "fixed base" if self.fixed_base else "free base"

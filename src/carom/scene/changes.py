@@ -123,9 +123,9 @@ def remove_body(world: World, body: Body) -> None:
         world.user_data.remove_all(change, body.id)
         world.contact_arrays.remove(change, body.rows)
         world.contact_arrays.soft.remove(change, body.rows)
-        world.arrays.remove(change, body.rows, [other.rows for other in later])
-        for other in later:
-            other.relocate(change)
+        firsts = world.arrays.remove(change, body.rows, [other.rows for other in later])
+        for other, first in zip(later, firsts, strict=True):
+            other.relocate(change, first)
         change.drop(world.bodies, body.id)
         change.refill(world.listing, {number: world.bodies[number] for number in listed})
         change.set(world, "free_ids", [*world.free_ids, body.id])

@@ -165,11 +165,12 @@ def return_to(change: Change, world: World, layout: Layout, snapshot: Snapshot) 
         world.grow(world.arrays.state, {"user": len(impulses)})
         users.set_impulses(change, world.arrays.state, impulses)
     for name, rows in _rows(world.arrays.state, world.arrays.used):
-        change.write(rows, _of_drives(rows, snapshot, name) if name in _DRIVES else snapshot.state[name])
+        saved = _of_drives(rows, snapshot, name) if name in _DRIVES else snapshot.state[name]
+        change.write(rows, saved, lasting=True)
     counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
     if same:
         for name, rows in _contact_rows(world, snapshot.contacts["count_contacts"]):
-            change.write(rows, snapshot.contacts[name])
+            change.write(rows, snapshot.contacts[name], lasting=True)
         # The trees that can move may be others now.
         change.write(counts[SORTED : SORTED + 1], 0)
     else:

@@ -113,33 +113,34 @@ struct Committer {
     }
 };
 
-void write(const Write& write) {
-    for (int64_t i = 0; i < write.cut_count; ++i) {
-        const RowCut& cut = write.cuts[i];
-        carom_take_rows(cut.table, cut.first, cut.count, cut.used);
-    }
-    carom_copy_blocks(write.blocks, write.block_count);
-    for (int64_t i = 0; i < write.run_count; ++i) {
-        const TreeCall& call = write.runs[i].call;
+}  // namespace
+
+// Takes rows out of tables, then writes to memory, and then runs kernels on it.
+extern "C" CAROM_EXPORT void carom_write(
+    const RowCut* cuts,
+    int64_t cut_count,
+    const Block* blocks,
+    int64_t block_count,
+    const KernelRun* runs,
+    int64_t run_count
+) {
+    for (int64_t i = 0; i < cut_count; ++i)
+        carom_take_rows(cuts[i].table, cuts[i].first, cuts[i].count, cuts[i].used);
+    carom_copy_blocks(blocks, block_count);
+    for (int64_t i = 0; i < run_count; ++i) {
+        const TreeCall& call = runs[i].call;
         // The host relies on the tree that it set last.
-        const int32_t before = call.tree ? *call.tree : 0;
-        if (call.tree)
-            *call.tree = static_cast<int32_t>(write.runs[i].tree);
+        const int32_t before = *call.tree;
+        *call.tree = static_cast<int32_t>(runs[i].tree);
         run(call.call);
-        if (call.tree)
-            *call.tree = before;
+        *call.tree = before;
     }
 }
-
-}  // namespace
 
 // Names of the functions that the host writes to a table, in order.
 #define F(result, name, arguments) #name " "
 extern "C" CAROM_EXPORT const char carom_change_functions[] = CAROM_CHANGE_FUNCTIONS(F);
 #undef F
-
-// Takes rows out of tables, writes to memory, and runs kernels on it.
-extern "C" CAROM_EXPORT void carom_write(const Write* prepared) { write(*prepared); }
 
 // Makes a change, or nothing of it: then it returns -1, and an error of Python is set. `changes` are lists by `Kind`, of
 // tuples (object, name, value), (dictionary, key, value), (dictionary, content, old content) and (list, more items).
@@ -152,7 +153,12 @@ extern "C" CAROM_EXPORT int carom_commit(
     PyObject* more,
     PyObject* missing,
     PyObject* before,
-    const Write* prepared
+    const RowCut* cuts,
+    int64_t cut_count,
+    const Block* blocks,
+    int64_t block_count,
+    const KernelRun* runs,
+    int64_t run_count
 ) {
     Committer committer = {*functions, missing, before};
     PyObject* changes[KIND_COUNT] = {attributes, items, contents, more};
@@ -178,7 +184,6 @@ extern "C" CAROM_EXPORT int carom_commit(
             return -1;
         }
     }
-    if (prepared)
-        write(*prepared);
+    carom_write(cuts, cut_count, blocks, block_count, runs, run_count);
     return 0;
 }

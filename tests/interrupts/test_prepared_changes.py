@@ -1,0 +1,235 @@
+"""Changes of a world are prepared beside it: at every line it is as before, or as after."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import pytest
+from tests.interrupts.faults import Fault, enters_or_leaves_a_section
+
+import carom
+from carom import World
+from carom.layouts.codes import UserConstraintKind
+from carom.native import uninterrupted
+from carom.native.tables import ArrayTable
+from carom.render.appearance import appearance_of
+
+_OURS = str(Path(carom.__path__[0]))
+# Of the lines of a call, about so many are tried, the same ones each time.
+_TRIED = 60
+_FILES = ("plane.urdf", "r2d2.urdf", "cube_small.urdf", "rrbot.urdf")
+
+
+def made() -> World:
+    """A world with bodies that touch, a constraint and a rule; a number is free."""
+    world = World()
+    for place, file in enumerate(_FILES):
+        world.load_urdf(file, (0.3 * place, 0.0, 0.02), as_pybullet=True)
+    world.remove(world.load_urdf("cube_small.urdf", (5.0, 0.0, 1.0)).id)
+    world.gravity = (0.0, 0.0, -9.81)
+    _tie(world)
+    world.contact_arrays.shapes.filters.set(1, 20, enabled=False)
+    world.step(3)
+    return world
+
+
+def _tie(world: World) -> Any:
+    places = world.bodies[2], -1, world.bodies[1], 3
+    return world.tie(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
+
+
+def _file(world: World, folder: Path) -> Callable[[], Any]:
+    appearance_of(world).change(world.bodies[1], -1, rgba=(1.0, 0.0, 0.0, 1.0))
+    world.save(folder / "saved")
+    return lambda: world.load(folder / "saved")
+
+
+def _mjcf(world: World, folder: Path) -> Callable[[], Any]:
+    path = folder / "model.xml"
+    path.write_text(
+        """<mujoco><worldbody>
+        <body name="a" pos="0 0 1"><joint name="i"/><geom name="g" size="0.1"/>
+        <body name="b" pos="0 0 .3"><joint name="k" axis="1 0 0"/><geom name="h" size="0.1"/></body></body>
+        </worldbody><contact><exclude body1="a" body2="b"/></contact>
+        <equality><joint joint1="i" joint2="k"/></equality>
+        <tendon><fixed name="t"><joint joint="i" coef="1"/></fixed></tendon>
+        <sensor><jointpos joint="i" name="s"/></sensor></mujoco>"""
+    )
+    return lambda: world.load(path)
+
+
+def _restore(world: World, _: Path) -> Callable[[], Any]:
+    state = world.snapshot()
+    world.step(3)
+    return lambda: world.restore(state, update_poses=True)
+
+
+Change = Callable[[World, Path], Callable[[], Any]]
+
+CHANGES: dict[str, Change] = {
+    "load": lambda world, _: lambda: world.load_urdf("rrbot.urdf", (0.0, 2.0, 0.0), as_pybullet=True),
+    "load another": lambda world, _: lambda: world.load_urdf("sphere_small.urdf", (0.0, 2.0, 0.0)),
+    "load a model": _mjcf,
+    "load a world": _file,
+    "remove": lambda world, _: lambda: world.remove(1),
+    "remove the last": lambda world, _: lambda: world.remove(3),
+    "tie": lambda world, _: lambda: _tie(world),
+    "untie": lambda world, _: lambda: world.untie(world.user_constraints.all[0]),
+    "restore": _restore,
+    "reset": lambda world, _: world.reset,
+    "change dynamics": lambda world, _: (
+        lambda: world.bodies[3].change_dynamics(
+            0,
+            mass=2.0,
+            lateral_friction=0.3,
+            joint_lower_limit=-1.0,
+            joint_upper_limit=1.0,
+            joint_damping=0.2,
+        )
+    ),
+    "fix a base": lambda world, _: lambda: world.bodies[2].change_dynamics(-1, mass=0.0),
+    "free a base": lambda world, _: lambda: world.set_base_freedom(world.bodies[3], free=True),
+    "absent": lambda world, _: lambda: setattr(world.bodies[2], "present", False),
+}
+
+
+def seen(world: World) -> tuple[Any, ...]:
+    """All there is, to the last bit."""
+    contacts = world.contact_arrays
+    tables = (
+        (world.arrays.model, world.arrays.used),
+        (world.arrays.state, world.arrays.used),
+        (contacts.shapes.table, {**contacts.shapes.used, "filter": contacts.shapes.filter_count}),
+        (
+            contacts.contacts,
+            {"count": 1, "contact": contacts.contact_count, "overlap": contacts.overlap_count},
+        ),
+    )
+    return (
+        summary(world),
+        [dict(body.rows.count) for body in world.bodies.values()],
+        [body.all_dynamics and [repr(it) for it in body.all_dynamics] for body in world.bodies.values()],
+        [(it.kind, it.joint, it.lower, it.upper, it.max_impulse) for it in world.constraints.all],
+        contacts.shapes.filters.all,
+        [(it.id, it.value) for body in world.bodies for it in world.user_data.of_body(body)],
+        [_rows(table, used) for table, used in tables],
+    )
+
+
+def _rows(table: ArrayTable, used: dict[str, int]) -> dict[str, bytes]:
+    # Rows of constraints, and the order of sorting, are brought up to date before a step.
+    return {
+        name: (array[0] if table.is_per_world(name) else array)[: used[axis]].tobytes()
+        for name, array in table.numpy.items()
+        if (axis := name.partition("_")[0]) in used and axis not in ("constraint", "row")
+    }
+
+
+def summary(world: World) -> tuple[Any, ...]:
+    """What can be compared at every line."""
+    bodies = list(world.bodies.values())
+    return (
+        list(world.bodies),
+        list(world.listing),
+        [(body.first_link, dict(body.rows.first), body.position_index, body.fixed_base) for body in bodies],
+        (world.free_ids, world.next_id, world.links_loaded, world.user_constraints.next_id, world.time),
+        {axis: count for axis, count in world.arrays.used.items() if axis not in ("constraint", "row")},
+        dict(world.contact_arrays.shapes.used),
+        sorted(world.contact_arrays.shapes._bodies),
+        [(it.body.id, it.joint, it.kind) for it in world.constraints.all],
+        world.constraints.tags.links,
+        list(world.user_constraints.rows),
+        world.contact_arrays.contact_count,
+        world.position[: world.arrays.used["position"]].tobytes(),
+        world.link_pose[: world.arrays.used["link"]].tobytes(),
+        [[(it.mass, it.lateral_friction) for it in body.all_dynamics] for body in bodies],
+    )
+
+
+def at_lines(call: Callable[[], Any], at_line: Callable[[], None]) -> None:
+    """Make a call, and another one at each line of ours."""
+    state = uninterrupted._State
+
+    def trace(frame: FrameType, event: str, _: Any) -> Any:
+        file = frame.f_code.co_filename
+        if not file.startswith(_OURS) or file == uninterrupted.__file__:
+            return None
+        if event == "line" and not enters_or_leaves_a_section(file, frame.f_lineno):
+            at_line()
+        return trace
+
+    before, state.keeps_tracing = sys.gettrace(), True
+    sys.settrace(trace)
+    try:
+        call()
+    finally:
+        sys.settrace(before)
+        state.keeps_tracing = False
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_whoever_looks_at_any_line_sees_before_or_after(name: str, tmp_path: Path) -> None:
+    # Modules and files are known the second time.
+    world = made()
+    CHANGES[name](world, tmp_path)()
+    after = summary(world)
+    world = made()
+    call = CHANGES[name](world, tmp_path)
+    before = summary(world)
+    assert before != after
+    found: list[tuple[Any, ...]] = []
+
+    def look() -> None:
+        now = summary(world)
+        if not found or found[-1] != now:
+            found.append(now)
+
+    at_lines(call, look)
+    look()
+    assert len(found) == 2
+    assert found == [before, after]
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_an_exception_at_any_line_leaves_everything_as_it_was(name: str, tmp_path: Path) -> None:
+    world = made()
+    CHANGES[name](world, tmp_path)()
+    after = seen(world)
+    world = made()
+    call = CHANGES[name](world, tmp_path)
+    before = seen(world)
+
+    def blow() -> None:
+        nonlocal left
+        left -= 1
+        if left == 0:
+            raise Fault
+
+    counted = 0
+
+    def count() -> None:
+        nonlocal counted
+        counted += 1
+
+    at_lines(CHANGES[name](made(), tmp_path), count)
+    not_made = 0
+    # Every line of short calls.
+    for place in range(1, counted + 1, 1 + counted // _TRIED):
+        left = place
+        try:
+            at_lines(call, blow)
+        except Fault:
+            now = seen(world)
+            if now == before:
+                not_made += 1
+                continue
+            # After the change has been made.
+            assert now == after
+        else:
+            assert seen(world) == after
+        break
+    assert not_made
