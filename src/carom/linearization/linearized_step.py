@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,11 +13,10 @@ from carom.checks import Array, vector
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start
+from carom.linearization.outputs import OutputDerivatives, Outputs
 from carom.linearization.stepping import copy_of, differences
 
 if TYPE_CHECKING:
-    from carom.linearization.inputs import Input
-    from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
 _SIZE = 1e-6
@@ -46,6 +45,7 @@ class LinearizedStep:
         parameters: Names of the entries of p: "robot.forearm.mass"...
         rows: Names of the solver's rows in the last step and whether they hold or are at a bound; empty with
             `method="differences"`.
+        outputs: Names of the entries of y if these are readings of sensors: "robot.imu.0"...; else empty.
     """
 
     A: Array
@@ -57,6 +57,7 @@ class LinearizedStep:
     controls: tuple[str, ...]
     parameters: tuple[str, ...]
     rows: tuple[tuple[str, str], ...]
+    outputs: tuple[str, ...] = ()
 
 
 def linearize(
@@ -66,7 +67,7 @@ def linearize(
     steps: int,
     method: str,
     smoothing: float,
-    outputs: Callable[[World], ArrayLike] | None,
+    outputs: Outputs | None,
     start: Start,
 ) -> LinearizedStep:
     """As `World.linearize`."""
@@ -81,11 +82,17 @@ def linearize(
     space, count = chosen.space, chosen.control_count
     given = start.checked(space, chosen.inputs[:count])
     if method == "differences":
-        by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE, given)
+        pairs = [(np.eye(len(chosen.states)), np.zeros((len(chosen.states), len(chosen.inputs))))]
+        # Sensors of accelerations need the state before the last step, too.
+        for number in range(max(1, steps - 1) if outputs is not None else steps, steps + 1):
+            pairs.append(differences(world, space, chosen.inputs, number, _SIZE, given))
     else:
         taken = performed(world, chosen, steps, smoothing, given)
-        by_state, by_input, rows = *_chained(taken), taken[-1].rows[0]
-    seen, fed = _outputs(world, space, chosen.inputs[:count], steps, outputs, given)
+        pairs, rows = _chained(taken), taken[-1].rows[0]
+    states, inputs = ([pair[part] for pair in pairs[-2:]] for part in range(2))
+    by_state, by_input = pairs[-1]
+    by_outputs = OutputDerivatives(world, space, chosen.inputs[:count], steps, given)
+    seen, fed, names = by_outputs.of(outputs, states, [it[:, :count] for it in inputs])
     return LinearizedStep(
         A=by_state,
         B=by_input[:, :count],
@@ -96,6 +103,7 @@ def linearize(
         controls=chosen.controls,
         parameters=chosen.parameters,
         rows=rows,
+        outputs=names,
     )
 
 
@@ -125,13 +133,15 @@ def performed(
     return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
 
 
-def _chained(taken: list[StepDerivatives]) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of the last state by the first and by inputs."""
+def _chained(taken: list[StepDerivatives]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Derivatives of the state before the last step, and of that after it, by the first and by inputs."""
     by_state, by_input = taken[0].by_state[0], taken[0].by_input[0]
+    before = np.eye(len(by_state)), np.zeros(by_input.shape)
     for found in taken[1:]:
+        before = by_state, by_input
         stepped, driven = found.by_state[0], found.by_input[0]
         by_state, by_input = stepped @ by_state, stepped @ by_input + driven
-    return by_state, by_input
+    return [before, (by_state, by_input)]
 
 
 def step_vjp(
@@ -162,53 +172,3 @@ def _pulled_back(taken: list[StepDerivatives], cotangent: np.ndarray) -> tuple[n
         cotangent = of_states[0]
         by_input += of_inputs[0]
     return cotangent, by_input
-
-
-def _outputs(
-    world: World,
-    space: TangentSpace,
-    controls: list[Input],
-    steps: int,
-    outputs: Callable[[World], ArrayLike] | None,
-    given_start: GivenState,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Central differences of outputs after the steps, by states and by controls."""
-    width = 2 * len(space) + len(space.activations)
-    if outputs is None:
-        return np.zeros((0, width)), np.zeros((0, len(controls)))
-    scene = world.copy()
-    given_start.write(scene.arrays.state.numpy)
-    start = scene.snapshot()
-    columns: list[np.ndarray] = []
-    for number in range(width + len(controls)):
-        pair: list[np.ndarray] = []
-        for change in (_SIZE, -_SIZE):
-            scene.restore(start)
-            state = scene.arrays.state.numpy
-            if number < width:
-                _change_state(space, state, number, change)
-            else:
-                given = controls[number - width]
-                state[given.field][(0, *given.place)] += given.scale * change
-            forces = [(name, state[name].copy()) for name in ("dof_torque", "link_wrench")]
-            for _ in range(steps):
-                for name, kept in forces:
-                    scene.arrays.state.numpy[name][:] = kept
-                scene.step()
-            pair.append(np.array(outputs(scene), dtype=float).ravel())
-        columns.append((pair[0] - pair[1]) / (2.0 * _SIZE))
-    found = np.stack(columns, axis=1)
-    return found[:, :width], found[:, width:]
-
-
-def _change_state(space: TangentSpace, state: dict[str, np.ndarray], number: int, change: float) -> None:
-    """Add a change to an entry of the state of a world."""
-    dofs = len(space)
-    if number < dofs:
-        changes = np.zeros((1, dofs))
-        changes[0, number] = change
-        state["position"][:] = space.moved(state["position"], changes)
-    elif number < 2 * dofs:
-        state["dof_velocity"][0, space.dofs[number - dofs]] += change
-    else:
-        state["actuator_activation"][0, space.activations[number - 2 * dofs]] += change

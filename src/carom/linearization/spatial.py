@@ -44,32 +44,6 @@ class Spatial:
         self.turns: np.ndarray = follows[:, :, None] * turned
         self.shifts: np.ndarray = follows[:, :, None] * moved
 
-    def point_columns(self, link: int, point: np.ndarray) -> np.ndarray:
-        """The Jacobian of a point of a link, (n, 3), transposed."""
-        return self.moves[link][:, None] * (self.linear + cross(self.angular, point))
-
-    def wrench(self, link: int, point: np.ndarray, force: np.ndarray, torque: np.ndarray) -> np.ndarray:
-        """Generalized forces (n,) of a force at a point of a link and a torque."""
-        own = self.angular @ (torque + cross(point, force)) + self.linear @ force
-        return self.moves[link] * own
-
-    def wrench_derivatives(
-        self, link: int, point: np.ndarray, force: np.ndarray, torque: np.ndarray, moving: np.ndarray
-    ) -> np.ndarray:
-        """Derivatives of `wrench` by positions, (n, n), for a constant force and torque.
-
-        Args:
-            link: Row of the link.
-            point: The point.
-            force: The force.
-            torque: The torque.
-            moving: Change of the point by a change of each dof, (n, 3).
-        """
-        moment = torque + cross(point, force)
-        by_position = self.turns @ moment + self.shifts @ force
-        by_position += self.angular @ cross(moving, force).T
-        return self.moves[link][:, None] * by_position
-
 
 def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
     """Which dof moves which link, (links, n), and the axes of which dof i follow dof j, [i, j]."""

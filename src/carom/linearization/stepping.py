@@ -101,10 +101,6 @@ class Copies:
         """Intermediate results of the last step of a world."""
         return Fields(self.engine.workspace.scratch, world)
 
-    def pair_rows(self, world: int) -> Fields:
-        """The rows of contacts in the last step of a world."""
-        return Fields(self.engine.workspace.pair_rows, world)
-
     def change(self, given: Input, worlds: np.ndarray, changes: np.ndarray) -> None:
         """Add changes (m,) to an input in m of the worlds."""
         if given.table == "state":
