@@ -23,6 +23,7 @@ from carom.layouts.linearization import (
     ROW_SLIDES,
 )
 from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
+from carom.linearization.offsets import refuse_rows
 from carom.linearization.row_names import RowNames, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
 from carom.linearization.taken_step import TakenStep
@@ -144,6 +145,10 @@ class StepLinearizer:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
                 for place, motion in enumerate(motions):
+                    own = slice(int(memory.row_count[place]))
+                    refuse_rows(
+                        self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own]
+                    )
                     if not parameters.isotropic_friction:
                         self._add_sliding(memory, place, motion)
                     self._add_yielding(memory, place, motion)

@@ -66,7 +66,8 @@ class OutputDerivatives:
             motion = self._motion()
             for sensor in exact:
                 before, after = motion.derivatives(sensor)
-                seen[sensor] = tuple(before @ by[0] + after @ by[1] for by in (states, inputs))
+                by_state, by_input = (before @ by[0] + after @ by[1] for by in (states, inputs))
+                seen[sensor] = by_state, by_input
         if others:
             places = [(sensor.body.id, sensor.index) for sensor in others]
             found = self._by_differences(
@@ -77,10 +78,10 @@ class OutputDerivatives:
                 own = slice(first, first + sensor.dim)
                 seen[sensor] = found[0][own], found[1][own]
                 first = own.stop
-        by_state = [np.zeros((0, self._width)), *(seen[sensor][0] for sensor in sensors)]
-        by_input = [np.zeros((0, len(self._controls))), *(seen[sensor][1] for sensor in sensors)]
+        of_states = [np.zeros((0, self._width)), *(seen[sensor][0] for sensor in sensors)]
+        of_inputs = [np.zeros((0, len(self._controls))), *(seen[sensor][1] for sensor in sensors)]
         names = tuple(name for sensor in sensors for name in self._names(sensor))
-        return np.concatenate(by_state), np.concatenate(by_input), names
+        return np.concatenate(of_states), np.concatenate(of_inputs), names
 
     def _checked(self, sensor: BodySensor) -> BodySensor:
         if not isinstance(sensor, BodySensor):

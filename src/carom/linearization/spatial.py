@@ -106,11 +106,11 @@ def link_forces(
         speed_q = (rates @ spatial.shifts.reshape(size, -1)).reshape(count, size, 3)
         speed_q += cross(omega_q, centres) + cross(omega[:, None], moving)
         mass, turn = masses[wanted], spatial.rotations[wanted]
-        rate, rate_v = _decay(linear, speed)
+        rate, rate_v = decay(linear, speed)
         force -= (mass * rate)[:, None] * speed
         drag = mass[:, None, None] * (rate[:, None, None] * np.eye(3) + speed[:, :, None] * rate_v[:, None])
         inertia = (turn * inertias[wanted][:, None]) @ turn.transpose(0, 2, 1)
-        rate, rate_v = _decay(angular, omega)
+        rate, rate_v = decay(angular, omega)
         spin = (inertia @ omega[:, :, None])[:, :, 0]
         torque -= rate[:, None] * spin
         brake = rate[:, None, None] * inertia + spin[:, :, None] * rate_v[:, None]
@@ -135,7 +135,7 @@ def _summed(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a.transpose(1, 0, 2).reshape(size, -1) @ b.transpose(1, 0, 2).reshape(size, -1).T
 
 
-def _decay(coefficient: float, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def decay(coefficient: float, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Decay rates (links,) of damped velocities (links, 3), and their derivatives by the velocities."""
     speed = np.sqrt((velocity * velocity).sum(axis=1))
     return coefficient * (1.0 + speed), coefficient * velocity / np.where(speed > 0.0, speed, 1.0)[:, None]

@@ -53,9 +53,10 @@ class Linearizing:
             controls: Kinds of controls, or full names of some: "torques" (of all dofs of joints),
                 "target_positions" and "target_velocities" (of motors), "actuators".
             parameters: Likewise: "masses" (centres and moments of inertia stay), "inertias" (principal
-                moments), "inertial_parameters" (ten of each link), "friction" (lateral, of links),
-                "joint_friction", "stiffness", "damping", "armature", "motor_position_gains",
-                "motor_velocity_gains", "motor_forces", "actuator_gains", "actuator_biases".
+                moments), "inertial_parameters" (ten of each link), "offsets" (of joints' frames in those of
+                their parent links, along its axes), "friction" (lateral, of links), "joint_friction",
+                "stiffness", "damping", "armature", "motor_position_gains", "motor_velocity_gains",
+                "motor_forces", "actuator_gains", "actuator_biases".
             steps: Number of steps.
             method: "exact", or "differences" for central differences of the steps themselves, of all that can
                 be in a world.
