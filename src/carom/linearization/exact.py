@@ -26,6 +26,7 @@ from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
 from carom.linearization.offsets import refuse_rows
 from carom.linearization.row_names import RowNames, raise_problem
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
+from carom.linearization.stepping import greatest
 from carom.linearization.taken_step import TakenStep
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ class StepLinearizer:
         numbers = np.arange(copies.count) if worlds is None else worlds
         engine = copies.engine
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
-        memory = self._kernels.prepare(len(numbers), int(contacts.max()), smoothing)
+        memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing)
         hosted = self._of_motion or needs_host(self._space, engine.arrays.model.numpy, wrench)
         on_host = hosted or len(self._space.activations) > 0
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))

@@ -78,21 +78,27 @@ def linearize(
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
     chosen = chosen_parts(world, controls, parameters)
     rows: tuple[tuple[str, str], ...] = ()
+    taken: list[StepDerivatives] = []
     chosen.refuse_inertial(world.arrays.model.numpy, method)
     space, count = chosen.space, chosen.control_count
     given = start.checked(space, chosen.inputs[:count])
     if method == "differences":
-        pairs = [(np.eye(len(chosen.states)), np.zeros((len(chosen.states), len(chosen.inputs))))]
-        # Sensors of accelerations need the state before the last step, too.
-        for number in range(max(1, steps - 1) if outputs is not None else steps, steps + 1):
-            pairs.append(differences(world, space, chosen.inputs, number, _SIZE, given))
+        by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE, given)
     else:
         taken = performed(world, chosen, steps, smoothing, given)
-        pairs, rows = _chained(taken), taken[-1].rows[0]
-    states, inputs = ([pair[part] for pair in pairs[-2:]] for part in range(2))
-    by_state, by_input = pairs[-1]
-    by_outputs = OutputDerivatives(world, space, chosen.inputs[:count], steps, given)
-    seen, fed, names = by_outputs.of(outputs, states, [it[:, :count] for it in inputs])
+        by_state, by_input = _chained(taken)
+        rows = taken[-1].rows[0]
+    seen, fed, names = np.zeros((0, len(by_state))), np.zeros((0, count)), ()
+    if outputs is not None:
+        # Sensors of accelerations need the state before the last step, too.
+        before = np.eye(len(by_state)), np.zeros(by_input.shape)
+        if steps > 1 and method == "differences":
+            before = differences(world, space, chosen.inputs, steps - 1, _SIZE, given)
+        elif steps > 1:
+            before = _chained(taken[:-1])
+        by_outputs = OutputDerivatives(world, space, chosen.inputs[:count], steps, given)
+        both = (before[1][:, :count], by_input[:, :count])
+        seen, fed, names = by_outputs.of(outputs, (before[0], by_state), both)
     return LinearizedStep(
         A=by_state,
         B=by_input[:, :count],
@@ -133,15 +139,13 @@ def performed(
     return [step_derivatives(world, chosen.space, chosen.inputs, copies, smoothing) for _ in range(steps)]
 
 
-def _chained(taken: list[StepDerivatives]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Derivatives of the state before the last step, and of that after it, by the first and by inputs."""
+def _chained(taken: list[StepDerivatives]) -> tuple[np.ndarray, np.ndarray]:
+    """Derivatives of the last state by the first and by inputs."""
     by_state, by_input = taken[0].by_state[0], taken[0].by_input[0]
-    before = np.eye(len(by_state)), np.zeros(by_input.shape)
     for found in taken[1:]:
-        before = by_state, by_input
         stepped, driven = found.by_state[0], found.by_input[0]
         by_state, by_input = stepped @ by_state, stepped @ by_input + driven
-    return [before, (by_state, by_input)]
+    return by_state, by_input
 
 
 def step_vjp(

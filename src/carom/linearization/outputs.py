@@ -41,12 +41,12 @@ class OutputDerivatives:
         self._width = 2 * len(space) + len(space.activations)
 
     def of(
-        self, outputs: Outputs | None, states: Sequence[np.ndarray], inputs: Sequence[np.ndarray]
+        self, outputs: Outputs, states: Sequence[np.ndarray], inputs: Sequence[np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
         """Derivatives by the state (ny, nx) and by controls (ny, nu), and names of the outputs of sensors.
 
         Args:
-            outputs: A function of the world after the steps, sensors, or None.
+            outputs: A function of the world after the steps, or sensors.
             states: Derivatives of the states before and after the last step by the first, (2, nx, nx).
             inputs: Likewise by controls, (2, nx, nu).
 
@@ -54,8 +54,6 @@ class OutputDerivatives:
             ValueError: A sensor is of another world.
             TypeError: Something is neither a function nor a sensor.
         """
-        if outputs is None:
-            return np.zeros((0, self._width)), np.zeros((0, len(self._controls))), ()
         if callable(outputs):
             return *self._by_differences(outputs), ()
         sensors = [self._checked(sensor) for sensor in outputs]

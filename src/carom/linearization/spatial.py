@@ -66,6 +66,11 @@ def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
     return known
 
 
+def moving_dofs(body: Body) -> np.ndarray:
+    """1 where a link, in the rows of a body, is moved by a dof, else 0, (links, n)."""
+    return _tree_of(body, 0 if body.fixed_base else BASE_VELOCITIES)[0]
+
+
 def link_forces(
     spatial: Spatial,
     velocity: np.ndarray,

@@ -80,7 +80,7 @@ class Copies:
         mine, its = self.engine.contact_arrays, other.contact_arrays
         room = mine.contacts.capacity
         counts = its.contacts.numpy["count_contacts"]
-        if int(counts[:, THERE].max()) > room["contact"] or int(counts[:, OVERLAPS].max()) > room["overlap"]:
+        if greatest(counts[:, THERE]) > room["contact"] or greatest(counts[:, OVERLAPS]) > room["overlap"]:
             return False
         self._unspent = unspent_time
         self._forces = []
@@ -137,7 +137,7 @@ class Copies:
         self.apply_forces()
         due, self._unspent = self._parameters.substeps_due(self._unspent)
         self.engine.step([due], worlds)
-        if self.engine.status[:, STATUS].max() > WELL:
+        if greatest(self.engine.status[:, STATUS]) > WELL:
             raise SimulationError("a step cannot be linearised: a velocity is not finite")
 
 
@@ -148,6 +148,11 @@ def _pairs(tables: Iterable[tuple[ArrayTable, ArrayTable]]) -> Iterator[tuple[np
         for own, other in zip(mine.row_fields, its.row_fields, strict=True):
             if not of_shapes or own.axis == "link":
                 yield other.array, own.array
+
+
+def greatest(numbers: np.ndarray) -> int:
+    """The greatest of some whole numbers (m,), sooner for one of them."""
+    return int(numbers[0]) if len(numbers) == 1 else int(numbers.max())
 
 
 def made_for(world: World) -> tuple[object, ...]:
