@@ -86,8 +86,9 @@ _READ = {
     "solimplimit solreffriction solreflimit springdamper springref stiffness type "
     "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
-    "geom": "class conaffinity condim contype density fitscale fluidcoef fluidshape friction fromto group hfield mass material "
-    f"margin mesh name pos priority rgba shellinertia size solimp solmix solref type {_TURN}",
+    "geom": "class conaffinity condim contype density fitscale fluidcoef fluidshape friction fromto group "
+    "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref type "
+    f"{_TURN}",
     "site": f"class fromto name pos size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize {_TURN}",
     "attach": "body frame model prefix",
