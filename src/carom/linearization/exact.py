@@ -106,6 +106,7 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         copies = self._copies
+        _refuse_fluids(copies.engine.arrays.model.numpy)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         copies.step(worlds)
         numbers = np.arange(copies.count) if worlds is None else worlds
@@ -231,6 +232,11 @@ def step_derivatives(
     if kept is None or not kept.suits(space, inputs, copies):
         kept = copies.linearizer = StepLinearizer(space, inputs, copies, lone_mechanisms, 1)
     return kept.step(world.parameters, None, smoothing)
+
+
+def _refuse_fluids(model: dict[str, np.ndarray]) -> None:
+    if model["fluid_density"].any() or model["fluid_viscosity"].any():
+        raise NotImplementedError('forces of a fluid have no exact derivatives: use method="differences"')
 
 
 def _activations(

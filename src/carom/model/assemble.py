@@ -96,6 +96,7 @@ def _link_spec(
         compound_margin=compound_margin,
         contact=link.contact,
         gravity_compensation=link.gravity_compensation,
+        fluid=link.fluid,
         user_data=dict(link.user_data),
     )
     if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:

@@ -67,6 +67,8 @@ def has_massless_base(root: TreeNode) -> bool:
 def merge_rigidly(root: TreeNode, *, fixed_base: bool) -> None:
     """Merge every link on a fixed joint into its parent, in place; masses, centres and tensors add up.
 
+    A link that the fluid sees otherwise than as the box of its inertia stays.
+
     The parent takes over the shapes, but not the contact parameters. Links merged into a fixed base add no
     mass. Children of a merged link take its place.
     """
@@ -86,7 +88,7 @@ def _absorb(node: TreeNode, *, without_mass: bool) -> None:
     while children:
         child = children.pop()
         joint = child.joint
-        if joint is None or joint.type is not JointType.FIXED:
+        if joint is None or joint.type is not JointType.FIXED or child.link.fluid is not None:
             node.children.append(child)
             continue
         own, other, frame = node.link, child.link, joint.frame
