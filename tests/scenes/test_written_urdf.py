@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from carom import World
 from carom.algorithms import mass_matrix
@@ -39,6 +41,25 @@ def load(tmp_path: Path):
     yield load
     for world in worlds:
         world.__exit__()
+
+
+@pytest.mark.parametrize(
+    "inertial",
+    [
+        '<origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/>',
+        '<origin xyz="0.1 0.2 0.3"/><inertia ixx="0.3" ixy="0.05" ixz="0" iyy="0.2" iyz="0" izz="0.25"/>',
+    ],
+)
+def test_spherical_joints_turn_links_and_not_their_principal_axes(load, inertial):
+    ball = f'<link name="ball"><inertial><mass value="2"/>{inertial}</inertial></link>'
+    turned = joint("j", "base", "ball", "spherical", '<origin xyz="0 0 1" rpy="0.3 0.2 0.1"/>')
+    (body,) = load(link("base"), ball, turned, fixed_base=True).bodies
+    rotation = Rotation.from_rotvec([0.3, -0.5, 0.7])
+    body.joints["j"].reset(rotation.as_quat())
+    expected = Rotation.from_euler("xyz", [0.3, 0.2, 0.1]) * rotation
+    pose = body.links["ball"].pose
+    assert_allclose(pose.position, [0, 0, 1], atol=1e-12)
+    assert_allclose(pose.orientation, expected.as_quat(), atol=1e-9)
 
 
 def two_wheels(inside: str = "") -> tuple[str, ...]:

@@ -80,7 +80,7 @@ class _Maker:
             assert parent is not None, "only the root has no parent, and it has no joints then"
             is_last = number == len(body.joints) - 1
             place = compose(frame, Pose(joint.anchor))
-            is_body = is_last and joint.anchor == _ORIGIN and not _needs_own_frame(joint, body)
+            is_body = is_last and joint.anchor == _ORIGIN
             link = _link(body) if is_body else Link(f"{body.name}@{joint.joint.name}", MASSLESS)
             parent = self._hang(link, joint, parent, place)
             x, y, z = joint.anchor
@@ -109,15 +109,6 @@ class _Maker:
         frame = compose(place, _moved_back(described, joint.reference))
         self.joints.append(replace(described, parent=parent, child=index, frame=frame))
         return index
-
-
-def _needs_own_frame(joint: CompiledJoint, body: CompiledBody) -> bool:
-    """Whether it is a ball whose body has other principal axes than its own: balls turn inertial frames."""
-    if joint.joint.type is not JointType.SPHERICAL:
-        return False
-    inertial = _inertial(body.inertia)
-    _, xy, xz, _, yz, _ = inertial.tensor
-    return inertial.frame.orientation != IDENTITY.orientation or any((xy, xz, yz))
 
 
 def _moved_back(joint: Joint, reference: float) -> Pose:
