@@ -43,15 +43,11 @@ def load(tmp_path: Path):
         world.__exit__()
 
 
-@pytest.mark.parametrize(
-    "inertial",
-    [
-        '<origin xyz="0.1 0.2 0.3" rpy="0.4 0.5 0.6"/>',
-        '<origin xyz="0.1 0.2 0.3"/><inertia ixx="0.3" ixy="0.05" ixz="0" iyy="0.2" iyz="0" izz="0.25"/>',
-    ],
-)
-def test_spherical_joints_turn_links_and_not_their_principal_axes(load, inertial):
-    ball = f'<link name="ball"><inertial><mass value="2"/>{inertial}</inertial></link>'
+@pytest.mark.parametrize(("turn", "product"), [("0.4 0.5 0.6", 0.0), ("0 0 0", 0.05)])
+def test_spherical_joints_turn_links_and_not_their_principal_axes(load, turn, product):
+    inertia = f'<inertia ixx="0.3" ixy="{product}" ixz="0" iyy="0.2" iyz="0" izz="0.25"/>'
+    inertial = f'<origin xyz="0.1 0.2 0.3" rpy="{turn}"/><mass value="2"/>{inertia}'
+    ball = f'<link name="ball"><inertial>{inertial}</inertial></link>'
     turned = joint("j", "base", "ball", "spherical", '<origin xyz="0 0 1" rpy="0.3 0.2 0.1"/>')
     (body,) = load(link("base"), ball, turned, fixed_base=True).bodies
     rotation = Rotation.from_rotvec([0.3, -0.5, 0.7])
