@@ -434,13 +434,3 @@ def test_an_inertial_without_a_mass_has_none(load):
     tip = '<link name="tip"><inertial><inertia ixx="0" iyy="0" izz="0"/></inertial></link>'
     scene = load(link("base"), tip, joint("j", "base", "tip", "fixed"))
     assert scene.bodies[0].links["tip"].mass == 0.0
-
-
-def test_a_transmission_to_no_joint_is_reported(load):
-    transmission = (
-        '<transmission name="t"><type>transmission_interface/SimpleTransmission</type><joint name="none"/>'
-        '<actuator name="a"/></transmission>'
-    )
-    scene = load(link("base"), transmission)
-    (found,) = scene.ignored.that_matter
-    assert found.reason == "there is no joint 'none'"

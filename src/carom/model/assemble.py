@@ -16,8 +16,7 @@ from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
 from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
-from carom.model.written_balls import hang_balls
-from carom.model.written_inertia import has_massless_base, merge_rigidly, written_inertia
+from carom.model.written_inertia import hang_balls, has_massless_base, merge_rigidly, written_inertia
 
 _log = Logger(__name__)
 

@@ -1,10 +1,10 @@
-"""Inertia of links as their file states it, also of links that are merged."""
+"""Inertia of links as their file states it, also of links that are merged or on spherical joints."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Inertial, JointType, Pose
+from carom.description import Inertial, Joint, JointType, Link, Pose
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
@@ -142,3 +142,25 @@ def _in_parent(tensor: tuple[float, float, float, float, float, float], pose: Po
 
 def _is_fixed(node: TreeNode) -> bool:
     return node.joint is not None and node.joint.type is JointType.FIXED
+
+
+def hang_balls(root: TreeNode) -> None:
+    """Give each spherical joint a massless link of its own where its link has other principal axes, in place.
+
+    The engine's spherical joints turn inertial frames, as Bullet's do; in files they turn links. The link is
+    then fixed to one named `LINK@JOINT`.
+    """
+    for node in depth_first(root):
+        joint = node.joint
+        if joint is None or joint.type is not JointType.SPHERICAL or _has_own_axes(node.link):
+            continue
+        moved = TreeNode(node.link, node.index, children=node.children)
+        moved.joint = Joint(f"{node.link.name}@fixed", JointType.FIXED, joint.child, joint.child, IDENTITY)
+        node.link = Link(f"{node.link.name}@{joint.name}", Inertial(mass=0.0))
+        node.children = [moved]
+
+
+def _has_own_axes(link: Link) -> bool:
+    """Whether the principal axes of a link are its own."""
+    _, xy, xz, _, yz, _ = link.inertial.tensor
+    return link.inertial.frame.orientation == IDENTITY.orientation and not any((xy, xz, yz))
