@@ -137,7 +137,7 @@ test: $(VENV)/dev
 check: lint types test
 
 # Physics, contacts and solver against closed forms; every scenario against real PyBullet; the drop-in's surface;
-# rooms, and what the pages for developers say.
+# layers of packages, and what the pages for developers say.
 QUICK := tests/physics tests/collision tests/geometry tests/model tests/kernels tests/native/test_tables.py \
 	tests/conformance/test_golden.py tests/pybullet/test_surface.py tests/pybullet/calls/test_bad_input.py \
 	tests/test_world.py tests/test_body.py tests/formats/test_urdf_reader.py \

@@ -1,4 +1,4 @@
-"""Imports point one way, between rooms and inside them; docs/architecture.md has the rooms.
+"""Imports point one way, between packages and inside them; docs/architecture.md lists the packages.
 
 What counts is every import that is ever performed: at the top of a module, inside a function, or by name.
 Imports for the type checker are none: a body may say of what type the world is that holds it.
@@ -14,8 +14,8 @@ import pytest
 SOURCE = Path(__file__).parents[1] / "src"
 MAX_FILES_IN_A_FOLDER = 25
 
-# From the ground up: a room may import those on floors below its own.
-FLOORS = (
+# The lowest first: a package may import those of the layers below its own.
+LAYERS = (
     {
         "carom.checks",
         "carom.closed",
@@ -67,9 +67,9 @@ FLOORS = (
     {"carom.__main__", "pybullet_examples", "pybullet_robots"},
     {"pybullet_envs"},
 )
-FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+LAYER = {package: number for number, packages in enumerate(LAYERS) for package in packages}
 
-# Rooms that are kept free of the others below them, and what they may import.
+# Packages that are kept free of the others below them, and what they may import.
 KEPT_APART = {
     "carom.description": {"carom.errors", "carom.layouts", "carom.native"},
     "carom.geometry": {"carom.errors", "carom.description", "carom.native"},
@@ -91,19 +91,17 @@ def module_name(path: Path) -> str:
 
 
 # Where Carom is installed, `SOURCE` has the packages of others as well.
-PACKAGES = {room.partition(".")[0] for rooms in FLOORS for room in rooms}
+TOP_LEVEL = {package.partition(".")[0] for packages in LAYERS for package in packages}
 MODULES = {
-    module_name(path): path
-    for package in sorted(PACKAGES)
-    for path in sorted((SOURCE / package).rglob("*.py"))
+    module_name(path): path for top in sorted(TOP_LEVEL) for path in sorted((SOURCE / top).rglob("*.py"))
 }
 
 
-def room_of(module: str) -> str | None:
-    """The room a module is in; None for the standard library and third parties."""
-    package, _, rest = module.partition(".")
-    room = f"{package}.{rest.partition('.')[0]}" if rest else package
-    return room if room in FLOOR else package if package in FLOOR else None
+def package_of(module: str) -> str | None:
+    """The package of the layers a module is in; None for the standard library and third parties."""
+    top, _, rest = module.partition(".")
+    package = f"{top}.{rest.partition('.')[0]}" if rest else top
+    return package if package in LAYER else top if top in LAYER else None
 
 
 def performed(tree: ast.AST) -> Iterator[ast.AST]:
@@ -154,23 +152,23 @@ def circles(graph: dict[str, set[str]]) -> set[str]:
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_a_module_imports_only_rooms_on_lower_floors(module: str) -> None:
+def test_a_module_imports_only_packages_of_lower_layers(module: str) -> None:
     # The package itself only hands out names.
     if module == "carom":
         return
-    room = room_of(module)
-    assert room in FLOOR, f"{module} belongs to no room; add it to the floors and the docs"
-    imported = {room_of(name) for name in IMPORTS[module] if name != "carom"} - {room, None}
-    assert not [name for name in imported if FLOOR[str(name)] >= FLOOR[room]]
-    if room in KEPT_APART:
-        assert imported <= KEPT_APART[room]
-    if room not in LAUNCH_KERNELS:
+    package = package_of(module)
+    assert package in LAYER, f"{module} belongs to no package; add it to the layers and the docs"
+    imported = {package_of(name) for name in IMPORTS[module] if name != "carom"} - {package, None}
+    assert not [name for name in imported if LAYER[str(name)] >= LAYER[package]]
+    if package in KEPT_APART:
+        assert imported <= KEPT_APART[package]
+    if package not in LAUNCH_KERNELS:
         assert "carom.kernels" not in imported
 
 
-def test_all_packages_of_the_wheel_have_floors() -> None:
+def test_all_packages_of_the_wheel_have_layers() -> None:
     project = (SOURCE.parent / "pyproject.toml").read_text(encoding="utf-8")
-    assert set(re.findall(r'^    "src/(\w+)",$', project, flags=re.MULTILINE)) == PACKAGES
+    assert set(re.findall(r'^    "src/(\w+)",$', project, flags=re.MULTILINE)) == TOP_LEVEL
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:

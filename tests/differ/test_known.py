@@ -303,3 +303,26 @@ def test_files_have_long_round_shapes(file: str, label: int, ours: list[int], ex
     bodies = sum(len(FILES[made["a"][0]]) for made in scene)
     said = f"9 of 16 differ: [90, 90, 90, 255] of {bodies if label else 0}"
     assert is_known(calls, "colour", said, ours) == expected
+
+
+@pytest.mark.parametrize(
+    ("number", "expected"), [({}, False), ({"reportHitNumber": -1}, False), ({"reportHitNumber": 0}, True)]
+)
+def test_hits_of_rays_are_counted_along_the_ray(number: dict[str, int], expected: bool):
+    ray = call(3, "rayTestBatch", [[0, 0, 2]], [[0, 0, -2]], **number)
+    assert is_known([BOX, ray], "hit", [0, -1, 0.5], [1, -1, 0.2]) == expected
+
+
+SAVE, RESTORE, REMOVE = call(4, "saveState"), call(6, "restoreState", {"$": 4}), call(5, "removeBody", BODY)
+
+
+@pytest.mark.parametrize(
+    ("calls", "expected"),
+    [
+        ([BOX, SAVE, REMOVE, BOX, RESTORE, PROBE], True),
+        ([BOX, BOX, REMOVE, SAVE, RESTORE, PROBE], False),
+        ([BOX, SAVE, RESTORE, REMOVE, PROBE], False),
+    ],
+)
+def test_states_are_restored_by_order_where_bodies_were_removed(calls: list[Call], expected: bool):
+    assert is_known(calls, "base.0.0", 1.0, 2.0) == expected

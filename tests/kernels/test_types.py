@@ -44,9 +44,40 @@ def literals_kernel(answers: RealRows):
         answers[row, 5] = 1e-300
 
 
+LIMIT = real(2.5)
+FARTHEST = 4.0
+
+
+@kernel
+def constants_kernel(answers: RealRows):
+    """Named constants beside variables that start with their values."""
+    row = wp.tid()
+    if row == 0:
+        farthest = real(FARTHEST)
+        farthest += LIMIT
+        answers[row, 0] = farthest
+        return
+    answers[row, 0] = LIMIT
+    least = real(LIMIT)
+    for i in range(row):
+        least -= real(i)
+    answers[row, 1] = least
+    answers[row, 2] = LIMIT
+    answers[row, 3] = real(LIMIT)
+    answers[row, 4] = real(FARTHEST)
+
+
 def test_numbers_are_double_precision():
     assert real is wp.float64
     assert NUMPY_REAL is np.float64
+
+
+def test_a_variable_that_starts_with_a_constant_does_not_change_the_constant():
+    answers = np.zeros((4, 5))
+    rows = wp.array2d(answers, dtype=real, device="cpu", copy=False)
+    wp.launch(constants_kernel, dim=4, inputs=[rows], device="cpu")
+    expected = [[6.5, 0, 0, 0, 0], *([2.5, least, 2.5, 2.5, 4.0] for least in (2.5, 1.5, -0.5))]
+    np.testing.assert_array_equal(answers, expected)
 
 
 def test_literals_in_kernels_are_double_precision():

@@ -96,3 +96,19 @@ def test_an_arm_pushes_on_a_body(tmp_path):
         world.step()
     step = assert_exact(world, parameters=["masses", "friction"], steps=3)
     assert any(name.startswith("contact") for name, _ in step.rows)
+
+
+@pytest.mark.parametrize("kind", ["cone", "pyramid"])
+def test_a_rod_that_slides_on_its_end_softens_with_depth(tmp_path, kind):
+    # Far from equal effective masses along both directions, of which softness is a great part.
+    soft = 'solref="0.05 0.7" solimp="0.1 0.9 0.02 0.5 1"'
+    rod = f'<freejoint/><geom type="box" size=".01 .012 .4" density="3000" friction=".4" {soft}/>'
+    world = of_file(tmp_path, f'<body pos="0 0 .31" euler="25 35 0">{rod}</body>', floor=soft)
+    world.parameters.cone_friction = kind == "cone"
+    world.apply_parameters()
+    world.velocity[6:12] = 0.4, -0.3, 0.2, 3.0, 2.0, -0.6
+    while not world.linearize().rows:
+        world.step()
+    found = statuses(assert_exact(world, parameters=PARAMETERS))
+    (sliding,) = (status for name, status in found.items() if name.startswith("friction"))
+    assert sliding == (["slides"] * 2 if kind == "cone" else sliding)

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from carom import World
 from carom.errors import DescriptionError
+from carom.formats.mjcf.compiled.shapes.builtin_meshes import builtin_mesh
 from carom.geometry.heightfield import heightfield_surface
 
 CORNERS = ((0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 3))
@@ -89,3 +90,33 @@ def test_the_colour_of_a_geom_comes_before_that_of_its_material(load, geom, rgba
     material = scene["b"].spec.base.visuals[0].material
     assert material is not None
     assert material.rgba == rgba
+
+
+def made(name, parameters):
+    mesh = builtin_mesh(name, parameters)
+    assert not isinstance(mesh, str)
+    return mesh
+
+
+def test_plates_and_wedges_have_the_points_of_mujoco():
+    # What MuJoCo 4.0 has, in the frame of the mesh.
+    plate, triangles = made("plate", [3, 2])
+    third = 2.0 / 3.0
+    expected = [(x, y, -1.0) for x in (-third, 0.0, third) for y in (-0.5, 0.5)]
+    assert_allclose(plate, expected, atol=1e-15)
+    assert len(triangles) == 4
+    wedge, triangles = made("wedge", [3, 3, 45, 45, 0.5])
+    assert_allclose(np.linalg.norm(wedge, axis=1), 1.0)
+    expected = [(-0.3972, -0.443, -0.8037), (-0.443, 0.0, -0.8965), (-0.3972, 0.443, -0.8037)]
+    assert_allclose(wedge[:3], expected, atol=5e-5)
+    for a, b, c in triangles:
+        assert np.cross(wedge[b] - wedge[a], wedge[c] - wedge[a]) @ wedge[a] > 0.0
+    even, _ = made("wedge", [4, 3, 45, 30, 0])
+    assert_allclose(even[0], (-0.5221, -0.342, -0.7813), atol=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters"), [("plate", [1, 2]), ("plate", [2]), ("wedge", [3, 3, 45, 45]), ("torus", [])]
+)
+def test_unknown_meshes_are_named(name, parameters):
+    assert isinstance(builtin_mesh(name, parameters), str)

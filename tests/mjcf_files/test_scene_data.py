@@ -213,6 +213,10 @@ def test_models_are_attached_with_their_own_settings(tmp_path):
         assert_allclose(arm.links["left-arm"].pose.position, (1, 0, 1))
 
 
-def test_fluids_are_named_as_left_out(load):
-    text = '<mujoco><option density="1.2" viscosity="0"/><worldbody/></mujoco>'
-    assert [(it.element, it.attributes) for it in load(text).ignored] == [("mujoco/option", ("density",))]
+def test_fluids_are_options_of_the_world(load):
+    text = '<mujoco><option density="1.2" viscosity=".1" wind="1 2 3"/><worldbody/></mujoco>'
+    scene = load(text)
+    assert not list(scene.ignored)
+    scene.apply_options()
+    parameters = scene.world.parameters
+    assert (parameters.fluid_density, parameters.fluid_viscosity, parameters.wind) == (1.2, 0.1, (1, 2, 3))

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from carom import World
 from carom.algorithms import mass_matrix
@@ -39,6 +41,21 @@ def load(tmp_path: Path):
     yield load
     for world in worlds:
         world.__exit__()
+
+
+@pytest.mark.parametrize(("turn", "product"), [("0.4 0.5 0.6", 0.0), ("0 0 0", 0.05)])
+def test_spherical_joints_turn_links_and_not_their_principal_axes(load, turn, product):
+    inertia = f'<inertia ixx="0.3" ixy="{product}" ixz="0" iyy="0.2" iyz="0" izz="0.25"/>'
+    inertial = f'<origin xyz="0.1 0.2 0.3" rpy="{turn}"/><mass value="2"/>{inertia}'
+    ball = f'<link name="ball"><inertial>{inertial}</inertial></link>'
+    turned = joint("j", "base", "ball", "spherical", '<origin xyz="0 0 1" rpy="0.3 0.2 0.1"/>')
+    (body,) = load(link("base"), ball, turned, fixed_base=True).bodies
+    rotation = Rotation.from_rotvec([0.3, -0.5, 0.7])
+    body.joints["j"].reset(rotation.as_quat())
+    expected = Rotation.from_euler("xyz", [0.3, 0.2, 0.1]) * rotation
+    pose = body.links["ball"].pose
+    assert_allclose(pose.position, [0, 0, 1], atol=1e-12)
+    assert_allclose(pose.orientation, expected.as_quat(), atol=1e-9)
 
 
 def two_wheels(inside: str = "") -> tuple[str, ...]:
@@ -382,3 +399,38 @@ def test_worlds_couple_and_rub_too(load):
     slowed = STEP * 0.1 * 2.0 / (0.5 + 4.0 * 0.25)
     assert rates[:, 0] == pytest.approx([1.0 - slowed, 2.0 - slowed, 0.0], abs=1e-9)
     assert rates @ [2.0, -1.0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+
+
+@pytest.mark.parametrize("fixed_base", [False, True])
+def test_a_floating_joint_to_a_root_that_stands_for_the_world_frees_the_robot(load, fixed_base):
+    parts = ('<link name="world"/>', link("base"), link("arm"))
+    floating = '<joint name="free" type="floating"><parent link="world"/><child link="base"/></joint>'
+    scene = load(*parts, floating, joint("j", "base", "arm"), fixed_base=fixed_base)
+    (body,) = scene.bodies
+    assert not scene.ignored.that_matter
+    assert body.fixed_base is fixed_base
+    assert (body.links[-1].name, [joint.name for joint in body.joints]) == ("base", ["j"])
+    scene.world.step()
+    assert (body.links[-1].pose.position[2] < 0.0) is not fixed_base
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        (link("world"), '<origin xyz="0 0 0"/>'),
+        ('<link name="world"/>', '<origin xyz="0 0 1"/>'),
+        ('<link name="world"/>' + link("other") + joint("k", "world", "other"), ""),
+    ],
+)
+def test_other_floating_joints_are_reported_and_fixed(load, parts):
+    roots, origin = parts
+    floating = f'<joint name="f" type="floating"><parent link="world"/><child link="base"/>{origin}</joint>'
+    scene = load(roots, link("base"), floating)
+    assert [found.consequence for found in scene.ignored.that_matter] == ["it is fixed"]
+    assert scene.bodies[0].joints["f"].degrees_of_freedom == 0
+
+
+def test_an_inertial_without_a_mass_has_none(load):
+    tip = '<link name="tip"><inertial><inertia ixx="0" iyy="0" izz="0"/></inertial></link>'
+    scene = load(link("base"), tip, joint("j", "base", "tip", "fixed"))
+    assert scene.bodies[0].links["tip"].mass == 0.0

@@ -12,14 +12,14 @@ from tests.viewer.browser import Page, needs_browser
 import pybullet as p
 from carom import Camera, World
 from carom.viewer import scene_feed
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.messages import decoded
 
 
-def meshes(board: Board) -> list[np.ndarray]:
-    """The vertices of all meshes on a board, in the order they were put there."""
+def meshes(latest: LatestMessages) -> list[np.ndarray]:
+    """The vertices of all meshes among the latest messages, in the order they were put there."""
     found = []
-    for key, entry in board._entries.items():
+    for key, entry in latest._entries.items():
         if isinstance(key, tuple) and key[0] == "mesh" and not entry.gone:
             header, payload = decoded(entry.message)
             count = 3 * header["vertices"]
@@ -33,18 +33,18 @@ def test_a_cloth_that_falls_together_is_shown_so(monkeypatch) -> None:
     world.gravity = (0, 0, -10)
     cloth = world.load_cloth((1.0, 1.0), (4, 4))
     cloth.anchor(12)
-    board = Board()
-    feed = scene_feed.SceneFeed(world, RLock(), board)
+    latest = LatestMessages()
+    feed = scene_feed.SceneFeed(world, RLock(), latest)
     feed.frame({})
-    (flat,) = meshes(board)
+    (flat,) = meshes(latest)
     assert np.ptp(flat[:, 2]) < 1e-6
     world.step(60)
     feed.frame({})
-    (fallen,) = meshes(board)
+    (fallen,) = meshes(latest)
     assert np.ptp(fallen[:, 2]) > 0.2
-    revision = board.revision
+    revision = latest.revision
     feed.frame({})
-    assert board.revision == revision, "nothing has moved"
+    assert latest.revision == revision, "nothing has moved"
 
 
 def test_images_are_drawn_while_a_page_looks_on(monkeypatch) -> None:
@@ -53,7 +53,7 @@ def test_images_are_drawn_while_a_page_looks_on(monkeypatch) -> None:
     world = World()
     world.gravity = (0, 0, -10)
     solid = world.load_soft_solid(0.2, 4)
-    feed = scene_feed.SceneFeed(world, RLock(), Board())
+    feed = scene_feed.SceneFeed(world, RLock(), LatestMessages())
     camera = Camera(32, 32, fx=30.0).look_at((0.0, -1.0, 0.0), (0.0, 0.0, 0.0))
     for _ in range(2):
         world.step(10)

@@ -66,8 +66,8 @@ def test_the_past_is_seen_while_the_simulation_goes_on(page: Page, ball: int):
 
 
 def test_the_memory_of_the_past_is_bounded(page: Page, ball: int):
-    page.until("app.history.ledger.bytes > 0")
-    page.page.evaluate("app.history.budget = app.history.ledger.bytes + 20000")
+    page.until("app.history.messages.bytes > 0")
+    page.page.evaluate("app.history.budget = app.history.messages.bytes + 20000")
     for _ in range(10):
         fall(30)
     fall(300)

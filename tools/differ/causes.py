@@ -318,6 +318,22 @@ def forgets_forces(seen: Seen) -> bool:
     return False
 
 
+def counts_hits(seen: Seen) -> bool:
+    """Whether hits of rays are asked for by number."""
+    return seen.call["f"] == "rayTestBatch" and seen.call["k"].get("reportHitNumber", -1) >= 0
+
+
+def restores_after_a_removal(seen: Seen) -> bool:
+    """Whether a state was restored from before a body was removed."""
+    saved = removed = False
+    for call in seen.before:
+        if call["f"] == "restoreState" and removed:
+            return True
+        removed |= saved and call["f"] == "removeBody"
+        saved |= call["f"] in ("saveState", "saveBullet")
+    return False
+
+
 def spells_a_path_shorter(seen: Seen) -> bool:
     """Whether paths are the same but for slashes that follow slashes."""
     theirs, ours = map(str, seen.difference.place[1:3])

@@ -19,6 +19,7 @@ from tools.differ.causes import (
     Seen,
     aims_a_ball_joint_by_a_number,
     casts_shadows,
+    counts_hits,
     crosses_capsules,
     error,
     exchanges_points,
@@ -39,6 +40,7 @@ from tools.differ.causes import (
     numbers_a_child_first,
     pybullet_raises,
     reaches_from_positions,
+    restores_after_a_removal,
     rounder,
     shades_as_a_ball,
     spells_a_path_shorter,
@@ -214,6 +216,14 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "PyBullet matches bodies by their order",
         lambda seen: seen.call["f"] == "restoreState" and pybullet_raises(seen) and seen.has("removeBody"),
+    ),
+    Known(
+        "after a body was removed and",
+        lambda seen: seen.differs("@probe", "get") and restores_after_a_removal(seen),
+    ),
+    Known(
+        "PyBullet counts in the order in which it",
+        lambda seen: seen.differs("rayTestBatch") and counts_hits(seen),
     ),
     Known(
         "Which way a constraint, or the motor of a spherical joint, turns back",

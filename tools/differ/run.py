@@ -8,7 +8,7 @@ interpreters perform it (`pair.py`, `perform.py`), with PyBullet's files for bot
 results differ: beyond 1e-9 before the first contact, and in the first steps after it as far as rounding
 lets one see. What docs/differences states is counted only (`known.py`). Of everything else the first
 program of each kind is made as short as it can be (`minimise.py`), printed as a script, and written to
-build/differ, and the status is 1.
+build/differ, and the status is 1. All of them are listed there, in differing.txt.
 
 With `--getters` it is seen instead what every getter says right after every other call (`each_call.py`).
 `record.py` keeps a sample of programs with PyBullet's answers for `make test`.
@@ -34,6 +34,7 @@ from tools.differ.pair import ORACLE, ROOT, Pair
 from tools.differ.programs import Call, script
 from tools.differ.themes import THEMES, program
 
+LISTED = "differing.txt"
 _SHOWN = 400
 _DEFAULT_SEEDS = 100
 
@@ -93,8 +94,16 @@ class Differ:
                 continue
             signature = difference.signature
             self.found.unknown[signature] += 1
+            self._list(name, difference)
             if self.found.unknown[signature] == 1:
                 self._report(name, calls, difference)
+
+    def _list(self, name: str, difference: Difference) -> None:
+        """Add a line to the list of all programs with something that nothing states."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        with (self._folder / LISTED).open("a", encoding="utf-8") as listed:
+            place = f"{name}, call {difference.call}"
+            listed.write(f"{place}: {difference.signature} ({difference.place.error:.1e})\n")
 
     def _report(self, name: str, calls: list[Call], difference: Difference) -> None:
         if self._minimises:

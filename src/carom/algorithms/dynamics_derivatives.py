@@ -68,7 +68,7 @@ def inverse_dynamics_derivatives(
 def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces: Numbers) -> Array:
     """Accelerations for given generalized forces: the inverse of `inverse_dynamics`.
 
-    Gravity and the armature of joints are included; contacts, damping, springs and friction are not.
+    Gravity and armature are included; contacts, damping, springs and friction are not.
 
     Args:
         body: The body.

@@ -25,7 +25,7 @@ def inverse_dynamics(
 ) -> Array:
     """Generalized forces for given accelerations of a body, by the recursive Newton-Euler algorithm.
 
-    Gravity and the armature of joints are included; damping, springs, friction and applied forces are not.
+    Gravity and armature are included; damping, springs, friction and applied forces are not.
 
     Args:
         body: The body.

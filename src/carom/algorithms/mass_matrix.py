@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
-    The armature of joints is part of it, without that of a free base; what damping and springs add in a time
-    step is not.
+    The armature of joints, and of a free base, is part of it; what damping and springs add in a time step is
+    not.
 
     Args:
         body: The body.

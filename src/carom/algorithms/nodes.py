@@ -36,7 +36,8 @@ class Node:
         moment: Mass times centre of mass, (3,).
         inertia: Inertia about the origin of its frame, (3, 3).
         axes: Angular and linear velocity per unit rate of each dof of the joint, (dofs, 2, 3).
-        armature: Inertia of the joint's drive, seen at the joint [kg m² or kg].
+        armature: Inertia of the joint's drive, seen at the joint; of a free base, along and about all axes
+            [kg m² or kg].
     """
 
     parent: int
@@ -80,7 +81,9 @@ def body_nodes(body: Body, *, unit_axes: bool = False) -> tuple[list[Node], list
     of_links = np.array([each.mass for each in dynamics]), np.array([each.inertia for each in dynamics])
     masses, moments, inertias = node_inertias(body, ends, *of_links)
     at_base = (np.eye(3), np.zeros(3), masses[0], moments[0], inertias[0])
-    nodes = [Node(BASE, JointCode.FIXED, *at_base, np.zeros((0, 2, 3)))]
+    has_armature = not (body.fixed_base or body.spec.is_held)
+    of_base = np.zeros((0, 2, 3)), body.spec.base.armature if has_armature else 0.0
+    nodes = [Node(BASE, JointCode.FIXED, *at_base, *of_base)]
     for index, link in enumerate(moving, start=1):
         carrier, frame = frames.of_joint(link)
         kind = JointCode(body.joint_types[link])

@@ -7,12 +7,12 @@ from typing import Any
 
 import ray  # pyright: ignore[reportMissingImports]
 
+from carom.cluster.actors import ActorPool
 from carom.cluster.collection import Collection, Part, Reduction, Report
-from carom.cluster.crew import ActorPool
 from carom.cluster.episode import Episode
-from carom.cluster.ledger import Ledger
 from carom.cluster.nodes import MakeEnv, Reduce, packed
 from carom.cluster.policies import Policy
+from carom.cluster.progress import CollectionProgress
 
 
 class Rollouts:
@@ -68,7 +68,7 @@ class Rollouts:
         self._seed, self._attempts = seed, attempts
         self._batch_size = batch_size or num_envs_per_node
         sent = packed(make_env, "make_env")
-        self._crew = ActorPool(sent, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
+        self._actors = ActorPool(sent, num_envs_per_node, max_episode_steps, nodes, cpus_per_node)
 
     def collect(
         self,
@@ -101,10 +101,10 @@ class Rollouts:
             ClusterError: No node is left, an environment cannot be made, or processes die repeatedly while
                 they play the same episodes.
         """
-        ledger, players = self._play(policy, None, episodes, steps, first, keep_steps)
-        found = tuple(entry for entry in ledger.counted if isinstance(entry, Episode))
-        self.next_id = ledger.first + len(found)
-        return Collection(found, self._report(ledger, [players[episode.id] for episode in found]))
+        progress, players = self._play(policy, None, episodes, steps, first, keep_steps)
+        found = tuple(entry for entry in progress.counted if isinstance(entry, Episode))
+        self.next_id = progress.first + len(found)
+        return Collection(found, self._report(progress, [players[episode.id] for episode in found]))
 
     def reduce(
         self,
@@ -140,11 +140,11 @@ class Rollouts:
             EpisodeError: The policy, the environment or the function failed; its exception is the cause.
             ClusterError: As for `collect`.
         """
-        ledger, players = self._play(policy, function, episodes, steps, first, keep_steps)
-        parts = tuple(entry for entry in ledger.counted if isinstance(entry, Part))
+        progress, players = self._play(policy, function, episodes, steps, first, keep_steps)
+        parts = tuple(entry for entry in progress.counted if isinstance(entry, Part))
         self.next_id = parts[-1].ids.stop
         played = [players[number] for part in parts for number in part.ids]
-        return Reduction(parts, self._report(ledger, played))
+        return Reduction(parts, self._report(progress, played))
 
     def _play(
         self,
@@ -154,7 +154,7 @@ class Rollouts:
         steps: int | None,
         first: int | None,
         keep_steps: bool,
-    ) -> tuple[Ledger, dict[int, str]]:
+    ) -> tuple[CollectionProgress, dict[int, str]]:
         """Play; returns the books, and the node that played each episode, counted or not."""
         if (episodes is None) == (steps is None):
             raise ValueError("give either episodes or steps")
@@ -163,36 +163,38 @@ class Rollouts:
         first = self.next_id if first is None else first
         if not ray.is_initialized():
             ray.init()
-        ledger = Ledger(first, self._batch_size, episodes=episodes, steps=steps, attempts=self._attempts)
+        progress = CollectionProgress(
+            first, self._batch_size, episodes=episodes, steps=steps, attempts=self._attempts
+        )
         players: dict[int, str] = {}
-        self._crew.begin()
+        self._actors.begin()
         # They are sent once for a collection, and not with each batch.
         sent = ray.put(packed(policy, "the policy"))
         reduction = None if function is None else ray.put(packed(function, "the reduction"))
-        while not ledger.is_full:
-            self._hand_out(ledger, sent, reduction, keep_steps)
-            back = self._crew.wait()
+        while not progress.is_full:
+            self._hand_out(progress, sent, reduction, keep_steps)
+            back = self._actors.wait()
             if back is None:
                 continue
             if back.outcome is None:
-                ledger.lose(back.batch, back.lost)
-            elif ledger.finish(back.batch, back.outcome):
+                progress.lose(back.batch, back.lost)
+            elif progress.finish(back.batch, back.outcome):
                 players.update(dict.fromkeys(back.batch, str(back.node)))
-        return ledger, players
+        return progress, players
 
-    def _report(self, ledger: Ledger, played: list[str]) -> Report:
-        return Report(dict(Counter(played)), list(self._crew.lost), ledger.repeated)
+    def _report(self, progress: CollectionProgress, played: list[str]) -> Report:
+        return Report(dict(Counter(played)), list(self._actors.lost), progress.repeated)
 
-    def _hand_out(self, ledger: Ledger, policy: Any, reduction: Any, keep_steps: bool) -> None:
-        for member in list(self._crew.idle):
-            batch = ledger.take()
+    def _hand_out(self, progress: CollectionProgress, policy: Any, reduction: Any, keep_steps: bool) -> None:
+        for member in list(self._actors.idle):
+            batch = progress.take()
             if batch is None:
                 return
-            self._crew.give(member, batch, policy, reduction, self._seed, keep_steps)
+            self._actors.give(member, batch, policy, reduction, self._seed, keep_steps)
 
     def close(self) -> None:
         """End the processes on the nodes; Ray keeps running."""
-        self._crew.close()
+        self._actors.close()
 
     def __enter__(self) -> Rollouts:
         return self

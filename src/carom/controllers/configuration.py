@@ -14,6 +14,7 @@ from carom.checks import Array, vector
 from carom.description.pose import Vector3
 from carom.description.transform import rotation_matrix
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.linearization.spatial import moving_dofs
 from carom.linearization.tangent import TangentSpace
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _ORIGIN = (0.0, 0.0, 0.0)
+_MAX_KEPT = 256
 
 
 class Configuration:
@@ -55,6 +57,11 @@ class Configuration:
             (np.array(rotation_matrix(frame.orientation)).T, np.array(frame.position))
             for frame in self._frames
         ]
+        self._before: dict[int, set[int]] = {-1: {-1}}
+        for link, spec in enumerate(self.body.spec.links):
+            self._before[link] = {link, *self._before[spec.parent]}
+        self._moves: np.ndarray = moving_dofs(self.body)
+        self._known_tips: dict[tuple[int, ...], list[tuple[int, list[int]]]] = {}
         self._changed()
 
     @property
@@ -110,14 +117,36 @@ class Configuration:
             found[:3] += _arm(point - self._pose(link)[1]) @ found[3:]
         return found
 
-    def approaches(self, link: int, points: Sequence[Vector3], directions: Sequence[Vector3]) -> np.ndarray:
-        """Velocities of k points on a link, each in its direction, per velocity, (k, n); in world axes."""
-        ox, oy, oz = self._pose(link)[1].tolist()
-        wrenches = []
-        for (px, py, pz), (x, y, z) in zip(points, directions, strict=True):
-            rx, ry, rz = px - ox, py - oy, pz - oz
-            wrenches.append((x, y, z, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x))
-        return np.array(wrenches) @ self._at_origin(link)
+    def approaches(
+        self, links: Sequence[int], points: Sequence[Vector3], directions: Sequence[Vector3]
+    ) -> np.ndarray:
+        """Velocities of k points, each of a link and in a direction, per velocity, (k, n); in world axes."""
+        found = np.zeros((len(links), self.dofs))
+        for tip, rows in self._tips(tuple(links)):
+            # Links before a tip move with the same dofs as it, up to their own.
+            ox, oy, oz = self._pose(tip)[1].tolist()
+            wrenches = []
+            for row in rows:
+                (px, py, pz), (x, y, z) = points[row], directions[row]
+                rx, ry, rz = px - ox, py - oy, pz - oz
+                wrenches.append((x, y, z, ry * z - rz * y, rz * x - rx * z, rx * y - ry * x))
+            moved = self._moves[[links[row] + 1 for row in rows]]
+            found[rows] = moved * (np.array(wrenches) @ self._at_origin(tip))
+        return found
+
+    def _tips(self, links: tuple[int, ...]) -> list[tuple[int, list[int]]]:
+        """Links that no other follows, each with the places of links up to it."""
+        known = self._known_tips.get(links)
+        if known is None:
+            tips: dict[int, list[int]] = {}
+            for place in sorted(range(len(links)), key=lambda place: -links[place]):
+                link = links[place]
+                tip = next((tip for tip in tips if link in self._before[tip]), link)
+                tips.setdefault(tip, []).append(place)
+            if len(self._known_tips) >= _MAX_KEPT:
+                self._known_tips.clear()
+            known = self._known_tips[links] = list(tips.items())
+        return known
 
     def center_of_mass(self) -> tuple[Array, Array]:
         """The centre of mass [m], (3,), and its Jacobian (3, n), in world axes."""

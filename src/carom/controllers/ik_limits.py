@@ -60,11 +60,12 @@ class ConfigurationLimit(Limit):
         limits = [configuration.body.joints[joint].limits for joint in joints]
         self._lower = np.array([low for low, _ in limits]) + margin
         self._upper = np.array([high for _, high in limits]) - margin
+        self._endless = np.full((2, configuration.dofs), np.inf) * np.array([[-1.0], [1.0]])
 
     def bounds(self, configuration: Configuration, time_step: float) -> Bounds:
         """The way to the limits."""
         at = configuration.positions[self._places]
-        lower, upper = np.full(configuration.dofs, -np.inf), np.full(configuration.dofs, np.inf)
+        lower, upper = self._endless[0].copy(), self._endless[1].copy()
         lower[self._dofs] = self._gain * (self._lower - at)
         upper[self._dofs] = self._gain * (self._upper - at)
         return Bounds(lower, upper)
@@ -136,17 +137,14 @@ class CollisionAvoidanceLimit(Limit):
         g = np.zeros((len(near), configuration.dofs))
         # A point on the first link gains distance along the normal, one on the second against it.
         sides = (
-            (-1.0, [(found[0], found[2], found[4]) for found in near]),
-            (1.0, [(found[1], found[3], found[4]) for found in near]),
+            (-1.0, [(found[0] - first, found[2], found[4]) for found in near]),
+            (1.0, [(found[1] - first, found[3], found[4]) for found in near]),
         )
         for sign, side in sides:
-            rows_of: dict[int, list[int]] = {}
-            for row, (link_row, _, _) in enumerate(side):
-                if -1 <= link_row - first < count:
-                    rows_of.setdefault(link_row - first, []).append(row)
-            for link, rows in rows_of.items():
-                points, normals = [side[row][1] for row in rows], [side[row][2] for row in rows]
-                g[rows] += sign * configuration.approaches(link, points, normals)
+            rows = [row for row, (link, _, _) in enumerate(side) if -1 <= link < count]
+            if rows:
+                links, points, normals = zip(*(side[row] for row in rows), strict=True)
+                g[rows] += sign * configuration.approaches(links, points, normals)
         h = self._gain * (np.array([found[5] for found in near]) - self._minimum)
         return Inequalities(g, h)
 

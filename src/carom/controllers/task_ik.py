@@ -68,6 +68,8 @@ class TaskIK:
         self.tasks: list[Task] = list(tasks)
         self.limits: list[Limit] = list(limits)
         self._damping = float(positive(damping, "damping")) * np.eye(configuration.dofs)
+        whole = np.full(configuration.dofs, _ENDLESS)
+        self._endless = -whole, whole
 
     def solve(self, time_step: float) -> Array:
         """The velocities (n,) for a tick of `time_step` [s]; the configuration does not change.
@@ -104,7 +106,7 @@ class TaskIK:
     def _constraints(self, time_step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Bounds of the changes, and rows G and h."""
         count = self.configuration.dofs
-        lower, upper = np.full(count, -_ENDLESS), np.full(count, _ENDLESS)
+        lower, upper = self._endless
         matrices, bounds = [np.zeros((0, count))], [np.zeros(0)]
         for limit in self.limits:
             box = limit.bounds(self.configuration, time_step)

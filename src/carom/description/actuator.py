@@ -75,7 +75,8 @@ class ActuatorSpec:
             actuator then pushes the slider, and its length is `gear` times the position of the slider.
         rod: Length of that rod [m].
         joint_range: Bounds of what all actuators of its joint together exert on the joint [N or N m], the
-            same for each of them; `force_range` bounds its own force before.
+            same for each of them; `force_range` bounds its own force before. Of a tendon: of the sum of their
+            forces, which are then all scaled alike; `force_range` bounds each of them afterwards.
         muscle: How its force depends on length and velocity if it is a muscle; then gain and bias have no
             meaning.
     """

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from carom.description.compliance import ContactCompliance
+from carom.description.fluid import FluidEllipsoid
 from carom.description.geometry import Geometry
 from carom.description.pose import IDENTITY, Pose
 
@@ -105,6 +106,7 @@ class Link:
 
     Attributes:
         gravity_compensation: Share of its weight that a force at its centre of mass carries; 1 for all.
+        fluid: What feels the fluid of the world instead of the box of its inertia.
     """
 
     name: str
@@ -113,4 +115,5 @@ class Link:
     visuals: tuple[Visual, ...] = ()
     contact: ContactParameters = ContactParameters()
     gravity_compensation: float = 0.0
+    fluid: FluidEllipsoid | None = None
     user_data: dict[str, str] = field(default_factory=dict)

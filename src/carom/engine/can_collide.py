@@ -33,10 +33,12 @@ def can_collide(arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
 def can_sleep(arrays: WorldArrays) -> bool:
     """Whether a body may fall asleep, has to be woken up, or was told to sleep and has to forget it."""
     count = arrays.used["tree"]
-    if arrays.model.numpy["tree_can_sleep"][:count].any():
+    # Of small arrays this takes less time than `any`.
+    if np.count_nonzero(arrays.model.numpy["tree_can_sleep"][:count]):
         return True
     state = arrays.state.numpy
-    if np.asarray(state["tree_wants_sleep"])[:, :count].any():
+    if np.count_nonzero(np.asarray(state["tree_wants_sleep"])[:, :count]):
         return True
     activity = np.asarray(state["tree_activity"])[:, :count]
-    return bool(((activity != ACTIVE) & (activity != ABSENT)).any())
+    others = activity != ACTIVE
+    return bool(np.count_nonzero(others)) and bool((activity[others] != ABSENT).any())

@@ -24,12 +24,16 @@ from carom.native.zeros import zeros
 # Fields that are gathered, by the argument of the kernel.
 _READ = {
     "model": (
-        *("gravity_vector", "tree_linear_damping", "tree_angular_damping", "tree_joint_terms"),
+        *("gravity_vector", "fluid_density", "fluid_viscosity", "fluid_wind"),
+        *("tree_linear_damping", "tree_angular_damping", "tree_joint_terms"),
         *("link_mass", "link_inertia", "link_gravity_compensation"),
+        *("link_fluid_shape", "link_fluid_added"),
         *("dof_damping", "dof_armature", "dof_implicit_damping", "dof_stiffness", "position_spring"),
     ),
     "state": ("position", "dof_velocity", "dof_torque", "dof_pd", "link_wrench"),
 }
+# Axes with one entry.
+_OF_WORLD = ("gravity", "fluid")
 # Others that the kernel writes.
 _WRITTEN = {"state": ("link_pose",), "scratch": ("link", "dof", "block_factor", "block_inverse_mass")}
 _NUMBER = np.dtype(np.float64)
@@ -65,7 +69,7 @@ class LaneWork:
 
     def __init__(self, arrays: WorldArrays, structs: KernelStructs) -> None:
         self.record = LaneMotion()
-        rows = {"gravity": 1, **arrays.used}
+        rows = {**dict.fromkeys(_OF_WORLD, 1), **arrays.used}
         lone = {name: structs[name].memory for name in ("model", "state", "scratch")}
         self._wide: dict[str, dict[str, _Wide]] = {
             name: {
@@ -142,8 +146,9 @@ class LaneWork:
                         yield _rows_of(lone[name][field], wide[name][field].array, rows[axis])
             links = lone["model"]["link"][np.newaxis]
             yield _rows_of(links, wide["model"]["link"].array, rows["link"], _LINK_NUMBERS)
-        gravity = wide["model"]["gravity_vector"].array
-        yield _rows_of(lone["model"]["gravity_vector"], gravity, slice(0, 1))
+        for field, numbers in wide["model"].items():
+            if field.partition("_")[0] in _OF_WORLD:
+                yield _rows_of(lone["model"][field], numbers.array, slice(0, 1))
         time_step = ctypes.addressof(self._settings) + type(self._settings).time_step.offset
         yield LaneRows(time_step, 0, 0, self._time_steps.ctypes.data, 0, 1, 1)
 
@@ -191,7 +196,7 @@ def _widened(lone: np.ndarray, count: int, axes: int = 2) -> _Wide:
             fields.append((field, _NUMBER, (kind.itemsize // _NUMBER.itemsize, LANES)))
         else:
             fields.append((field, kind))
-    return _Wide(zeros(shape, np.dtype(fields)), axes)
+    return _Wide(zeros(shape, np.dtype(fields, align=True)), axes)
 
 
 def _has_numbers(kind: np.dtype[Any]) -> bool:

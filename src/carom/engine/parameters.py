@@ -19,6 +19,10 @@ class EngineParameters:
         time_step: Duration of one step [s].
         substeps: Number of substeps; 0 is the same as 1.
         gravity: [m/s²] in world axes.
+        fluid_density: Density of the fluid around all bodies [kg/m³]; 0 and a viscosity of 0 are none. It
+            causes drag and lift by the models of MuJoCo's documentation, and no buoyancy.
+        fluid_viscosity: Its viscosity [Pa s].
+        wind: Its velocity [m/s] in world axes.
         solver_iterations: Maximum number of sweeps over the constraint rows.
         solver_residual_threshold: Sweeps end when no row's squared velocity change exceeds this.
         erp: Share of a joint limit's or user constraint's error that is corrected per step.
@@ -53,6 +57,9 @@ class EngineParameters:
     time_step: float = DEFAULT_TIME_STEP
     substeps: int = 0
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    fluid_density: float = 0.0
+    fluid_viscosity: float = 0.0
+    wind: tuple[float, float, float] = (0.0, 0.0, 0.0)
     solver_iterations: int = 50
     solver_residual_threshold: float = 1e-7
     erp: float = 0.2

@@ -15,6 +15,8 @@ from carom.model.builder import WorldArrays
 
 # Comparing the parameters takes a fifth of the time of what is derived from them.
 _PARAMETERS = attrgetter(*[known.name for known in fields(EngineParameters)])
+# Fields of `Model` in which the parameters of the fluid are.
+_FLUID = ("fluid_density", "fluid_viscosity", "fluid_wind")
 
 
 class EngineSettings:
@@ -32,6 +34,7 @@ class EngineSettings:
         # Those of them that are numbers of constraints.
         self._constraint_counts = (0, 0)
         self._gravity = (0.0, 0.0, 0.0)
+        self._fluid = (0.0, 0.0, (0.0, 0.0, 0.0))
 
     def has_counts(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
         """Whether the struct has the present numbers of constraints."""
@@ -45,14 +48,21 @@ class EngineSettings:
         contact_arrays: ContactArrays,
         tell: Callable[[], None],
     ) -> None:
-        """Update the struct, and the gravity of all worlds; `tell` is called if the struct has changed.
+        """Update the struct, and gravity and fluid of all worlds; `tell` is called if the struct has changed.
 
         If this is interrupted before `tell` has returned, it is called the next time.
         """
+        model = arrays.model
         if parameters.gravity != self._gravity:
-            arrays.model.numpy["gravity_vector"][:, 0] = parameters.gravity
-            arrays.model.written("gravity_vector")
+            model.numpy["gravity_vector"][:, 0] = parameters.gravity
+            model.written("gravity_vector")
             self._gravity = parameters.gravity
+        fluid = parameters.fluid_density, parameters.fluid_viscosity, parameters.wind
+        if fluid != self._fluid:
+            for name, value in zip(_FLUID, fluid, strict=True):
+                model.numpy[name][:, 0] = value
+                model.written(name)
+            self._fluid = fluid
         shapes, used = contact_arrays.shapes, arrays.used
         of_constraints = used["constraint"], contact_arrays.user_count
         of_shapes = (shapes.shape_count, shapes.filter_count, shapes.filters.has_contacts, shapes.looks_ahead)

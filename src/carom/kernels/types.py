@@ -32,8 +32,27 @@ else:
             globals()[name] = warp_type(declared)
 
 
-class _RealLiterals(ast.NodeTransformer):
-    """Wraps each float literal in a call of `real`."""
+class _Reals(ast.NodeTransformer):
+    """Wraps each float literal in a call of `real`, and gives each `real(NAME)` of a constant its own name.
+
+    Warp turns the constant in `real(NAME)` into a variable, which other uses of that name in the function
+    then read, whether it has been assigned or not, and whatever it is by then.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._globals = function.__globals__
+        self._locals = function.__code__.co_varnames
+        self._count = 0
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:
+        match node:
+            case ast.Call(func=ast.Name(id="real"), args=[ast.Name(id=name) as constant]):
+                value = self._globals.get(name)
+                if name not in self._locals and isinstance(value, int | float | real):
+                    self._count += 1
+                    constant.id = f"{name}_{self._count}_as_real"
+                    self._globals[constant.id] = value
+        return self.generic_visit(node)
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:
         if not isinstance(node.value, float):
@@ -55,7 +74,7 @@ def _warp_function(function: _F, inline_hint: Literal["forceinline", "noinline"]
         namespace="",
         module=module,
         doc=function.__doc__ or "",
-        code_transformers=[_RealLiterals()],
+        code_transformers=[_Reals(function)],
         scope_locals={},
         inline_hint=inline_hint,
     )
@@ -87,5 +106,5 @@ def kernel(function: _F) -> _F:
         key=function.__qualname__,
         module=wp.get_module(function.__module__),
         options={"enable_backward": False},
-        code_transformers=[_RealLiterals()],
+        code_transformers=[_Reals(function)],
     )

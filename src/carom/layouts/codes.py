@@ -49,6 +49,14 @@ class PathKind(IntEnum):
     CRANK = 6  # a slider along z that a rod connects to the site that follows
 
 
+class FluidShape(IntEnum):
+    """What of a link feels a fluid."""
+
+    BOX = 0  # the box of its inertia
+    ELLIPSOID = 1  # one in its inertial frame
+    NONE = 2
+
+
 class UserConstraintKind(IntEnum):
     """Kinds of user constraint between links; the values up to `GEAR` are PyBullet's."""
 
@@ -162,6 +170,7 @@ USER_TENDON, USER_TENDON_COUPLING, USER_TRANSMISSION, USER_BASE_FRICTION = map(
     int, tuple(UserConstraintKind)[5:]
 )
 PATH_JOINT, PATH_SITE, PATH_SPHERE, PATH_CYLINDER, PATH_PULLEY, PATH_BALL, PATH_CRANK = map(int, PathKind)
+IN_FLUID_AS_BOX, IN_FLUID_AS_ELLIPSOID, NOT_IN_FLUID = map(int, FluidShape)
 ACTIVE, WANTS_SLEEP, ASLEEP, WOKEN, ABSENT = map(int, Activity)
 ISOTROPIC = int(FrictionBound.ISOTROPIC)
 SPHERE, BOX, CAPSULE, CYLINDER, PLANE, HULL, TRIANGLES, HEIGHTFIELD = map(int, ShapeKind)

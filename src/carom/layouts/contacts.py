@@ -350,6 +350,7 @@ class ManifoldBlock:
     members: Index4  # rows of its contacts, -1 for none
     count: Int32
     yields: Int32  # 1: its friction may have a softness
+    stuck: Int32  # bit i: nothing can move along normal i; bit 4 + i: along a friction row of contact i
     friction: Vector4  # coefficients
 
     # For rigid bodies: impulses before a sweep, and the conjugate direction of the search after it.

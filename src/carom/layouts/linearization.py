@@ -12,6 +12,7 @@ SCALAR_DOF, BASE_DOF, BALL_DOF, PLANE_DOF = 0, 1, 2, 3
 # What a row is of.
 MOTOR_ROW, LIMIT_ROW, FRICTION_ROW, ACTUATOR_ROW, GEAR_ROW, COUPLING_ROW = 0, 1, 2, 3, 4, 5
 CONTACT_ROW, CONTACT_FRICTION, ROLLING_FRICTION, SPINNING_FRICTION = 6, 7, 8, 9
+PRISMATIC_ROW, FIXED_ROW, POINT_TO_POINT_ROW, BASE_FRICTION_ROW = 10, 11, 12, 13
 
 # Status of a row.
 ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROW_SATURATED, ROW_SLIDES = 0, 1, 2, 3, 4
@@ -21,9 +22,7 @@ INPUT_CONTROL, INPUT_GAIN, INPUT_BIAS, INPUT_BOUND, INPUT_FRICTION = 8, 9, 12, 1
 
 # Why a step has no answer yet.
 FOUND, OVERFLOWED, REDUNDANT = 0, 1, 2
-YIELDING_LIMIT, YIELDING_FRICTION, BALL_LIMIT, MUSCLE_ROW, YIELDING_USER, BOUNDED_SUM, BASE_SPRING = range(
-    3, 10
-)
+QUARTER_TURN, BALL_QUARTER_TURN, BALL_LIMIT, MUSCLE_ROW, OTHER_USER, BOUNDED_SUM, BASE_SPRING = range(3, 10)
 FEATURES, MOVING_BASE, ANISOTROPY, ANCHOR, BOUNCE, TORSION = range(10, 16)
 
 # What `solution_of_step_kernel` does: all; rows only; what follows from them, also where the host has solved
@@ -36,6 +35,8 @@ MOVES_A, MOVES_B = 1, 2
 SHAPE_KINDS = 8
 # At most so many rows has a contact.
 ROWS_OF_CONTACT = 6
+# At least so many rows there is room for: of one, its response, changes of it, and of errors are noted.
+LEAST_ROWS = 3
 
 
 @struct
@@ -46,7 +47,7 @@ class StepSpace:
     states: Int32
     columns: Int32
     most_rows: Int32
-    most_of_joints: Int32  # of these, rows of joints and of ties between them
+    most_of_joints: Int32  # of these, rows of joints and of user constraints
     constraints: Int32  # joint constraints
     users: Int32  # user constraints
     smoothing: real
@@ -103,11 +104,11 @@ class StepBatch:
 
     world: Ints
     problem: Ints  # see above
-    problem_of: Ints  # its dof, its user constraint, or its contact, see SHAPE_KINDS
-    row_count: Ints  # those of the host before, all afterwards
+    problem_of: Ints  # its dof, its user constraint or the kind of that, or its contact, see SHAPE_KINDS
+    row_count: Ints
     row_kind: Ints  # r
     row_status: Ints
-    row_dof: Ints  # of gears and couplings the user constraint, of contacts see SHAPE_KINDS
+    row_dof: Ints  # of user constraints their number, of contacts see SHAPE_KINDS
     velocity: Reals  # three times n: before the step, after free motion, of the solver
     effective: Reals  # n x n, effective mass matrix
     inverse: Reals  # n x n, its inverse; zeros where nothing can move
@@ -117,6 +118,7 @@ class StepBatch:
     # Of rows that slide: the velocity that they still ask for, with its sign turned, and the effective mass.
     row_asked: Reals  # r
     row_mass: Reals
+    row_yield: Reals  # r, softness per inverse mass of the row itself; 0 if it does not yield, or for another
     jacobian: Reals  # r x n
     through: Reals  # r x n, derivatives of right sides by velocities after free motion
     side: Reals  # r x columns, those by states and inputs

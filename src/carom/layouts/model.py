@@ -102,6 +102,7 @@ class LinkModel:
     nearest_dof: Int32  # last dof on the path from the root to this link, -1 for none
     sensor: Int32  # bits: see `codes.SENSED` and `codes.LOADED`
     number: Int32  # among the links that can move, in Bullet's order; -1 if it cannot
+    fluid: Int32  # what feels the fluid: see `codes.FluidShape`
     joint_rotation: Quaternion  # of the inertial frame in the parent's inertial frame, at position 0
     pivot_in_parent: Vector3  # joint origin in the parent's inertial frame
     com_from_pivot: Vector3  # centre of mass from the joint origin, in the inertial frame
@@ -135,8 +136,8 @@ class ActuatorModel:
 
     dynamics: Int32  # see `codes.ActivationDynamics`
     is_muscle: Int32  # 1: its force is that of a muscle, not affine
-    # Of actuators of one joint whose sum has bounds: 1 if one before it has the row of all, and how many rows
-    # after it the next one is, 0 for none.
+    # Of actuators of one joint or tendon whose sum has bounds: how many rows before it the first one is,
+    # which has the row of all actuators of a joint, and how many rows after it the next one is; 0 for none.
     follows: Int32
     to_next: Int32
 
@@ -157,12 +158,20 @@ class Model:
     actuator: Array[ActuatorModel]
 
     gravity_vector: Vector3Rows  # in the first entry [m/s²]
+    # In the first entries; see `kernels.dynamics.fluid`.
+    fluid_density: RealRows  # [kg/m³]
+    fluid_viscosity: RealRows  # [Pa s]
+    fluid_wind: Vector3Rows  # velocity of the fluid in world axes [m/s]
     tree_linear_damping: RealRows
     tree_angular_damping: RealRows
     tree_max_velocity: RealRows
     link_mass: RealRows
     link_inertia: Vector3Rows  # principal moments
     link_gravity_compensation: RealRows  # share of its weight that a force at its centre of mass carries
+    # Of links that the fluid sees as ellipsoids: semi-axes and coefficients, as in `FluidEllipsoid`; added
+    # mass and inertia, per density.
+    link_fluid_shape: Vector8Rows
+    link_fluid_added: Vector6Rows
     tree_joint_terms: RealRows  # not 0: some joint has armature, implicit damping or a spring
     dof_damping: RealRows  # explicit, as PyBullet's
     dof_armature: RealRows  # inertia of the drive, seen at the joint
@@ -185,7 +194,8 @@ class Model:
     actuator_control_upper: RealRows
     actuator_force_lower: RealRows
     actuator_force_upper: RealRows
-    actuator_joint_lower: RealRows  # of the force of all actuators of its joint on it, see `ActuatorModel`
+    # Of the force of all actuators of its joint on it, or of the sum of those of its tendon.
+    actuator_joint_lower: RealRows
     actuator_joint_upper: RealRows
     actuator_activation_lower: RealRows
     actuator_activation_upper: RealRows

@@ -15,7 +15,7 @@ from carom.linearization.tangent import TangentSpace
 if TYPE_CHECKING:
     from carom.world.world import World
 
-_MOST_KEPT = 16
+_MAX_KEPT = 16
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -62,7 +62,7 @@ def chosen_parts(world: World, controls: Sequence[str], parameters: Sequence[str
     bodies = [(body, body.name, body.spec, body.fixed_base) for body in world.bodies.values()]
     key = made_for(world), world.parameters.substep_time, bodies
     known: tuple[Any, dict[Any, Chosen]] | None = world.kept_linearization.get(Chosen)
-    if known is None or known[0] != key or len(known[1]) >= _MOST_KEPT:
+    if known is None or known[0] != key or len(known[1]) >= _MAX_KEPT:
         known = world.kept_linearization[Chosen] = key, {}
     choice = tuple((it,) if isinstance(it, str) else tuple(it) for it in (controls, parameters))
     found = known[1].get(choice)

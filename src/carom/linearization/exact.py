@@ -1,7 +1,7 @@
 """The derivatives of one step, by the implicit function theorem over the rows that hold at its end.
 
-Kernels find what follows from inertia, joints, ties between them and contacts, and solve for the impulses;
-the host adds forces on links, parameters of inertia and other user constraints where there are any.
+Kernels find what follows from inertia, joints, user constraints and contacts, and solve for the impulses;
+the host adds forces on links and parameters of inertia where there are any.
 """
 
 from __future__ import annotations
@@ -22,14 +22,12 @@ from carom.layouts.linearization import (
     ROLLING_FRICTION,
     ROW_SLIDES,
 )
-from carom.linearization.ball_rows import add_ball_motor, ball_motors
 from carom.linearization.free_motion import FreeMotion, needs_host, of_motion
-from carom.linearization.pair_rows import Places
+from carom.linearization.offsets import refuse_rows
 from carom.linearization.row_names import RowNames, raise_problem
-from carom.linearization.rows import Rows
 from carom.linearization.step_kernels import Mechanisms, StepKernels, lone_mechanisms
+from carom.linearization.stepping import greatest
 from carom.linearization.taken_step import TakenStep
-from carom.linearization.user_rows import TIES, UserRows
 
 if TYPE_CHECKING:
     from carom.linearization.inputs import Input
@@ -88,10 +86,6 @@ class StepLinearizer:
         self._width = 2 * len(space) + len(space.activations)
         pushed = np.array(torques, dtype=np.int64).reshape(-1, 2)
         self._pushed = pushed[:, 0], self._width + pushed[:, 1]
-        arrays, contact_arrays = copies.engine.arrays, copies.engine.contact_arrays
-        self._ball_motors = ball_motors(arrays.model.numpy, arrays.used["constraint"])
-        kinds = contact_arrays.users.numpy["user_kind"][: contact_arrays.user_count]
-        self._has_pairs = bool(np.isin(kinds, TIES, invert=True).any())
         self._of_motion = of_motion(inputs)
 
     def suits(self, space: TangentSpace, inputs: Sequence[Input], copies: Copies) -> bool:
@@ -112,19 +106,19 @@ class StepLinearizer:
             carom.errors.SimulationError: A velocity is not finite.
         """
         copies = self._copies
+        _refuse_fluids(copies.engine.arrays.model.numpy)
         wrench = copies.engine.arrays.state.numpy["link_wrench"].copy()
         copies.step(worlds)
         numbers = np.arange(copies.count) if worlds is None else worlds
         engine = copies.engine
         contacts = engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
-        memory = self._kernels.prepare(len(numbers), int(contacts.max()), smoothing)
-        hosted = self._has_pairs or self._of_motion or len(self._ball_motors) > 0
-        hosted = hosted or needs_host(self._space, engine.arrays.model.numpy, wrench)
+        memory = self._kernels.prepare(len(numbers), greatest(contacts), smoothing)
+        hosted = self._of_motion or needs_host(self._space, engine.arrays.model.numpy, wrench)
+        on_host = hosted or len(self._space.activations) > 0
         found = np.empty((len(numbers), self._width, self._width + len(self._inputs)))
         names: list[tuple[tuple[str, str], ...]] = []
         for first in range(0, len(numbers), memory.places):
             some = numbers[first : first + memory.places]
-            on_host = hosted or len(self._space.activations) > 0
             names += self._find(memory, parameters, some, wrench, on_host)
             found[first : first + len(some)] = memory.step[: len(some)]
         return StepDerivatives(found[:, :, : self._width], found[:, :, self._width :], names)
@@ -138,7 +132,6 @@ class StepLinearizer:
         memory.row_count.fill(0)
         memory.force[:count] = 0.0
         memory.force[:count, :, self._pushed[0], self._pushed[1]] = 1.0
-        pairs: list[list[tuple[str, str]]] = [[]] * count
         taken: list[TakenStep] = []
         if on_host:
             kernels.find_motion(count)
@@ -148,15 +141,19 @@ class StepLinearizer:
                 for place, world in enumerate(worlds.tolist())
             ]
             motions = [FreeMotion(self._space, it) for it in taken]
-            pairs = [
-                self._add_host(memory, place, *it)
-                for place, it in enumerate(zip(taken, motions, strict=True))
-            ]
-            if self._of_motion and not parameters.isotropic_friction:
+            for place, motion in enumerate(motions):
+                self._add_host(memory, place, motion)
+            if self._of_motion:
                 kernels.add_rows(count)
                 self._check(memory, worlds)
                 for place, motion in enumerate(motions):
-                    self._add_sliding(memory, place, motion)
+                    own = slice(int(memory.row_count[place]))
+                    refuse_rows(
+                        self._space, self._inputs, memory.row_kind[place, own], memory.jacobian[place, own]
+                    )
+                    if not parameters.isotropic_friction:
+                        self._add_sliding(memory, place, motion)
+                    self._add_yielding(memory, place, motion)
                 kernels.finish(count)
             else:
                 kernels.solve(count)
@@ -169,7 +166,7 @@ class StepLinearizer:
                 acted, driven = _activations(self._space, own, self._inputs)
                 step[2 * dofs :, 2 * dofs : width] = np.diag(acted)
                 step[2 * dofs :, width:] = driven
-        return [self._names(memory, place, own) for place, own in enumerate(pairs)]
+        return [self._names(memory, place) for place in range(count)]
 
     def _check(self, memory: StepMemory, worlds: np.ndarray) -> None:
         """Solve equations of rows that are redundant, and raise errors."""
@@ -187,36 +184,20 @@ class StepLinearizer:
             memory.problem[place] = FOUND
             self._kernels.resume(place)
 
-    def _add_host(
-        self, memory: StepMemory, place: int, taken: TakenStep, motion: FreeMotion
-    ) -> list[tuple[str, str]]:
-        """Add what the host adds to forces and rows of a place; returns the names of rows."""
-        space, inputs, dofs = self._space, self._inputs, len(self._space)
-        force = memory.force[place]
+    def _add_host(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
+        """Add what the host adds to the forces of a place."""
+        dofs, force = len(self._space), memory.force[place]
         motion.add_forces(force[:, :, :dofs], force[:, :, dofs : 2 * dofs])
         if self._of_motion:
-            motion.add_inputs(force[:, :, self._width :], inputs)
-        if not (self._has_pairs or self._ball_motors):
-            return []
-        rows = Rows(space, inputs, memory.rows)
-        if self._has_pairs:
-            UserRows(space, taken, Places(space, motion), rows).add_all(taken.user_count)
-        for constraint in self._ball_motors:
-            add_ball_motor(space, taken, rows, constraint)
-        count = len(rows)
-        memory.row_count[place] = count
-        alpha = rows.matrix(rows.alpha)
-        for row, hessian in rows.hessians.items():
-            force[1, :, :dofs] += rows.impulses[row] / taken.time_step * hessian
-            # The rates of rows change as their Jacobians turn.
-            rows.sides[:, :dofs] -= np.outer(alpha[:, row], taken.solved @ hessian)
-        memory.jacobian[place, :count] = rows.jacobian
-        memory.through[place, :count] = rows.by_free_velocity
-        memory.side[place, :count] = rows.sides
-        memory.alpha[place, :count, :count] = alpha
-        memory.beta[place, :count, :count] = rows.matrix(rows.beta)
-        memory.row_impulse[place, :count] = rows.impulses
-        return rows.names
+            motion.add_inputs(force[:, :, self._width :], self._inputs)
+
+    def _add_yielding(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
+        """Add to rows that yield for their own inverse mass how that changes with parameters of inertia."""
+        for row in np.flatnonzero(memory.row_yield[place, : int(memory.row_count[place])]).tolist():
+            response = memory.inverse[place] @ memory.jacobian[place, row]
+            driven = response @ motion.mass_input_derivatives(response, self._inputs)
+            softens = memory.row_yield[place, row] * memory.row_impulse[place, row]
+            memory.side[place, row, self._width :] += softens * driven
 
     def _add_sliding(self, memory: StepMemory, place: int, motion: FreeMotion) -> None:
         """Add to the rows of contacts that slide how their directions change with parameters of inertia.
@@ -251,6 +232,11 @@ def step_derivatives(
     if kept is None or not kept.suits(space, inputs, copies):
         kept = copies.linearizer = StepLinearizer(space, inputs, copies, lone_mechanisms, 1)
     return kept.step(world.parameters, None, smoothing)
+
+
+def _refuse_fluids(model: dict[str, np.ndarray]) -> None:
+    if model["fluid_density"].any() or model["fluid_viscosity"].any():
+        raise NotImplementedError('forces of a fluid have no exact derivatives: use method="differences"')
 
 
 def _activations(

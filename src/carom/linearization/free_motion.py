@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
-from carom.linearization.inputs import INERTIAL
+from carom.linearization.inputs import INERTIAL, OFFSETS
 from carom.linearization.motion_questions import motion_questions
+from carom.linearization.offsets import OffsetForces
 from carom.linearization.spatial import Spatial, link_forces
 from carom.linearization.turns import matrix_of
 from carom.native.kernels import regressor_kernel
@@ -25,7 +26,7 @@ _ANGULAR, _LINEAR = slice(0, 3), slice(3, 6)
 
 
 # Inputs that change how forces lead to motion, apart from torques.
-_OF_MOTION = ("armature", "stiffness", "damping", "masses", "inertias", INERTIAL)
+_OF_MOTION = ("armature", "stiffness", "damping", "masses", "inertias", INERTIAL, OFFSETS)
 
 
 class FreeMotion:
@@ -107,6 +108,7 @@ class FreeMotion:
         space, taken, h = self._space, self._taken, self._taken.time_step
         accelerations = (after - taken.velocity) / h
         regressors: dict[int, np.ndarray] = {}
+        offsets: dict[int, OffsetForces] = {}
         stretch: np.ndarray | None = None
         for column, given in enumerate(inputs):
             row = given.row
@@ -118,18 +120,21 @@ class FreeMotion:
             elif given.kind == "damping":
                 explicit = given.field == "dof_damping"
                 found[row, column] = -(taken.velocity if explicit else after)[row]
-            elif given.kind in ("masses", "inertias", INERTIAL):
+            elif given.kind in ("masses", "inertias", INERTIAL, OFFSETS):
                 place = next(
                     k for k, body in enumerate(space.bodies) if 0 <= row - body.first_link <= body.joint_count
                 )
                 first, size = space.places[place]
                 own = slice(first, first + size)
-                body = space.bodies[place]
+                body, spatial = space.bodies[place], self.spatial[place]
+                if given.kind == OFFSETS:
+                    if place not in offsets:
+                        offsets[place] = OffsetForces(body, taken, own, accelerations[own], spatial)
+                    found[own, column] = offsets[place].derivative(given)
+                    continue
                 if place not in regressors:
-                    regressors[place] = _regressor(body, taken, own, accelerations[own], self.spatial[place])
-                found[own, column] = self._by_inertia(
-                    given, body, own, regressors[place], self.spatial[place]
-                )
+                    regressors[place] = _regressor(body, taken, own, accelerations[own], spatial)
+                found[own, column] = self._by_inertia(given, body, own, regressors[place], spatial)
 
     def _by_inertia(
         self, given: Input, body: Body, own: slice, regressor: np.ndarray, spatial: Spatial

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.linearization.inputs import INERTIAL, PARAMETERS, Input
+from carom.linearization.inputs import INERTIAL, OFFSETS, PARAMETERS, Input
 
 if TYPE_CHECKING:
     from carom.engine.engine import Engine
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 # Parameters without effect in trees where all such terms are 0, unless "tree_joint_terms" says otherwise.
 JOINT_TERMS = ("dof_armature", "dof_stiffness", "dof_implicit_damping")
-_SIGNED = ("actuator_gains", "actuator_biases", "motor_position_gains", "motor_velocity_gains")
+_SIGNED = (OFFSETS, "actuator_gains", "actuator_biases", "motor_position_gains", "motor_velocity_gains")
 _NOT_NEGATIVE = {kind for kind in PARAMETERS if kind not in _SIGNED}
 
 
@@ -27,7 +27,7 @@ class InputValues:
         inputs: Controls or parameters.
 
     Raises:
-        NotImplementedError: One is no number that is stored: inertial parameters.
+        NotImplementedError: One is no number of its own that is stored: inertial parameters, offsets.
     """
 
     def __init__(self, space: TangentSpace, inputs: Sequence[Input]) -> None:
@@ -36,6 +36,8 @@ class InputValues:
                 raise NotImplementedError(
                     f"{given.name!r} is no number that a world stores: choose masses and inertias instead"
                 )
+            if given.kind == OFFSETS:
+                raise NotImplementedError(f"{given.name!r} is geometry, which cannot be changed")
         self._names = [given.name for given in inputs]
         self._bounded = np.array([given.kind in _NOT_NEGATIVE for given in inputs], dtype=bool)
         self._scales = np.array([given.scale for given in inputs])

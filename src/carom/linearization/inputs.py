@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _AXES = "xyz"
 INERTIAL = "inertial_parameters"
+OFFSETS = "offsets"
+OFFSET_FIELD = "link_pivot_in_parent"
 # In the order of `carom.algorithms.inertial_parameters`.
 INERTIAL_NUMBERS = (
     *("mass", "moment.x", "moment.y", "moment.z"),
@@ -114,6 +116,15 @@ def _inertial(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
                 yield Input(kind, name, "model", "link_mass", (row, place), 1.0, row)
 
 
+def _offsets(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+    for body in space.bodies:
+        for link, spec in enumerate(body.spec.links):
+            row = body.first_link + 1 + link
+            for axis in range(3):
+                name = f"{body_label(world, body)}.{spec.name}.{ENDS[kind]}.{_AXES[axis]}"
+                yield Input(kind, name, "model", OFFSET_FIELD, (row, axis), 1.0, row)
+
+
 def _of_actuators(table: str, field: str, count: int = 0) -> Finder:
     def find(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
         for body in space.bodies:
@@ -146,6 +157,7 @@ PARAMETERS: dict[str, Finder] = {
     "masses": _of_links("model", "link_mass"),
     "inertias": _of_links("model", "link_inertia", 3),
     INERTIAL: _inertial,
+    OFFSETS: _offsets,
     "friction": _of_links("shapes", "link_lateral_friction"),
     "joint_friction": _joint_friction,
     "stiffness": _of_dofs("dof_stiffness"),
@@ -165,6 +177,7 @@ ENDS = {
     "masses": "mass",
     "inertias": "inertia",
     INERTIAL: "inertial",
+    OFFSETS: "offset",
     "friction": "friction",
     "joint_friction": "joint_friction",
     "stiffness": "stiffness",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -13,11 +13,10 @@ from carom.checks import Array, vector
 from carom.linearization.chosen import Chosen, chosen_parts
 from carom.linearization.exact import StepDerivatives, step_derivatives
 from carom.linearization.given_state import GivenState, Start
+from carom.linearization.outputs import OutputDerivatives, Outputs
 from carom.linearization.stepping import copy_of, differences
 
 if TYPE_CHECKING:
-    from carom.linearization.inputs import Input
-    from carom.linearization.tangent import TangentSpace
     from carom.world.world import World
 
 _SIZE = 1e-6
@@ -46,6 +45,7 @@ class LinearizedStep:
         parameters: Names of the entries of p: "robot.forearm.mass"...
         rows: Names of the solver's rows in the last step and whether they hold or are at a bound; empty with
             `method="differences"`.
+        outputs: Names of the entries of y if these are readings of sensors: "robot.imu.0"...; else empty.
     """
 
     A: Array
@@ -57,6 +57,7 @@ class LinearizedStep:
     controls: tuple[str, ...]
     parameters: tuple[str, ...]
     rows: tuple[tuple[str, str], ...]
+    outputs: tuple[str, ...] = ()
 
 
 def linearize(
@@ -66,7 +67,7 @@ def linearize(
     steps: int,
     method: str,
     smoothing: float,
-    outputs: Callable[[World], ArrayLike] | None,
+    outputs: Outputs | None,
     start: Start,
 ) -> LinearizedStep:
     """As `World.linearize`."""
@@ -77,6 +78,7 @@ def linearize(
         raise ValueError(f"smoothing must be at least 0, and 0 with differences, not {smoothing}")
     chosen = chosen_parts(world, controls, parameters)
     rows: tuple[tuple[str, str], ...] = ()
+    taken: list[StepDerivatives] = []
     chosen.refuse_inertial(world.arrays.model.numpy, method)
     space, count = chosen.space, chosen.control_count
     given = start.checked(space, chosen.inputs[:count])
@@ -84,8 +86,19 @@ def linearize(
         by_state, by_input = differences(world, space, chosen.inputs, steps, _SIZE, given)
     else:
         taken = performed(world, chosen, steps, smoothing, given)
-        by_state, by_input, rows = *_chained(taken), taken[-1].rows[0]
-    seen, fed = _outputs(world, space, chosen.inputs[:count], steps, outputs, given)
+        by_state, by_input = _chained(taken)
+        rows = taken[-1].rows[0]
+    seen, fed, names = np.zeros((0, len(by_state))), np.zeros((0, count)), ()
+    if outputs is not None:
+        # Sensors of accelerations need the state before the last step, too.
+        before = np.eye(len(by_state)), np.zeros(by_input.shape)
+        if steps > 1 and method == "differences":
+            before = differences(world, space, chosen.inputs, steps - 1, _SIZE, given)
+        elif steps > 1:
+            before = _chained(taken[:-1])
+        by_outputs = OutputDerivatives(world, space, chosen.inputs[:count], steps, given)
+        both = (before[1][:, :count], by_input[:, :count])
+        seen, fed, names = by_outputs.of(outputs, (before[0], by_state), both)
     return LinearizedStep(
         A=by_state,
         B=by_input[:, :count],
@@ -96,6 +109,7 @@ def linearize(
         controls=chosen.controls,
         parameters=chosen.parameters,
         rows=rows,
+        outputs=names,
     )
 
 
@@ -162,53 +176,3 @@ def _pulled_back(taken: list[StepDerivatives], cotangent: np.ndarray) -> tuple[n
         cotangent = of_states[0]
         by_input += of_inputs[0]
     return cotangent, by_input
-
-
-def _outputs(
-    world: World,
-    space: TangentSpace,
-    controls: list[Input],
-    steps: int,
-    outputs: Callable[[World], ArrayLike] | None,
-    given_start: GivenState,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Central differences of outputs after the steps, by states and by controls."""
-    width = 2 * len(space) + len(space.activations)
-    if outputs is None:
-        return np.zeros((0, width)), np.zeros((0, len(controls)))
-    scene = world.copy()
-    given_start.write(scene.arrays.state.numpy)
-    start = scene.snapshot()
-    columns: list[np.ndarray] = []
-    for number in range(width + len(controls)):
-        pair: list[np.ndarray] = []
-        for change in (_SIZE, -_SIZE):
-            scene.restore(start)
-            state = scene.arrays.state.numpy
-            if number < width:
-                _change_state(space, state, number, change)
-            else:
-                given = controls[number - width]
-                state[given.field][(0, *given.place)] += given.scale * change
-            forces = [(name, state[name].copy()) for name in ("dof_torque", "link_wrench")]
-            for _ in range(steps):
-                for name, kept in forces:
-                    scene.arrays.state.numpy[name][:] = kept
-                scene.step()
-            pair.append(np.array(outputs(scene), dtype=float).ravel())
-        columns.append((pair[0] - pair[1]) / (2.0 * _SIZE))
-    found = np.stack(columns, axis=1)
-    return found[:, :width], found[:, width:]
-
-
-def _change_state(space: TangentSpace, state: dict[str, np.ndarray], number: int, change: float) -> None:
-    """Add a change to an entry of the state of a world."""
-    dofs = len(space)
-    if number < dofs:
-        changes = np.zeros((1, dofs))
-        changes[0, number] = change
-        state["position"][:] = space.moved(state["position"], changes)
-    elif number < 2 * dofs:
-        state["dof_velocity"][0, space.dofs[number - dofs]] += change
-    else:
-        state["actuator_activation"][0, space.activations[number - 2 * dofs]] += change

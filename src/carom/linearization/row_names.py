@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from carom.layouts.codes import ShapeKind
+from carom.layouts.codes import ShapeKind, UserConstraintKind
 from carom.layouts.linearization import (
     ACTUATOR_ROW,
     ANCHOR,
     ANISOTROPY,
     BALL_LIMIT,
+    BALL_QUARTER_TURN,
+    BASE_FRICTION_ROW,
     BASE_SPRING,
     BOUNCE,
     BOUNDED_SUM,
@@ -17,12 +19,17 @@ from carom.layouts.linearization import (
     CONTACT_ROW,
     COUPLING_ROW,
     FEATURES,
+    FIXED_ROW,
     FRICTION_ROW,
     GEAR_ROW,
     LIMIT_ROW,
     MOTOR_ROW,
     MOVING_BASE,
     MUSCLE_ROW,
+    OTHER_USER,
+    POINT_TO_POINT_ROW,
+    PRISMATIC_ROW,
+    QUARTER_TURN,
     ROLLING_FRICTION,
     ROW_HOLDS,
     ROW_LOWER,
@@ -32,16 +39,18 @@ from carom.layouts.linearization import (
     SHAPE_KINDS,
     SPINNING_FRICTION,
     TORSION,
-    YIELDING_FRICTION,
-    YIELDING_LIMIT,
-    YIELDING_USER,
 )
-from carom.linearization.rows import HOLDS, LOWER, SATURATED, SLIDES, UPPER
 
 if TYPE_CHECKING:
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.tangent import TangentSpace
 
+# Whether a row holds, or why its impulse is at a bound.
+HOLDS = "holds"
+LOWER = "at its lower bound"
+UPPER = "at its upper bound"
+SATURATED = "at its greatest velocity"
+SLIDES = "slides"
 _STATUS = {
     ROW_HOLDS: HOLDS,
     ROW_LOWER: LOWER,
@@ -50,7 +59,20 @@ _STATUS = {
     ROW_SLIDES: SLIDES,
 }
 _JOINTS = {MOTOR_ROW: "motor", LIMIT_ROW: "limit", FRICTION_ROW: "friction", ACTUATOR_ROW: "actuator"}
-_TIES = {GEAR_ROW: "gear constraint", COUPLING_ROW: "coupling constraint"}
+_USERS = {
+    GEAR_ROW: "gear constraint",
+    COUPLING_ROW: "coupling constraint",
+    PRISMATIC_ROW: "prismatic constraint",
+    FIXED_ROW: "fixed constraint",
+    POINT_TO_POINT_ROW: "point to point constraint",
+    BASE_FRICTION_ROW: "friction of free body, constraint",
+}
+# User constraints without exact derivatives.
+_OTHERS = {
+    UserConstraintKind.TENDON: "tendons",
+    UserConstraintKind.TENDON_COUPLING: "couplings of tendons",
+    UserConstraintKind.TRANSMISSION: "actuators of tendons and sites",
+}
 _CONTACTS = {
     CONTACT_ROW: "",
     CONTACT_FRICTION: "friction of ",
@@ -68,14 +90,13 @@ _PROBLEMS_OF_CONTACTS = {
     'groups: use method="differences"',
 }
 _PROBLEMS = {
-    YIELDING_LIMIT: "limit of {} yields, so that it has no exact derivatives",
-    YIELDING_FRICTION: "friction of {} yields, so that it has no exact derivatives",
+    BALL_QUARTER_TURN: "motor of {} is at a quarter turn, where its angles have no derivatives",
     BALL_LIMIT: "limit of {}, a spherical joint, has no exact derivatives",
     MUSCLE_ROW: "actuator of {} is a muscle, which has no exact derivatives",
     BOUNDED_SUM: "actuators of {} have a bound of their sum; that has no exact derivatives",
     BASE_SPRING: "spring at the base of {} has no exact derivatives",
 }
-_MOST_KEPT = 256
+_MAX_KEPT = 256
 
 
 class RowNames:
@@ -85,26 +106,24 @@ class RowNames:
         self._space = space
         self._known: dict[bytes, tuple[tuple[str, str], ...]] = {}
 
-    def __call__(
-        self, memory: StepMemory, place: int, pairs: list[tuple[str, str]]
-    ) -> tuple[tuple[str, str], ...]:
-        """Name and status of the rows of a place; `pairs` are those of its first ones."""
-        own = slice(len(pairs), int(memory.row_count[place]))
+    def __call__(self, memory: StepMemory, place: int) -> tuple[tuple[str, str], ...]:
+        """Name and status of the rows of a place."""
+        own = slice(int(memory.row_count[place]))
         parts = [it[place, own] for it in (memory.row_kind, memory.row_status, memory.row_dof)]
         key = b"".join(part.tobytes() for part in parts)
         found = self._known.get(key)
         if found is None:
-            if len(self._known) >= _MOST_KEPT:
+            if len(self._known) >= _MAX_KEPT:
                 self._known.clear()
             rows = zip(*(part.tolist() for part in parts), strict=True)
             found = self._known[key] = tuple(
                 (self._name(kind, number), _STATUS[status]) for kind, status, number in rows
             )
-        return (*pairs, *found) if pairs else found
+        return found
 
     def _name(self, kind: int, number: int) -> str:
-        if kind in _TIES:
-            return f"{_TIES[kind]} {number}"
+        if kind in _USERS:
+            return f"{_USERS[kind]} {number}"
         if kind in _CONTACTS:
             return f"{_CONTACTS[kind]}{_contact(number)}"
         return f"{_JOINTS[kind]} of {self._space.labels[number][0]}"
@@ -118,9 +137,13 @@ def _contact(known_as: int) -> str:
 
 
 def raise_problem(problem: int, space: TangentSpace, number: int) -> None:
-    """Raise `NotImplementedError` for what a kernel has found of a dof, a constraint or a contact."""
-    if problem == YIELDING_USER:
-        raise NotImplementedError("compliant constraints have no exact derivatives")
+    """Raise `NotImplementedError` for what a kernel has found of a dof, a user constraint or a contact."""
+    if problem == OTHER_USER:
+        raise NotImplementedError(f"{_OTHERS[UserConstraintKind(number)]} have no exact derivatives")
+    if problem == QUARTER_TURN:
+        raise NotImplementedError(
+            f"user constraint {number} is a quarter turn off, where its angles have no derivatives"
+        )
     if problem in _PROBLEMS_OF_CONTACTS:
         raise NotImplementedError(_PROBLEMS_OF_CONTACTS[problem].format(_contact(number)))
     raise NotImplementedError(_PROBLEMS[problem].format(space.labels[number][0]))

@@ -44,32 +44,6 @@ class Spatial:
         self.turns: np.ndarray = follows[:, :, None] * turned
         self.shifts: np.ndarray = follows[:, :, None] * moved
 
-    def point_columns(self, link: int, point: np.ndarray) -> np.ndarray:
-        """The Jacobian of a point of a link, (n, 3), transposed."""
-        return self.moves[link][:, None] * (self.linear + cross(self.angular, point))
-
-    def wrench(self, link: int, point: np.ndarray, force: np.ndarray, torque: np.ndarray) -> np.ndarray:
-        """Generalized forces (n,) of a force at a point of a link and a torque."""
-        own = self.angular @ (torque + cross(point, force)) + self.linear @ force
-        return self.moves[link] * own
-
-    def wrench_derivatives(
-        self, link: int, point: np.ndarray, force: np.ndarray, torque: np.ndarray, moving: np.ndarray
-    ) -> np.ndarray:
-        """Derivatives of `wrench` by positions, (n, n), for a constant force and torque.
-
-        Args:
-            link: Row of the link.
-            point: The point.
-            force: The force.
-            torque: The torque.
-            moving: Change of the point by a change of each dof, (n, 3).
-        """
-        moment = torque + cross(point, force)
-        by_position = self.turns @ moment + self.shifts @ force
-        by_position += self.angular @ cross(moving, force).T
-        return self.moves[link][:, None] * by_position
-
 
 def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
     """Which dof moves which link, (links, n), and the axes of which dof i follow dof j, [i, j]."""
@@ -90,6 +64,11 @@ def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
             dof = own.stop
         known = body.derived[Spatial] = moves, follows
     return known
+
+
+def moving_dofs(body: Body) -> np.ndarray:
+    """1 where a link, in the rows of a body, is moved by a dof, else 0, (links, n)."""
+    return _tree_of(body, 0 if body.fixed_base else BASE_VELOCITIES)[0]
 
 
 def link_forces(
@@ -132,11 +111,11 @@ def link_forces(
         speed_q = (rates @ spatial.shifts.reshape(size, -1)).reshape(count, size, 3)
         speed_q += cross(omega_q, centres) + cross(omega[:, None], moving)
         mass, turn = masses[wanted], spatial.rotations[wanted]
-        rate, rate_v = _decay(linear, speed)
+        rate, rate_v = decay(linear, speed)
         force -= (mass * rate)[:, None] * speed
         drag = mass[:, None, None] * (rate[:, None, None] * np.eye(3) + speed[:, :, None] * rate_v[:, None])
         inertia = (turn * inertias[wanted][:, None]) @ turn.transpose(0, 2, 1)
-        rate, rate_v = _decay(angular, omega)
+        rate, rate_v = decay(angular, omega)
         spin = (inertia @ omega[:, :, None])[:, :, 0]
         torque -= rate[:, None] * spin
         brake = rate[:, None, None] * inertia + spin[:, :, None] * rate_v[:, None]
@@ -161,7 +140,7 @@ def _summed(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a.transpose(1, 0, 2).reshape(size, -1) @ b.transpose(1, 0, 2).reshape(size, -1).T
 
 
-def _decay(coefficient: float, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def decay(coefficient: float, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Decay rates (links,) of damped velocities (links, 3), and their derivatives by the velocities."""
     speed = np.sqrt((velocity * velocity).sum(axis=1))
     return coefficient * (1.0 + speed), coefficient * velocity / np.where(speed > 0.0, speed, 1.0)[:, None]

@@ -9,17 +9,17 @@ import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
 from carom.engine.world_calls import WorldCalls
-from carom.layouts.codes import BASE_POSITIONS, ConstraintKind
+from carom.layouts.codes import BASE_POSITIONS, ConstraintKind, UserConstraintKind
 from carom.layouts.linearization import (
     ALL_STAGES,
     EQUATIONS_STAGE,
+    LEAST_ROWS,
     RESUMED,
     ROWS_OF_CONTACT,
     ROWS_STAGE,
 )
 from carom.layouts.mechanism import MechanismBatch
 from carom.linearization.step_memory import StepMemory, places_for, step_space
-from carom.linearization.user_rows import TIES
 from carom.native.kernels import motion_of_step_kernel, solution_of_step_kernel
 from carom.native.launch import Launch
 from carom.native.tables import put_array, put_zeros
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from carom.linearization.tangent import TangentSpace
     from carom.scene.body import Body
 
-# At most so many rows has a user constraint.
-_MOST_ROWS = 6
+_MAX_USER_ROWS = 6
+_SINGLE_ROWS = (UserConstraintKind.GEAR, UserConstraintKind.COUPLING)
 _GRAVITY = 3
 _PARAMETERS = ("mass", "moment", "inertia", "armature")
 # The structs of the mechanism of a body on each thread, and parameters that differ between worlds, or None.
@@ -67,9 +67,10 @@ class StepKernels:
         users = engine.contact_arrays.user_count
         self._struct.users = users
         kinds = engine.contact_arrays.users.numpy["user_kind"][:users]
-        others = int(np.isin(kinds, TIES, invert=True).sum())
-        self._struct.most_of_joints = _rows_of_joints(copies) + users - others
-        self._fixed_rows = self._struct.most_of_joints + _MOST_ROWS * others
+        singles = int(np.isin(kinds, _SINGLE_ROWS).sum())
+        fixed_rows = _rows_of_joints(copies) + singles + _MAX_USER_ROWS * (users - singles)
+        self._struct.most_of_joints = fixed_rows
+        self._fixed_rows = max(fixed_rows, LEAST_ROWS)
         self._contacts = 0
         self._made_for: list[Any] = []
         self._settings: Any = None

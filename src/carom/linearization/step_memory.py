@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 _OF_MOTORS = (MOTOR_POSITION, MOTOR_VELOCITY, MOTOR_KP, MOTOR_KD, MOTOR_MAX_IMPULSE)
 # Numbers in the arrays of all worlds that are linearised together, at most.
-_MOST_NUMBERS = 1 << 23
+_MAX_NUMBERS = 1 << 23
 
 
 def step_space(space: TangentSpace, inputs: Sequence[Input], counts: dict[str, int]) -> Any:
@@ -115,7 +115,7 @@ class StepMemory:
         velocity: (places, 3, n).
         effective, inverse: (places, n, n).
         force: (places, 2, n, columns).
-        row_impulse, row_asked, row_mass: (places, rows).
+        row_impulse, row_asked, row_mass, row_yield: (places, rows).
         jacobian, through: (places, rows, n).
         side: (places, rows, columns).
         alpha, beta: (places, rows, rows).
@@ -146,6 +146,7 @@ class StepMemory:
         self.row_impulse: np.ndarray = self._made("row_impulse", rows)
         self.row_asked: np.ndarray = self._made("row_asked", rows)
         self.row_mass: np.ndarray = self._made("row_mass", rows)
+        self.row_yield: np.ndarray = self._made("row_yield", rows)
         self.jacobian: np.ndarray = self._made("jacobian", rows, n)
         self.through: np.ndarray = self._made("through", rows, n)
         self.side: np.ndarray = self._made("side", rows, columns)
@@ -176,6 +177,6 @@ def places_for(space: Any, worlds: int) -> int:
     """How many of some worlds to linearise together."""
     n, rows, columns = space.dofs, space.most_rows, space.columns
     each = (
-        16 * n * n + 22 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 6)
+        16 * n * n + 22 * n + (5 * n + space.states) * columns + rows * (4 * rows + 4 * n + 2 * columns + 7)
     )
-    return max(1, min(worlds, _MOST_NUMBERS // max(each, 1)))
+    return max(1, min(worlds, _MAX_NUMBERS // max(each, 1)))

@@ -15,6 +15,8 @@ from carom.layouts.contacts import OVERLAPS, THERE
 from carom.layouts.status import STATUS, WELL
 from carom.linearization.fields import Fields
 from carom.linearization.input_values import JOINT_TERMS
+from carom.linearization.inputs import OFFSETS
+from carom.linearization.offsets import shift_offset
 from carom.native.block_copies import BlockCopies
 
 if TYPE_CHECKING:
@@ -78,7 +80,7 @@ class Copies:
         mine, its = self.engine.contact_arrays, other.contact_arrays
         room = mine.contacts.capacity
         counts = its.contacts.numpy["count_contacts"]
-        if int(counts[:, THERE].max()) > room["contact"] or int(counts[:, OVERLAPS].max()) > room["overlap"]:
+        if greatest(counts[:, THERE]) > room["contact"] or greatest(counts[:, OVERLAPS]) > room["overlap"]:
             return False
         self._unspent = unspent_time
         self._forces = []
@@ -100,10 +102,6 @@ class Copies:
     def scratch(self, world: int) -> Fields:
         """Intermediate results of the last step of a world."""
         return Fields(self.engine.workspace.scratch, world)
-
-    def pair_rows(self, world: int) -> Fields:
-        """The rows of contacts in the last step of a world."""
-        return Fields(self.engine.workspace.pair_rows, world)
 
     def change(self, given: Input, worlds: np.ndarray, changes: np.ndarray) -> None:
         """Add changes (m,) to an input in m of the worlds."""
@@ -139,7 +137,7 @@ class Copies:
         self.apply_forces()
         due, self._unspent = self._parameters.substeps_due(self._unspent)
         self.engine.step([due], worlds)
-        if self.engine.status[:, STATUS].max() > WELL:
+        if greatest(self.engine.status[:, STATUS]) > WELL:
             raise SimulationError("a step cannot be linearised: a velocity is not finite")
 
 
@@ -150,6 +148,11 @@ def _pairs(tables: Iterable[tuple[ArrayTable, ArrayTable]]) -> Iterator[tuple[np
         for own, other in zip(mine.row_fields, its.row_fields, strict=True):
             if not of_shapes or own.axis == "link":
                 yield other.array, own.array
+
+
+def greatest(numbers: np.ndarray) -> int:
+    """The greatest of some whole numbers (m,), sooner for one of them."""
+    return int(numbers[0]) if len(numbers) == 1 else int(numbers.max())
 
 
 def made_for(world: World) -> tuple[object, ...]:
@@ -193,6 +196,9 @@ def differences(
     """
     dofs, active = len(space), len(space.activations)
     width = 2 * dofs + active
+    shifts = [column for column, given in enumerate(inputs) if given.kind == OFFSETS]
+    if shifts:
+        return _with_offsets(world, space, inputs, steps, size, start, shifts)
     total = width + len(inputs)
     copies = Copies(world, 2 * total)
     state = copies.state
@@ -208,13 +214,9 @@ def differences(
         sizes[number] *= max(1.0, abs(float(table[given.field][(0, *given.place)]) / given.scale))
         change = sizes[number] * np.array([1.0, -1.0])
         copies.change(given, np.array([number, total + number]), change)
-    copies.keep_forces()
-    for _ in range(steps):
-        copies.step()
-    # Arrays are replaced where they were too short.
-    state = copies.engine.arrays.state.numpy
-    position, velocity = state["position"], state["dof_velocity"][:, space.dofs]
     change = np.zeros((total, width))
+    state = _stepped(copies, steps)
+    position, velocity = state["position"], state["dof_velocity"][:, space.dofs]
     change[:, :dofs] = space.difference(position[:total], position[total:])
     change[:, dofs : 2 * dofs] = velocity[:total] - velocity[total:]
     if active:
@@ -222,3 +224,46 @@ def differences(
         change[:, 2 * dofs :] = activation[:total] - activation[total:]
     found = (change / (2.0 * sizes[:, None])).T
     return found[:, :width], found[:, width:]
+
+
+def _stepped(copies: Copies, steps: int) -> dict[str, np.ndarray]:
+    """The fields of the states after steps, in which the present forces act."""
+    copies.keep_forces()
+    for _ in range(steps):
+        copies.step()
+    # Arrays are replaced where they were too short.
+    return copies.engine.arrays.state.numpy
+
+
+def _with_offsets(
+    world: World,
+    space: TangentSpace,
+    inputs: Sequence[Input],
+    steps: int,
+    size: float,
+    start: GivenState,
+    shifts: Sequence[int],
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `differences`, with offsets in some columns, which all copies of an engine share."""
+    others = [column for column in range(len(inputs)) if column not in set(shifts)]
+    by_state, by_others = differences(world, space, [inputs[it] for it in others], steps, size, start)
+    found = np.zeros((len(by_state), len(inputs)))
+    found[:, others] = by_others
+    dofs = len(space)
+    for column in shifts:
+        given = inputs[column]
+        body = next(it for it in space.bodies if 0 < given.row - it.first_link <= it.joint_count)
+        ends: list[tuple[np.ndarray, ...]] = []
+        for change in (size, -size):
+            copies = Copies(world, 1)
+            start.write(copies.state)
+            shift_offset(copies.engine.arrays.model, body, given, change)
+            state = _stepped(copies, steps)
+            activation = state["actuator_activation"][:, space.activations]
+            ends.append((state["position"], state["dof_velocity"][:, space.dofs], activation))
+        first, second = ends
+        found[:dofs, column] = space.difference(first[0], second[0])[0]
+        found[dofs : 2 * dofs, column] = (first[1] - second[1])[0]
+        found[2 * dofs :, column] = (first[2] - second[2])[0]
+        found[:, column] /= 2.0 * size
+    return by_state, found

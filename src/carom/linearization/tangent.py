@@ -151,17 +151,6 @@ class TangentSpace:
             kinds[dof], hands[dof] = PLANE_DOF, hand
         return positions, kinds, hands
 
-    def scalars(self, positions: np.ndarray) -> np.ndarray:
-        """Positions (n,) of the dofs of joints that have one, and 0 for others."""
-        found = np.zeros(len(self))
-        found[self._columns] = positions[self._positions]
-        return found
-
-    def ball_position(self, dof: int, positions: np.ndarray) -> np.ndarray:
-        """The quaternion (x, y, z, w) of the spherical joint whose first dof it is."""
-        q = next(row for row, first in self._balls if first == dof)
-        return positions[q : q + 4]
-
     def moved(self, positions: np.ndarray, changes: np.ndarray) -> np.ndarray:
         """Positions (m, coordinates) moved by changes (m, n): a new array."""
         after = positions.copy()

@@ -81,20 +81,3 @@ def left_derivative(vector: np.ndarray) -> np.ndarray:
         return np.eye(3) + 0.5 * skew + skew @ skew / 6.0
     first = (1.0 - np.cos(angle)) / angle**2
     return np.eye(3) + first * skew + (angle - np.sin(angle)) / angle**3 * (skew @ skew)
-
-
-def euler_rates(rotation: np.ndarray) -> np.ndarray:
-    """Derivatives of the angles x, y, z of Rx Ry Rz by a rotation vector along the axes after it, (3, 3).
-
-    Args:
-        rotation: The rotation matrix, (3, 3); y is not a quarter turn.
-    """
-    sine = rotation[0, 2]
-    cosine = np.sqrt(1.0 - sine * sine)
-    z = np.arctan2(-rotation[0, 1], rotation[0, 0])
-    # The axes about which x, y and z turn, along the axes after the rotation.
-    about_x = rotation[0]
-    about_y = np.array([np.sin(z), np.cos(z), 0.0])
-    if cosine < _SMALL:
-        raise ValueError("a spherical motor is at a quarter turn, where its angles have no derivatives")
-    return np.linalg.inv(np.stack([about_x, about_y, [0.0, 0.0, 1.0]], axis=1))

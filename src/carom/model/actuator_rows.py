@@ -46,27 +46,29 @@ def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
 
 
 def check_joint_ranges(specs: Iterable[ActuatorSpec]) -> None:
-    """Raise `DescriptionError` if two actuators of a joint have different bounds of their sum."""
-    first: dict[str, ActuatorSpec] = {}
+    """Raise `DescriptionError` if two actuators of a joint or tendon have different bounds of their sum."""
+    first: dict[tuple[str, str], ActuatorSpec] = {}
     for spec in specs:
-        other = first.setdefault(spec.joint, spec)
-        if spec.joint and other.joint_range != spec.joint_range:
+        other = first.setdefault(driven := (spec.joint, spec.tendon), spec)
+        if any(driven) and other.joint_range != spec.joint_range:
+            kind = "joint" if spec.joint else "tendon"
             raise DescriptionError(
                 f"actuator {spec.name!r}: joint_range must be that of {other.name!r}, "
-                f"which drives joint {spec.joint!r} as well"
+                f"which drives {kind} {spec.joint or spec.tendon!r} as well"
             )
 
 
 def join_actuators(model: dict[str, Any], first: int, specs: Sequence[ActuatorSpec]) -> None:
-    """Give the actuators of each joint with bounds of their sum one row; they are those of a body."""
-    last: dict[str, int] = {}
+    """Chain the actuators of each joint and tendon with bounds of their sum; they are those of a body."""
+    known: dict[tuple[str, str], list[int]] = {}
     for number, spec in enumerate(specs):
         model["actuator_follows"][first + number] = model["actuator_to_next"][first + number] = 0
-        before = last.get(spec.joint, -1)
-        last[spec.joint] = number
-        if spec.joint and before >= 0 and spec.joint_range != _UNBOUNDED:
-            model["actuator_follows"][first + number] = 1
-            model["actuator_to_next"][first + before] = number - before
+        driven = spec.joint, spec.tendon
+        others = known.setdefault(driven, [])
+        if any(driven) and others and spec.joint_range != _UNBOUNDED:
+            model["actuator_follows"][first + number] = number - others[0]
+            model["actuator_to_next"][first + others[-1]] = number - others[-1]
+        others.append(number)
 
 
 def read_actuator(model: dict[str, Any], row: int, world: int, spec: ActuatorSpec) -> ActuatorSpec:

@@ -16,7 +16,7 @@ from carom.model.inertia import inertia_from_file, inertia_from_shapes
 from carom.model.merge_fixed import merge_fixed_links
 from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
-from carom.model.written_inertia import has_massless_base, merge_rigidly, written_inertia
+from carom.model.written_inertia import hang_balls, has_massless_base, merge_rigidly, written_inertia
 
 _log = Logger(__name__)
 
@@ -36,9 +36,9 @@ def assemble(
     mass is zero, to which `fixed_base` sets it; `compound_margin` is that of every link [m].
 
     With `as_written` the body is as the author of the file meant it: inertia from the file, no damping by
-    air, no motors that hold joints, links merged with their frames. A base is then also fixed if it has no
-    mass and no link that is fixed to it has any. Links of a robot with terms of its free base are not merged,
-    as these are of the motion of the base's own frame.
+    air, no motors that hold joints, links merged with their frames, spherical joints that turn links. A base
+    is then also fixed if it has no mass and no link that is fixed to it has any. Links of a robot with terms
+    of its free base are not merged, as these are of the motion of the base's own frame.
 
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.
@@ -50,6 +50,8 @@ def assemble(
     has_terms = any((robot.base_damping, robot.base_armature, robot.base_stiffness))
     if flags & LoadFlags.MERGE_FIXED_LINKS and not has_terms:
         (merge_rigidly if as_written else merge_fixed_links)(root, fixed_base=fixed_base)
+    if as_written:
+        hang_balls(root)
     order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
     read_inertia = written_inertia if as_written else inertia_from_file
     base = _link_spec(root.link, flags, compound_margin, read_inertia, is_massless=fixed_base)
@@ -96,6 +98,7 @@ def _link_spec(
         compound_margin=compound_margin,
         contact=link.contact,
         gravity_compensation=link.gravity_compensation,
+        fluid=link.fluid,
         user_data=dict(link.user_data),
     )
     if flags & LoadFlags.USE_INERTIA_FROM_FILE and not is_massless:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
 from carom.description.compliance import Compliance
+from carom.description.fluid import FluidEllipsoid
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
 from carom.layouts.codes import POSITION_COUNT, JointCode
@@ -71,6 +72,7 @@ class LinkSpec:
         contact: Contact parameters of the link.
         mimic: The joint this one follows, as the file states it; not simulated in a body with `is_held`.
         gravity_compensation: Share of its weight that a force at its centre of mass carries.
+        fluid: What feels the fluid of the world instead of the box of its inertia.
         user_data: Key and value pairs stated by the file for the link.
     """
 
@@ -105,6 +107,7 @@ class LinkSpec:
     contact: ContactParameters = DEFAULT_CONTACT
     mimic: Mimic | None = None
     gravity_compensation: float = 0.0
+    fluid: FluidEllipsoid | None = None
     user_data: dict[str, str] = field(default_factory=dict)
 
     @property

@@ -23,6 +23,7 @@ from carom.layouts.codes import (
     MOTOR_TARGET_W,
     MOTOR_VELOCITY_CLAMP,
     POSITION_COUNT,
+    FluidShape,
     JointCode,
 )
 from carom.layouts.flags import LoadFlags
@@ -35,6 +36,7 @@ from carom.native.row_changes import RowChanges
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
 if TYPE_CHECKING:
+    from carom.description.fluid import FluidEllipsoid
     from carom.model.body_rows import BodyRows
 
 DEFAULT_MAX_VELOCITY = 100.0
@@ -252,6 +254,7 @@ class WorldArrays:
         model["tree_joint_terms"][:, rows.tree] = has_joint_terms(spec)
         self.write_inertia(first_link, spec.base.mass, spec.base.inertia)
         model["link_gravity_compensation"][:, first_link] = spec.base.gravity_compensation
+        self._write_fluid(first_link, spec.base.fluid)
 
         last_dof = {BASE: -1}
         position = rows.first["position"] + BASE_POSITIONS
@@ -266,6 +269,7 @@ class WorldArrays:
             model["link_dof_count"][row] = DOF_COUNT[code]
             self.write_inertia(row, link.mass, link.inertia)
             model["link_gravity_compensation"][:, row] = link.gravity_compensation
+            self._write_fluid(row, link.fluid)
             _write_joint(model, row, link, parent, code)
             last_dof[j] = last_dof[link.parent]
             for _ in range(DOF_COUNT[code]):
@@ -308,6 +312,19 @@ class WorldArrays:
         """The same with a change."""
         change.write(self.model.numpy["link_mass"][:, row], mass)
         change.write(self.model.numpy["link_inertia"][:, row], inertia)
+
+    def _write_fluid(self, row: int, fluid: FluidEllipsoid | None) -> None:
+        """Set what of a link feels the fluid."""
+        model = self.model.numpy
+        shape = FluidShape.BOX
+        if fluid is not None:
+            shape = FluidShape.ELLIPSOID if fluid.volume > 0.0 else FluidShape.NONE
+            model["link_fluid_shape"][:, row] = (
+                *(*fluid.semi_axes, fluid.blunt_drag, fluid.slender_drag),
+                *(fluid.angular_drag, fluid.kutta_lift, fluid.magnus_lift),
+            )
+            model["link_fluid_added"][:, row] = np.ravel(fluid.added())
+        model["link_fluid"][row] = shape
 
     def note_joints(self, change: Change, rows: TreeRows, spec: BodySpec) -> None:
         """Write the frames and axes of a body's joints again with a change of inertial frames."""

@@ -1,10 +1,10 @@
-"""Inertia of links as their file states it, also of links that are merged."""
+"""Inertia of links as their file states it, also of links that are merged or on spherical joints."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from carom.description import Inertial, JointType, Pose
+from carom.description import Inertial, Joint, JointType, Link, Pose
 from carom.description.eigen import diagonalize
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import (
@@ -67,6 +67,8 @@ def has_massless_base(root: TreeNode) -> bool:
 def merge_rigidly(root: TreeNode, *, fixed_base: bool) -> None:
     """Merge every link on a fixed joint into its parent, in place; masses, centres and tensors add up.
 
+    A link that the fluid sees otherwise than as the box of its inertia stays.
+
     The parent takes over the shapes, but not the contact parameters. Links merged into a fixed base add no
     mass. Children of a merged link take its place.
     """
@@ -86,7 +88,7 @@ def _absorb(node: TreeNode, *, without_mass: bool) -> None:
     while children:
         child = children.pop()
         joint = child.joint
-        if joint is None or joint.type is not JointType.FIXED:
+        if joint is None or joint.type is not JointType.FIXED or child.link.fluid is not None:
             node.children.append(child)
             continue
         own, other, frame = node.link, child.link, joint.frame
@@ -140,3 +142,25 @@ def _in_parent(tensor: tuple[float, float, float, float, float, float], pose: Po
 
 def _is_fixed(node: TreeNode) -> bool:
     return node.joint is not None and node.joint.type is JointType.FIXED
+
+
+def hang_balls(root: TreeNode) -> None:
+    """Give each spherical joint a massless link of its own where its link has other principal axes, in place.
+
+    The engine's spherical joints turn inertial frames, as Bullet's do; in files they turn links. The link is
+    then fixed to one named `LINK@JOINT`.
+    """
+    for node in depth_first(root):
+        joint = node.joint
+        if joint is None or joint.type is not JointType.SPHERICAL or _has_own_axes(node.link):
+            continue
+        moved = TreeNode(node.link, node.index, children=node.children)
+        moved.joint = Joint(f"{node.link.name}@fixed", JointType.FIXED, joint.child, joint.child, IDENTITY)
+        node.link = Link(f"{node.link.name}@{joint.name}", Inertial(mass=0.0))
+        node.children = [moved]
+
+
+def _has_own_axes(link: Link) -> bool:
+    """Whether the principal axes of a link are its own."""
+    _, xy, xz, _, yz, _ = link.inertial.tensor
+    return link.inertial.frame.orientation == IDENTITY.orientation and not any((xy, xz, yz))

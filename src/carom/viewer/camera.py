@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from carom.description.pose import Vector3
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 
@@ -32,18 +32,18 @@ class SharedCamera:
         chosen: Whether a script or a user has set the view; until then pages fit all bodies into it.
     """
 
-    def __init__(self, board: Board, width: int, height: int) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages, width: int, height: int) -> None:
+        self._latest = latest
         self.orbit: Orbit = Orbit(width=width, height=height)
         self.chosen: bool = False
         self._by_script: bool = False
-        board.put("camera", self._message())
+        latest.put("camera", self._message())
 
     def move(self, distance: float, yaw: float, pitch: float, target: Vector3) -> None:
         """Moves the cameras of all pages, for a script."""
         self.chosen = self._by_script = True
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
-        self._board.put("camera", self._message())
+        self._latest.put("camera", self._message())
 
     def moved(
         self, distance: float, yaw: float, pitch: float, target: Vector3, *, chosen: bool = True
@@ -53,7 +53,7 @@ class SharedCamera:
             return
         self.chosen, self._by_script = chosen, False
         self.orbit = replace(self.orbit, distance=distance, yaw=yaw, pitch=pitch, target=target)
-        self._board.amend("camera", self._message())
+        self._latest.amend("camera", self._message())
 
     def resized(self, width: int, height: int) -> None:
         """Records the new size of a page's image [pixels]."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from carom.model.body_spec import BASE
 from carom.viewer import readings
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 from carom.viewer.rays import Rays
 
@@ -46,15 +46,15 @@ class DetailRequest:
     tendons: bool = False
 
     @classmethod
-    def told(cls, told: dict[str, Any]) -> DetailRequest:
+    def from_message(cls, message: dict[str, Any]) -> DetailRequest:
         """The wish in a message from a page."""
-        joints = told.get("joints", [])
+        joints = message.get("joints", [])
         return cls(
             joints="all" if joints == "all" else frozenset(int(body) for body in joints),
-            links=frozenset((int(body), int(link)) for body, link in told.get("links", [])[:_MAX_LINKS]),
-            sensors=frozenset(int(body) for body in told.get("sensors", [])),
+            links=frozenset((int(body), int(link)) for body, link in message.get("links", [])[:_MAX_LINKS]),
+            sensors=frozenset(int(body) for body in message.get("sensors", [])),
             **{
-                name: bool(told.get(name, False))
+                name: bool(message.get(name, False))
                 for name in ("collisions", "contacts", "dynamics", "constraints", "rays", "tendons")
             },
         )
@@ -86,16 +86,16 @@ class Details:
         rays: The rays that scripts cast.
     """
 
-    def __init__(self, world: World, lock: Any, board: Board, *, always: bool = False) -> None:
+    def __init__(self, world: World, lock: Any, latest: LatestMessages, *, always: bool = False) -> None:
         self._always = always
         self._links: list[tuple[int, int]] = []
         self._joint_total = 0
         self._bodies: list[Body] = []
         self._world = world
         self._world_lock = lock
-        self._board = board
+        self._latest = latest
         self.wish: DetailRequest = NOTHING
-        self.rays: Rays = Rays(board)
+        self.rays: Rays = Rays(latest)
         self._wishes: dict[int, DetailRequest] = {}
         self._joints = readings.JointReadings(world)
         self._last: list[tuple[str, readings.Columns]] = []
@@ -188,17 +188,17 @@ class Details:
     def _show_dynamics(self, wanted: bool) -> None:
         facts = {body.id: _dynamics(body) for body in self._bodies} if wanted else {}
         for number in self._dynamics.keys() - facts.keys():
-            self._board.take_down(("dynamics", number), to_page.NO_DYNAMICS(dynamics=number))
+            self._latest.remove(("dynamics", number), to_page.NO_DYNAMICS(dynamics=number))
         for number, known in facts.items():
             if self._dynamics.get(number) != known:
-                self._board.put(("dynamics", number), known)
+                self._latest.put(("dynamics", number), known)
         self._dynamics = facts
 
     def _show_constraints(self, wanted: bool) -> None:
         constraints = _constraints(self._world) if wanted else []
         if constraints != self._constraints:
             self._constraints = constraints
-            self._board.put("constraints", to_page.CONSTRAINTS(constraints=constraints))
+            self._latest.put("constraints", to_page.CONSTRAINTS(constraints=constraints))
 
 
 def _dynamics(body: Body) -> dict[str, Any]:

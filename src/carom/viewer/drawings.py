@@ -8,20 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from carom.viewer.board import Board
 from carom.viewer.items import DebugItem, DebugLine, DebugPoints, DebugText
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 
 class Drawings:
-    """Drawn items by number, on the board. Safe to use from all threads.
+    """Drawn items by number, among the latest messages. Safe to use from all threads.
 
     Attributes:
         items: The items shown now, by number.
     """
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self._lock = Lock()
         self._ends: dict[int, float] = {}
         self.items: dict[int, DebugItem] = {}
@@ -34,7 +34,7 @@ class Drawings:
             if item.life_time > 0.0:
                 self._ends[number] = monotonic() + item.life_time
             header, payload = _described(number, item)
-            self._board.put(("item", number), header, payload)
+            self._latest.put(("item", number), header, payload)
 
     def remove(self, number: int) -> None:
         """Removes an item; unknown numbers are ignored."""
@@ -60,7 +60,7 @@ class Drawings:
     def _remove(self, number: int) -> None:
         self.items.pop(number, None)
         self._ends.pop(number, None)
-        self._board.take_down(("item", number), to_page.NO_ITEM(item=number))
+        self._latest.remove(("item", number), to_page.NO_ITEM(item=number))
 
 
 def _described(number: int, item: DebugItem) -> tuple[dict[str, Any], bytes]:

@@ -13,7 +13,7 @@ from weakref import WeakSet
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
-    from carom.viewer.board import Board
+    from carom.viewer.latest_messages import LatestMessages
     from carom.viewer.server import PageServer
 
 # Maximum length of the line on a page, and how long the end of a script waits for pages to take it [s].
@@ -25,20 +25,20 @@ class LastWords:
     """Tells the pages of one viewer the last line of the exception that ends the script.
 
     Args:
-        board: The messages of the viewer.
+        latest: The messages of the viewer.
         server: Returns the server of its pages.
     """
 
-    def __init__(self, board: Board, server: Callable[[], PageServer]) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages, server: Callable[[], PageServer]) -> None:
+        self._latest = latest
         self._server = server
         _all.add(self)
 
     def say(self, line: str) -> None:
         """Tells the pages a line, and closes the viewer."""
-        self._board.put("ending", to_page.ENDING(error=line[:_MAX_CHARACTERS]))
+        self._latest.put("ending", to_page.ENDING(error=line[:_MAX_CHARACTERS]))
         give_up = time.monotonic() + _PATIENCE
-        while not self._server().has_sent(self._board.revision) and time.monotonic() < give_up:
+        while not self._server().has_sent(self._latest.revision) and time.monotonic() < give_up:
             time.sleep(0.01)
         # What was sent arrives before the sockets close.
         self._server().stop()

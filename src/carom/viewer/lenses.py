@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
@@ -26,13 +26,13 @@ _Lens = tuple[int, int, bytes]
 
 
 class Lenses:
-    """Puts the views and projections of cameras on the board, for pages to look through them.
+    """Puts the views and projections of cameras among the latest messages, for pages to look through them.
 
     Safe to use from all threads. `world_lock` is held while the followed cameras are read.
     """
 
-    def __init__(self, board: Board, world_lock: Any) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages, world_lock: Any) -> None:
+        self._latest = latest
         self._world_lock = world_lock
         self._lock = Lock()
         self._numbers: dict[str | _Lens, int] = {}
@@ -100,4 +100,4 @@ class Lenses:
             view=view.T.ravel().tolist(),
             projection=projection.T.ravel().tolist(),
         )
-        self._board.put(("lens", number), header)
+        self._latest.put(("lens", number), header)

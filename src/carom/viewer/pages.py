@@ -5,11 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterator
 
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 
 
 class Page:
-    """An open page, and the revision of the board that it has.
+    """An open page, and the revision of the latest messages that it has.
 
     `news` is set when there may be new messages.
     """
@@ -26,9 +26,9 @@ class Page:
         self._letters.append(message)
         self.news.set()
 
-    def take_news(self, board: Board, frame: bytes | None) -> list[bytes]:
+    def take_news(self, latest: LatestMessages, frame: bytes | None) -> list[bytes]:
         """The messages that are new to the page; they then count as sent."""
-        messages, self.revision = board.since(self.revision)
+        messages, self.revision = latest.since(self.revision)
         if frame is not None and frame is not self._frame:
             messages.append(frame)
             self._frame = frame

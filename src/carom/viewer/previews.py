@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
@@ -28,10 +28,10 @@ _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
 class Previews:
-    """Shows colours, depth and segmentation of images on the board."""
+    """Shows colours, depth and segmentation of images among the latest messages."""
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self._due = 0.0
         self._corners: list[list[float]] | None = None
         self._widths: dict[int, int] = {}
@@ -55,7 +55,7 @@ class Previews:
         pictures = [image.rgba[small][..., :3], _shades(image.depth[small]), _colours(image.label[small])]
         height, width = pictures[0].shape[:2]
         header = to_page.PREVIEWS(width=width, height=height)
-        self._board.put("previews", header, b"".join(np.ascontiguousarray(p).tobytes() for p in pictures))
+        self._latest.put("previews", header, b"".join(np.ascontiguousarray(p).tobytes() for p in pictures))
         self._show_pyramid(camera)
 
     def _show_pyramid(self, camera: NDArray[np.float64]) -> None:
@@ -64,7 +64,7 @@ class Previews:
         # A camera that does not move is shown once.
         if corners is not None and corners != self._corners:
             self._corners = corners
-            self._board.put("pyramid", to_page.PYRAMID(corners=corners))
+            self._latest.put("pyramid", to_page.PYRAMID(corners=corners))
 
 
 def pyramid(camera: NDArray[np.float64]) -> list[list[float]] | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
@@ -18,14 +18,14 @@ _MAX_RAYS = 5000
 
 
 class Rays:
-    """Puts cast rays on the board while a page shows rays. Safe to use from all threads.
+    """Puts cast rays among the latest messages while a page shows rays. Safe to use from all threads.
 
     Attributes:
         wanted: Whether a page shows rays. Otherwise they need not be recorded.
     """
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self.wanted: bool = False
         self._cast: deque[tuple[float, ...]] = deque(maxlen=_MAX_RAYS)
 
@@ -35,9 +35,9 @@ class Rays:
             self._cast.append((*start, *end, *normal, fraction))
 
     def show(self) -> None:
-        """Puts the rays cast since the last call on the board; without new rays the old ones stay."""
+        """Puts the rays cast since the last call there; without new rays the old ones stay."""
         if not self._cast:
             return
         rays = [self._cast.popleft() for _ in range(len(self._cast))]
         payload = np.array(rays, dtype="<f4").tobytes()
-        self._board.put("rays", to_page.RAYS(count=len(rays)), payload)
+        self._latest.put("rays", to_page.RAYS(count=len(rays)), payload)

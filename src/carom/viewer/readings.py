@@ -118,8 +118,8 @@ def actuators(world: World, wanted: frozenset[int] | Literal["all"]) -> Columns:
             rows = slice(first, first + count)
             moves = np.array([bool(it.dynamics) for it in body.spec.actuators])
             activation = np.where(moves, state["actuator_activation"][0, rows], np.nan)
-            told = (state["actuator_control"][0, rows], state["actuator_force"][0, rows], activation)
-            parts.append(np.column_stack((np.full(count, number), np.arange(count), *told)))
+            values = (state["actuator_control"][0, rows], state["actuator_force"][0, rows], activation)
+            parts.append(np.column_stack((np.full(count, number), np.arange(count), *values)))
     return np.vstack(parts).astype(np.float32) if parts else np.zeros((0, ACTUATOR_COLUMNS), np.float32)
 
 
@@ -154,8 +154,8 @@ def tendons(world: World) -> Columns:
         for tie in tendons_of(body):
             if tie.path[0].kind is PathKind.SITE:
                 tendon = BodyTendon(tie)
-                told = (tendon.force, float(tendon.limit_force > 0.0))
-                rows += [(number, *start, *end, *told) for start, end in pieces(source, body, tie.path)]
+                values = (tendon.force, float(tendon.limit_force > 0.0))
+                rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tie.path)]
     return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
 
 

@@ -1,4 +1,4 @@
-"""Updates the board from a world: its bodies, their appearance, and their poses."""
+"""Updates the latest messages from a world: its bodies, their appearance, and their poses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.layouts.codes import Activity
 from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
 from carom.scene.soft_body import SoftBody
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.messages import encoded
 from carom.viewer.protocol import to_page
 from carom.viewer.shapes import Assets, described
@@ -35,7 +35,7 @@ _ABSENT = int(Activity.ABSENT)
 
 
 class SceneFeed:
-    """Puts the bodies of a world on the board. For use by one thread.
+    """Puts the bodies of a world among the latest messages. For use by one thread.
 
     A frame copies the poses without the lock: at worst some links are one time step ahead of the others, and
     steps never wait. The world is locked only after bodies were added, removed or changed their appearance,
@@ -46,13 +46,13 @@ class SceneFeed:
         moved: Whether the last frame has another time, or other numbers, than the one before it.
     """
 
-    def __init__(self, world: World, lock: Any, board: Board) -> None:
+    def __init__(self, world: World, lock: Any, latest: LatestMessages) -> None:
         self.collisions = False
         self.moved: bool = False
         self._world = world
         self._lock = lock
-        self._board = board
-        self._assets = Assets(board)
+        self._latest = latest
+        self._assets = Assets(latest)
         self._bodies: list[Body] = []
         self._all: list[Body] = []
         self._absent = b""
@@ -71,7 +71,7 @@ class SceneFeed:
         self._shapes: dict[int, bytes] = {}
 
     def follow(self) -> None:
-        """Puts what has changed on the board. What is read after it belongs to the next frame."""
+        """Puts what has changed there. What is read after it belongs to the next frame."""
         self._follow_bodies()
         self._follow_nodes()
 
@@ -138,7 +138,7 @@ class SceneFeed:
         )
 
     def _follow_nodes(self) -> None:
-        """Puts the present shapes of soft bodies on the board."""
+        """Puts the present shapes of soft bodies among the latest messages."""
         now = monotonic()
         if not self._world.contact_arrays.soft.bodies or now - self._shapes_sent < _SHAPE_INTERVAL:
             return
@@ -162,7 +162,7 @@ class SceneFeed:
             self._shapes[body.id] = shape
             facts = described(body, appearance, self._assets, collisions=self.collisions)
             self._described[body.id] = facts
-            self._board.put(("body", body.id), facts)
+            self._latest.put(("body", body.id), facts)
         self._keep_used_assets()
 
     def _present_looks(self) -> tuple[object, ...]:
@@ -190,9 +190,9 @@ class SceneFeed:
                 continue
             new[body.id] = described(body, appearance, self._assets, collisions=self.collisions)
             if self._described.get(body.id) != new[body.id]:
-                self._board.put(("body", body.id), new[body.id])
+                self._latest.put(("body", body.id), new[body.id])
         for number in self._described.keys() - new.keys():
-            self._board.take_down(("body", number), to_page.NO_BODY(body=number))
+            self._latest.remove(("body", number), to_page.NO_BODY(body=number))
         self._described = new
         self._keep_used_assets()
         rows = [np.arange(body.first_link, body.first_link + body.joint_count - BASE) for body in bodies]
@@ -200,7 +200,7 @@ class SceneFeed:
         self._row_count = int(self._rows.max(initial=-1)) + 1
         self._layout += 1
         order = [[body.id, body.joint_count - BASE] for body in bodies]
-        self._board.put("layout", to_page.LAYOUT(layout=self._layout, bodies=order))
+        self._latest.put("layout", to_page.LAYOUT(layout=self._layout, bodies=order))
         # The bodies are kept for the comparison by id, because Python reuses the ids of deleted objects.
         self._bodies, self._all, self._absent = bodies, everything, absent
         self._arrays = self._world.arrays

@@ -18,7 +18,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from carom.viewer.access import Access
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.messages import MAX_INCOMING_BYTES, received
 from carom.viewer.page_files import page_files
 from carom.viewer.pages import Page, Pages
@@ -92,7 +92,7 @@ class PageServer:
     Args:
         access: Where to listen, and access control.
         port: Port to listen on; None for the default port or, if it is taken, any; 0 for any.
-        board: The messages that make up the scene.
+        latest: The messages that make up the scene.
         frame: Called at display rate while pages are open. Returns a message with poses, or None if nothing
             has changed. Slow pages skip frames.
         receive: Called with the number of a page and a message that it sends.
@@ -107,7 +107,7 @@ class PageServer:
         self,
         access: Access,
         port: int | None,
-        board: Board,
+        latest: LatestMessages,
         frame: Callable[[], bytes | None],
         receive: Callable[[int, dict[str, Any]], None],
         gone: Callable[[int], None],
@@ -116,7 +116,7 @@ class PageServer:
         self.access = access
         self.port = 0
         self._wanted_ports = (PREFERRED_PORT, 0) if port is None else (port,)
-        self._board = board
+        self._latest = latest
         self._make_frame = frame
         self._frame: bytes | None = None
         self._receive = receive
@@ -149,7 +149,7 @@ class PageServer:
         return {page.number for page in self._pages}
 
     def has_sent(self, revision: int) -> bool:
-        """Whether all open pages have a revision of the board."""
+        """Whether all open pages have a revision of the latest messages."""
         oldest = self._pages.oldest_revision
         return oldest is None or oldest >= revision
 
@@ -230,7 +230,7 @@ class PageServer:
                 self._frame = self._make_frame() or self._frame
             except Exception:
                 _log.exception("The viewer could not read the world.")
-            self._board.forget_removals(self._pages.oldest_revision)
+            self._latest.forget_removals(self._pages.oldest_revision)
             for page in self._pages:
                 page.news.set()
             due = max(due + 1.0 / _FRAMES_PER_SECOND, loop.time())
@@ -245,7 +245,7 @@ class PageServer:
                 self._frame = self._unwatched() or self._frame
             except Exception:
                 _log.exception("The viewer could not read the world.")
-            self._board.forget_removals(None)
+            self._latest.forget_removals(None)
             # A page that comes meanwhile waits: to be told at once of it would cost more than a frame.
             await asyncio.sleep(1.0 / _FRAMES_PER_SECOND_UNWATCHED)
 
@@ -293,7 +293,7 @@ class PageServer:
         return Response(HTTPStatus.OK, "OK", headers, content)
 
     def _news(self, page: Page) -> list[bytes]:
-        return page.take_news(self._board, self._frame)
+        return page.take_news(self._latest, self._frame)
 
     def _take(self, page: int, text: str | bytes) -> None:
         """Handles a message from a page."""

@@ -26,8 +26,8 @@ from carom.render.textures import NO_TEXTURE
 from carom.scene.actuators.actuated_joint import control_range
 from carom.scene.joint_constraints import moving_links
 from carom.scene.soft_body import SoftBody
-from carom.viewer.board import Board
 from carom.viewer.input.picking import follows_hand
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
@@ -84,8 +84,8 @@ _UNIT_CYLINDER = _round_levels(Cylinder(1.0, 1.0))
 class Assets:
     """Meshes and textures on the pages, each sent once for any number of shapes."""
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self._meshes: dict[int, tuple[RenderMesh, int]] = {}
         self._textures: dict[int, tuple[Texels, int]] = {}
         self._next = 0
@@ -110,7 +110,7 @@ class Assets:
                 (mesh.triangles, "<u4"),
             )
         )
-        self._board.put(("mesh", number), header, payload)
+        self._latest.put(("mesh", number), header, payload)
         return number
 
     def texture(self, image: Texels) -> int:
@@ -128,7 +128,7 @@ class Assets:
             payload = np.ascontiguousarray(texels[::-1]).tobytes()
         else:
             header["file"], payload = texture_file(texels)
-        self._board.put(("texture", number), header, payload)
+        self._latest.put(("texture", number), header, payload)
         return number
 
     def keep_only(self, meshes: set[int], textures: set[int]) -> None:
@@ -140,7 +140,7 @@ class Assets:
             for identity, (_, number) in list(known.items()):
                 if number not in used:
                     del known[identity]
-                    self._board.take_down((gone.kept, number), gone(**{str(gone.kept): number}))
+                    self._latest.remove((gone.kept, number), gone(**{str(gone.kept): number}))
 
     def _number(self) -> int:
         self._next += 1

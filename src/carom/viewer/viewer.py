@@ -13,14 +13,13 @@ from carom.description.pose import Vector3
 from carom.native.products import product
 from carom.remote.user_token import fresh_token, user_token
 from carom.viewer.access import Access, is_loopback
-from carom.viewer.board import Board, boards
 from carom.viewer.camera import SharedCamera
 from carom.viewer.details import NOTHING, DetailRequest
 from carom.viewer.display import has_display
 from carom.viewer.drawings import Drawings
 from carom.viewer.history.frames import Frames
 from carom.viewer.history.history import DEFAULT_BYTES
-from carom.viewer.history.recorder import told
+from carom.viewer.history.recorder import packed_past
 from carom.viewer.input.controls import Controls
 from carom.viewer.input.drives import MODES, JointHands
 from carom.viewer.input.gamepads import Gamepad, Gamepads
@@ -32,6 +31,7 @@ from carom.viewer.input.picking import Picking
 from carom.viewer.input.turning import Turning
 from carom.viewer.items import Choice, Handle, Slider
 from carom.viewer.last_words import LastWords
+from carom.viewer.latest_messages import LatestMessages, latest_of
 from carom.viewer.notebook import frame, in_notebook, show
 from carom.viewer.pictures import Pictures
 from carom.viewer.previews import Previews
@@ -39,11 +39,11 @@ from carom.viewer.protocol import from_page, to_page
 from carom.viewer.protocol.message import Message
 from carom.viewer.rays import Rays
 from carom.viewer.server import PageServer
-from carom.viewer.steps.chores import StepQueue
 from carom.viewer.steps.moments import Moments
 from carom.viewer.steps.pause_control import PauseControl
 from carom.viewer.steps.sleeping import Sleeping
 from carom.viewer.steps.step_lock import StepLock
+from carom.viewer.steps.step_queue import StepQueue
 from carom.viewer.still import still
 
 if TYPE_CHECKING:
@@ -120,12 +120,12 @@ class Viewer:
         self.on_hold: Callable[[bool], None] = lambda held: None
         self.on_pause: Callable[[bool], None] = lambda paused: None
         self.on_profile: Callable[[bool], None] = lambda running: None
-        self._board = Board()
-        self._board.put("title", to_page.TITLE(title=title, run=fresh_token(), history=max(history, 0)))
-        self.controls: Controls = Controls(self._board)
-        self.drawings: Drawings = Drawings(self._board)
-        self._handles = Handles(self._board)
-        self.camera: SharedCamera = SharedCamera(self._board, width, height)
+        self._latest = LatestMessages()
+        self._latest.put("title", to_page.TITLE(title=title, run=fresh_token(), history=max(history, 0)))
+        self.controls: Controls = Controls(self._latest)
+        self.drawings: Drawings = Drawings(self._latest)
+        self._handles = Handles(self._latest)
+        self.camera: SharedCamera = SharedCamera(self._latest, width, height)
         self.keyboard: Keyboard = Keyboard()
         self.mouse: Mouse = Mouse()
         self._gamepads = Gamepads()
@@ -133,14 +133,14 @@ class Viewer:
         self._pictures = Pictures()
         self.lock: Any = RLock() if lock is None else lock
         self._world = world
-        self._chores = StepQueue(self.lock)
+        self._step_queue = StepQueue(self.lock)
         self._joint_hands = JointHands(world)
-        self._moments = Moments(world, self._board)
+        self._moments = Moments(world, self._latest)
         self._leaving = Leaving(self._close_by_user)
-        self._last_words = LastWords(self._board, lambda: self._server)
-        self._frames = Frames(world, self.lock, self._board, max(history, 0))
+        self._last_words = LastWords(self._latest, lambda: self._server)
+        self._frames = Frames(world, self.lock, self._latest, max(history, 0))
         self._past = self._frames.past
-        self.previews: Previews = Previews(self._board)
+        self.previews: Previews = Previews(self._latest)
         self._picking = Picking(world, self.lock, lambda: self.pause_control.closed)
         self._turning = Turning(world, self.lock, lambda: self.pause_control.closed)
         self._sleeping = Sleeping(world)
@@ -149,42 +149,46 @@ class Viewer:
             from_page.SLIDER: self._take_slider,
             from_page.PRESS: self._take_press,
             from_page.KEY: self._take_key,
-            from_page.BLUR: lambda page, told: self.keyboard.release_all(page),
+            from_page.BLUR: lambda page, message: self.keyboard.release_all(page),
             from_page.MOUSE: self._take_mouse,
             from_page.CAMERA: self._take_camera,
             from_page.SIZE: self._take_size,
-            from_page.VISIBLE: lambda page, told: self._pictures.show(page, visible=bool(told["visible"])),
-            from_page.DRAWN: lambda page, told: self._pictures.drawn(page, int(told["picture"])),
+            from_page.VISIBLE: lambda page, message: self._pictures.show(
+                page, visible=bool(message["visible"])
+            ),
+            from_page.DRAWN: lambda page, message: self._pictures.drawn(page, int(message["picture"])),
             from_page.PAST: self._tell_past,
-            from_page.PREVIEW_WIDTH: lambda page, told: self.previews.ask(page, int(told["width"])),
-            from_page.WANT: lambda page, told: self._frames.want(page, DetailRequest.told(told)),
+            from_page.PREVIEW_WIDTH: lambda page, message: self.previews.ask(page, int(message["width"])),
+            from_page.WANT: lambda page, message: self._frames.want(
+                page, DetailRequest.from_message(message)
+            ),
             from_page.DRIVE: self._take_drive,
             from_page.CONTROL: self._take_control,
             from_page.GIVE_BACK: self._give_back,
             from_page.HANDLE: self._take_handle,
-            from_page.SLEEP: lambda page, told: self._chores.add(self._sleeping.toggle),
-            from_page.PROFILE: lambda page, told: self.on_profile(bool(told["running"])),
+            from_page.SLEEP: lambda page, message: self._step_queue.add(self._sleeping.toggle),
+            from_page.PROFILE: lambda page, message: self.on_profile(bool(message["running"])),
             from_page.GRASP: self._take_grasp,
-            from_page.PULL: lambda page, told: self._picking.move(page, _vector(told["target"])),
+            from_page.PULL: lambda page, message: self._picking.move(page, _vector(message["target"])),
             from_page.TURN: self._turning.turn,
             from_page.LET_GO: self._let_go,
             from_page.GAMEPADS: self._take_gamepads,
-            from_page.PAUSE: lambda page, told: self.pause(bool(told["paused"])),
-            from_page.STEP: lambda page, told: self.pause_control.let_through(),
+            from_page.PAUSE: lambda page, message: self.pause(bool(message["paused"])),
+            from_page.STEP: lambda page, message: self.pause_control.let_through(),
             from_page.SPEED: self._take_speed,
-            from_page.RESET: lambda page, told: self._chores.add(self._moments.reset),
-            from_page.MARK: lambda page, told: self._chores.add(self._moments.mark),
-            from_page.RESTORE: lambda page, told: self._chores.add(
-                partial(self._moments.restore, int(told["mark"]))
+            from_page.RESET: lambda page, message: self._step_queue.add(self._moments.reset),
+            from_page.MARK: lambda page, message: self._step_queue.add(self._moments.mark),
+            from_page.RESTORE: lambda page, message: self._step_queue.add(
+                partial(self._moments.restore, int(message["mark"]))
             ),
-            from_page.CLOSE: lambda page, told: self._close_by_user(),
+            from_page.CLOSE: lambda page, message: self._close_by_user(),
         }
         if lock is None:
             self._step_lock: StepLock | None = StepLock(self)
             world.observers.append(self._step_lock)
         else:
             self._step_lock = None
-        boards[world] = self._board
+        latest_of[world] = self._latest
         named = frozenset(name.lower() for name in names)
         if token is None:
             # With the user's own token an open page can reconnect to the next script. Addresses for other
@@ -193,11 +197,13 @@ class Viewer:
             token = user_token() if is_loopback(host) and not in_notebook() else fresh_token()
         access = Access(host, token, named)
 
-        def receive(page: int, told: dict[str, Any]) -> None:
-            self._answers[from_page.checked(told)](page, told)
+        def receive(page: int, message: dict[str, Any]) -> None:
+            self._answers[from_page.checked(message)](page, message)
 
         unwatched = self._record if self._past.is_on else None
-        self._server = PageServer(access, port, self._board, self._frame, receive, self._page_gone, unwatched)
+        self._server = PageServer(
+            access, port, self._latest, self._frame, receive, self._page_gone, unwatched
+        )
 
     @property
     def address(self) -> str:
@@ -216,7 +222,7 @@ class Viewer:
 
     def configure(self, options: dict[str, Any]) -> None:
         """Sets display options; see `Options` in `page/options.js`."""
-        self._board.put("options", to_page.OPTIONS(**options))
+        self._latest.put("options", to_page.OPTIONS(**options))
 
     def pause(self, paused: bool) -> None:
         """Pauses the simulation, or continues it."""
@@ -226,7 +232,7 @@ class Viewer:
         else:
             self.pause_control.open()
         self._update_hold()
-        self._board.put("pause", to_page.PAUSE(paused=paused))
+        self._latest.put("pause", to_page.PAUSE(paused=paused))
         if changed:
             self.on_pause(paused)
 
@@ -238,7 +244,7 @@ class Viewer:
         """
         self.pause_control.set_speed(speed)
         self._update_hold()
-        self._board.put("speed", to_page.SPEED(speed=speed))
+        self._latest.put("speed", to_page.SPEED(speed=speed))
 
     def wait_for_turn(self, *, listening: bool = False) -> bool:
         """Waits until a step may be made.
@@ -272,7 +278,7 @@ class Viewer:
     def key_events(self) -> dict[int, int]:
         """Key events since the last call; after ESC was reported the viewer closes."""
         events = self.keyboard.events()
-        self._leaving.told(events)
+        self._leaving.take_events(events)
         return events
 
     def _update_hold(self) -> None:
@@ -436,7 +442,7 @@ class Viewer:
     def _frame(self) -> bytes | None:
         self._picking.apply()
         self._turning.apply()
-        self._chores.do()
+        self._step_queue.run()
         if not self.held and not self._moments.start_is_known:
             self._update_hold()
         return self._record()
@@ -448,7 +454,7 @@ class Viewer:
 
     def _tell_past(self, page: int, request: dict[str, Any]) -> None:
         excerpt = self._past.before(int(request["before"]), known=bool(request["known"]))
-        self._server.send_later(page, partial(told, excerpt))
+        self._server.send_later(page, partial(packed_past, excerpt))
 
     def _page_gone(self, page: int) -> None:
         self.keyboard.release_all(page)
@@ -469,16 +475,16 @@ class Viewer:
         if self.is_open and not self.page_count and self.pause_control.closed:
             self.pause(False)
 
-    def _let_go(self, page: int, told: dict[str, Any]) -> None:
+    def _let_go(self, page: int, message: dict[str, Any]) -> None:
         self._picking.release(page)
         self._turning.release(page)
 
-    def _take_gamepads(self, page: int, told: dict[str, Any]) -> None:
-        self._gamepads.take(page, told)
+    def _take_gamepads(self, page: int, message: dict[str, Any]) -> None:
+        self._gamepads.take(page, message)
         self.pause_control.call_back()
 
-    def _take_key(self, page: int, told: dict[str, Any]) -> None:
-        key, code, down = str(told["key"]), str(told["code"]), bool(told["down"])
+    def _take_key(self, page: int, message: dict[str, Any]) -> None:
+        key, code, down = str(message["key"]), str(message["code"]), bool(message["down"])
         change = self.keyboard.press if down else self.keyboard.release
         change(page, key, code)
         if down and key_code(key, code) == ESCAPE:
@@ -486,60 +492,64 @@ class Viewer:
             self._update_hold()
         self.pause_control.call_back()
 
-    def _take_speed(self, page: int, told: dict[str, Any]) -> None:
-        speed = told["speed"]
+    def _take_speed(self, page: int, message: dict[str, Any]) -> None:
+        speed = message["speed"]
         if speed is None or 0.0 < float(speed) < inf:
             self.set_speed(None if speed is None else float(speed))
 
-    def _take_slider(self, page: int, told: dict[str, Any]) -> None:
-        self.controls.move(int(told["slider"]), float(told["value"]))
+    def _take_slider(self, page: int, message: dict[str, Any]) -> None:
+        self.controls.move(int(message["slider"]), float(message["value"]))
         self.pause_control.call_back()
 
-    def _take_press(self, page: int, told: dict[str, Any]) -> None:
-        self.controls.press(int(told["slider"]))
+    def _take_press(self, page: int, message: dict[str, Any]) -> None:
+        self.controls.press(int(message["slider"]))
         self.pause_control.call_back()
 
-    def _take_mouse(self, page: int, told: dict[str, Any]) -> None:
-        x, y = float(told["x"]), float(told["y"])
-        if "button" in told:
-            self.mouse.button(x, y, int(told["button"]), down=bool(told["down"]))
+    def _take_mouse(self, page: int, message: dict[str, Any]) -> None:
+        x, y = float(message["x"]), float(message["y"])
+        if "button" in message:
+            self.mouse.button(x, y, int(message["button"]), down=bool(message["down"]))
         else:
             self.mouse.move(x, y)
 
-    def _take_camera(self, page: int, told: dict[str, Any]) -> None:
-        x, y, z = _vector(told["target"])
-        distance, yaw, pitch = (float(told[name]) for name in ("distance", "yaw", "pitch"))
+    def _take_camera(self, page: int, message: dict[str, Any]) -> None:
+        x, y, z = _vector(message["target"])
+        distance, yaw, pitch = (float(message[name]) for name in ("distance", "yaw", "pitch"))
         if all(map(isfinite, (x, y, z, distance, yaw, pitch))) and distance > 0.0:
-            chosen = bool(told.get("chosen", True))
+            chosen = bool(message.get("chosen", True))
             self.camera.moved(distance, yaw, pitch, (x, y, z), chosen=chosen)
 
-    def _take_size(self, page: int, told: dict[str, Any]) -> None:
-        width, height = int(told["width"]), int(told["height"])
+    def _take_size(self, page: int, message: dict[str, Any]) -> None:
+        width, height = int(message["width"]), int(message["height"])
         if min(width, height) > 0:
             self.camera.resized(width, height)
 
-    def _take_drive(self, page: int, told: dict[str, Any]) -> None:
-        body, joint, target = int(told["body"]), int(told["joint"]), float(told["target"])
-        mode = told.get("mode", "position")
+    def _take_drive(self, page: int, message: dict[str, Any]) -> None:
+        body, joint, target = int(message["body"]), int(message["joint"]), float(message["target"])
+        mode = message.get("mode", "position")
         if mode not in MODES:
             raise ValueError(f"a joint has no mode {mode!r}")
         hands, pause = self._joint_hands, self.pause_control
-        self._chores.add(lambda: hands.drive(body, joint, mode, target, place=pause.closed))
+        self._step_queue.add(lambda: hands.drive(body, joint, mode, target, place=pause.closed))
 
-    def _take_control(self, page: int, told: dict[str, Any]) -> None:
+    def _take_control(self, page: int, message: dict[str, Any]) -> None:
         control = self._joint_hands.control
-        self._chores.add(partial(control, int(told["body"]), int(told["actuator"]), float(told["control"])))
+        self._step_queue.add(
+            partial(control, int(message["body"]), int(message["actuator"]), float(message["control"]))
+        )
 
-    def _give_back(self, page: int, told: dict[str, Any]) -> None:
-        self._chores.add(partial(self._joint_hands.give_back, int(told["body"]), int(told["joint"])))
+    def _give_back(self, page: int, message: dict[str, Any]) -> None:
+        self._step_queue.add(
+            partial(self._joint_hands.give_back, int(message["body"]), int(message["joint"]))
+        )
 
-    def _take_handle(self, page: int, told: dict[str, Any]) -> None:
-        x, y, z, w = map(float, told["orientation"])
-        self._handles.move(int(told["handle"]), _vector(told["position"]), (x, y, z, w))
+    def _take_handle(self, page: int, message: dict[str, Any]) -> None:
+        x, y, z, w = map(float, message["orientation"])
+        self._handles.move(int(message["handle"]), _vector(message["position"]), (x, y, z, w))
 
-    def _take_grasp(self, page: int, told: dict[str, Any]) -> None:
-        point, target = _vector(told["point"]), _vector(told["target"])
-        self._picking.take(page, int(told["body"]), int(told["link"]), point, target)
+    def _take_grasp(self, page: int, message: dict[str, Any]) -> None:
+        point, target = _vector(message["point"]), _vector(message["target"])
+        self._picking.take(page, int(message["body"]), int(message["link"]), point, target)
 
     def _close_by_user(self) -> None:
         self.is_open = False

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 from numpy.typing import ArrayLike
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 if TYPE_CHECKING:
     from carom.checks import Array
     from carom.linearization import LinearizedStep
+    from carom.scene.sensors.sensor import BodySensor
     from carom.world.world import World
 
 
@@ -33,7 +34,7 @@ class Linearizing:
         steps: int = 1,
         method: str = "exact",
         smoothing: float = 0.0,
-        outputs: Callable[[World], ArrayLike] | None = None,
+        outputs: Callable[[World], ArrayLike] | Iterable[BodySensor] | None = None,
         positions: ArrayLike | None = None,
         velocities: ArrayLike | None = None,
         activations: ArrayLike | None = None,
@@ -52,16 +53,20 @@ class Linearizing:
             controls: Kinds of controls, or full names of some: "torques" (of all dofs of joints),
                 "target_positions" and "target_velocities" (of motors), "actuators".
             parameters: Likewise: "masses" (centres and moments of inertia stay), "inertias" (principal
-                moments), "inertial_parameters" (ten of each link), "friction" (lateral, of links),
-                "joint_friction", "stiffness", "damping", "armature", "motor_position_gains",
-                "motor_velocity_gains", "motor_forces", "actuator_gains", "actuator_biases".
+                moments), "inertial_parameters" (ten of each link), "offsets" (of joints' frames in those of
+                their parent links, along its axes), "friction" (lateral, of links), "joint_friction",
+                "stiffness", "damping", "armature", "motor_position_gains", "motor_velocity_gains",
+                "motor_forces", "actuator_gains", "actuator_biases".
             steps: Number of steps.
             method: "exact", or "differences" for central differences of the steps themselves, of all that can
                 be in a world.
             smoothing: Softness of rows that hold, relative to their own inverse mass: 0.1 lets them yield by
                 a tenth. Only with "exact".
-            outputs: A function that returns numbers, such as readings of sensors, of a world after the steps;
-                for `C` and `D`, which are found by central differences.
+            outputs: What `C` and `D` are of: sensors, such as `robot.sensors`, or a function that returns
+                numbers of a world after the steps. Those of sensors are exact where what they show follows
+                from positions and velocities (joints, frames, gyroscopes, subtrees of links...) and from
+                their changes (accelerometers); central differences for forces, torques, touch, distances
+                along rays, tendons, and sensors with delay or period, and for functions.
             positions: Positions to linearise at, as `position`; None for the present ones. Contacts start
                 from the impulses that they have now.
             velocities: Velocities, as `velocity`, likewise.

@@ -63,7 +63,7 @@ class Scene(Sequence[Body]):
         self.ignored: IgnoredList = ignored
 
     def apply_options(self) -> None:
-        """Set gravity and the time step of the world to those of the file, and how far its solver goes.
+        """Set gravity, fluid and time step of the world to those of the file, and how far its solver goes.
 
         Constraints of MJCF files yield, by forces that depend on all others: with the usual
         `solver_residual_threshold` of 1e-7 the solver ends while they are 1e-4 to 2e-3 from those of MuJoCo,
@@ -72,6 +72,12 @@ class Scene(Sequence[Body]):
         if "gravity" in self.options:
             has_gravity = self.options.get("flag.gravity", True)
             self.world.gravity = self.options["gravity"] if has_gravity else (0.0, 0.0, 0.0)
+        if self.format == "MJCF":
+            is_off = not any(self.options.get(f"flag.{name}", True) for name in ("spring", "damper"))
+            density, viscosity = (self.options.get(name, 0.0) for name in ("density", "viscosity"))
+            self.world.parameters.fluid_density = 0.0 if is_off else density
+            self.world.parameters.fluid_viscosity = 0.0 if is_off else viscosity
+            self.world.parameters.wind = self.options.get("wind", (0.0, 0.0, 0.0))
         if "timestep" in self.options:
             self.world.parameters.time_step = self.options["timestep"]
         if "solver_residual_threshold" in self.options:

@@ -52,6 +52,10 @@ def _take_parameters(world: World, engine: Engine, number: int) -> None:
     model, shapes = engine.arrays.model, engine.contact_arrays.shapes.table
     x, y, z = _row(model, "gravity_vector", number)[0].tolist()
     world.parameters.gravity = (x, y, z)
+    world.parameters.fluid_density = float(_row(model, "fluid_density", number)[0])
+    world.parameters.fluid_viscosity = float(_row(model, "fluid_viscosity", number)[0])
+    x, y, z = _row(model, "fluid_wind", number)[0].tolist()
+    world.parameters.wind = (x, y, z)
     for body in world.bodies.values():
         tree = body.rows.tree
         damping = {name: float(_row(model, field, number)[tree]) for name, field in OF_BODY.items()}

@@ -45,8 +45,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
     """Many worlds with the same bodies, each with its own state.
 
     Each is simulated, bit for bit, like a single world, for any number of other worlds and of threads.
-    Besides the state, these may differ: gravity, masses and inertias, contact parameters, damping, joint
-    limits, and which user constraints are active. The first axis of arrays is the world: (count, ...).
+    Besides the state, these may differ: gravity, fluid, masses and inertias, contact parameters, damping,
+    joint limits, and which user constraints are active. The first axis of arrays is the world: (count, ...).
 
     Attributes:
         count: Number of worlds.
@@ -353,6 +353,36 @@ class Worlds(ContactQueries, Linearizing, Closed):
         worlds = self._chosen(where)
         values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
         self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
+
+    def set_fluid(
+        self,
+        density: ArrayLike | None = None,
+        viscosity: ArrayLike | None = None,
+        wind: ArrayLike | None = None,
+        where: ArrayLike | None = None,
+    ) -> None:
+        """Set the fluid in each world, or in some; see `EngineParameters`.
+
+        Args:
+            density: [kg/m³], (n,) for the n worlds chosen, or one for all; None to leave it as it is.
+            viscosity: [Pa s], likewise.
+            wind: Velocity of the fluid in world axes [m/s], (n, 3) or (3,), likewise.
+            where: Which worlds: a mask (count,) or their indices; None for all.
+
+        Raises:
+            ValueError: A shape does not fit, something is not finite, or a density or viscosity is negative.
+        """
+        worlds = self._chosen(where)
+        found: dict[str, np.ndarray] = {}
+        for name, given in (("density", density), ("viscosity", viscosity)):
+            if given is not None:
+                found[name] = worlds.values(np.asarray(self._engine.take(given)), (), name)
+                if (found[name] < 0.0).any():
+                    raise ValueError(f"{name} must not be negative")
+        if wind is not None:
+            found["wind"] = worlds.values(np.asarray(self._engine.take(wind)), (3,), "wind")
+        for name, values in found.items():
+            self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
 
     def enable_constraint(
         self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None

@@ -65,7 +65,7 @@ def test_a_page_that_comes_late_sees_what_was_before_it(late: Page):
     late.page.locator("#scrub").fill(str(start + 0.8))
     assert late.page.locator(LABELS).all_text_contents() == []
     # What is still there has been since then, and not once more.
-    assert late.page.evaluate("app.history.ledger.versions.get('body 0').length") == 1
+    assert late.page.evaluate("app.history.messages.versions.get('body 0').length") == 1
     late.page.locator("#live").click()
     fall(10)
     late.until("app.history.frames.at(-1).header.time > 1.02")

@@ -63,7 +63,7 @@ _SENSORS = {
 
 _TENDON = (
     "armature class damping frictionloss limited margin name range solimplimit solreflimit springlength "
-    "stiffness"
+    "stiffness actuatorfrclimited actuatorfrcrange"
 )
 _TENDONS = ("fixed", "spatial", "tendon")
 
@@ -86,8 +86,9 @@ _READ = {
     "solimplimit solreffriction solreflimit springdamper springref stiffness type "
     "actuatorfrclimited actuatorfrcrange",
     "freejoint": "align name",
-    "geom": "class conaffinity condim contype density fitscale friction fromto group hfield mass material "
-    f"margin mesh name pos priority rgba shellinertia size solimp solmix solref type {_TURN}",
+    "geom": "class conaffinity condim contype density fitscale fluidcoef fluidshape friction fromto group "
+    "hfield mass material margin mesh name pos priority rgba shellinertia size solimp solmix solref type "
+    f"{_TURN}",
     "site": f"class fromto name pos size type {_TURN}",
     "camera": f"class focal focalpixel fovy mode name pos resolution sensorsize {_TURN}",
     "attach": "body frame model prefix",
@@ -112,7 +113,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ("joint", "actuatorgravcomp", "what balances gravity is not among the forces of actuators", _YET),
     ("joint", "springyield", "the joint has another spring", _YET),
     ("geom", "adhesion surfacevel", "the surface neither sticks nor moves", _YET),
-    ("geom", "fluidcoef fluidshape", "there is no fluid", "fluids are not built"),
     ("key", "plastic", "flexes are not deformed", "flexes are not built"),
     ("key", "mpos mquat", "bodies that only users move stay where they are", _YET),
     *[
@@ -121,10 +121,6 @@ _NOT_SIMULATED: tuple[tuple[str, str, str, str], ...] = (
     ],
     ("general", "inheritrange", _LAW, _YET),
     *[(tag, "solimpfriction solreffriction", "its friction does not yield", _YET) for tag in _TENDONS],
-    *[
-        (tag, "actuatorfrclimited actuatorfrcrange", "its actuators have no such bound", _YET)
-        for tag in _TENDONS
-    ],
     *[(tag, "springyield", "its spring does not yield", _YET) for tag in _TENDONS],
     ("pair", "adhesion", "its geoms do not stick to each other", _YET),
     ("weld", "torquescale", _RIGID, _YET),

@@ -84,7 +84,10 @@ def _read_inertial(context: FileContext, link: Element, name: str) -> Inertial:
             return context.written.without_inertial()
         context.links_without_inertial.append(name)
         return _NO_INERTIAL
-    mass = context.non_negative(*context.place(element, "mass"))
+    if context.written is not None and element.first("mass") is None:
+        mass = context.written.without_inertial().mass
+    else:
+        mass = context.non_negative(*context.place(element, "mass"))
     inertia = element.first("inertia")
     if inertia is None:
         raise context.error(element, "<inertia> is missing")

@@ -34,9 +34,6 @@ def read_joint(context: FileContext, element: Element, link_indices: dict[str, i
     """
     name = context.required(element, "name")
     kind = read_joint_type(context, element, _TYPES)
-    if kind is JointType.FLOATING and context.written is not None:
-        context.leave_out(element, "it is fixed", "floating joints inside a tree are not supported", "type")
-        kind = JointType.FIXED
     axis, axis_length = _read_axis(context, element, kind)
     if context.written is not None:
         axis_length = 1.0

@@ -134,11 +134,13 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
     root = find_root(context, links, joints, list(element.all("joint")))
     actuators: tuple[ActuatorSpec, ...] = ()
     if context.written is not None:
+        from carom.formats.urdf.floating import with_free_root
         from carom.formats.urdf.transmission import read_transmissions
 
         actuators = read_transmissions(context, joints)
         report_motion_without_mass(context, links, joints)
         joints = checked_followers(context, joints)
+        links, joints, root = with_free_root(context, links, joints, root)
     robot = Robot(
         name,
         tuple(_with_late_materials(context, link) for link in links),

@@ -26,7 +26,7 @@ def read_transmissions(context: FileContext, joints: Sequence[Joint]) -> tuple[A
     reduction is one of 1. Transmissions of other kinds are reported.
 
     Raises:
-        DescriptionError: A joint does not exist, a name is missing, or a reduction is not a number.
+        DescriptionError: A name is missing, or a reduction is not a number.
     """
     by_name = {joint.name: joint for joint in joints}
     from carom.description.actuator import Motor
@@ -43,7 +43,8 @@ def read_transmissions(context: FileContext, joints: Sequence[Joint]) -> tuple[A
         name = context.required(stated[0], "name")
         joint = by_name.get(name)
         if joint is None:
-            raise context.error(stated[0], f"there is no joint {name!r}")
+            context.leave_out(element, "nothing is driven by it", f"there is no joint {name!r}")
+            continue
         reduction = _reduction(context, element, stated[0], driving[0])
         for part in (stated[0], driving[0]):
             for interface in part.all("hardwareInterface"):

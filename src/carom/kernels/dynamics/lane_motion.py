@@ -5,6 +5,7 @@ one for each world. So all arrays of numbers are those of `engine.lane_work`, wi
 """
 
 from carom.kernels.dynamics.dynamics import generalized_forces, link_bias_forces, link_inertias
+from carom.kernels.dynamics.fluid import add_fluid_forces, has_fluid
 from carom.kernels.dynamics.joint_terms import add_joint_terms
 from carom.kernels.dynamics.kinematics import forward_kinematics, motion_subspaces
 from carom.kernels.dynamics.mass_matrix import composite_inertia, factorise, invert, solve
@@ -22,6 +23,8 @@ def accelerate_tree(model: Model, time_step: real, state: State, scratch: Scratc
     motion_subspaces(model, state.link_pose, scratch, world, tree)
     link_inertias(model, scratch, world, tree)
     link_bias_forces(model, state, scratch, world, tree, FREE_MOTION)
+    if has_fluid(model, world):
+        add_fluid_forces(model, scratch, world, tree)
     generalized_forces(model, state, scratch, world, tree, FREE_MOTION)
     composite_inertia(model, scratch, world, tree)
     if in_some_world(model.tree_joint_terms[world, tree] != 0.0):

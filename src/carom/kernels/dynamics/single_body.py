@@ -13,6 +13,7 @@ from carom.kernels.dynamics.dynamics import (
     turned_inertia,
     update_velocities,
 )
+from carom.kernels.dynamics.fluid import fluid_wrench, has_fluid
 from carom.kernels.dynamics.kinematics import (
     base_omega,
     base_subspace,
@@ -24,7 +25,7 @@ from carom.kernels.dynamics.quarantine import report_fault
 from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
-from carom.kernels.types import Int32, Matrix3, Vector4, func, real
+from carom.kernels.types import Int32, Matrix3, Vector3, Vector4, func, real
 
 
 @func
@@ -70,6 +71,10 @@ def move_single_body(
     spin = turned_inertia(rotation, moments) * omega
     force = external_force(model, state, mass, world, link)
     torque = external_torque(state, world, link) - wp.cross(omega, spin)
+    if has_fluid(model, world):
+        wrench = fluid_wrench(model, world, link, rotation, mass, omega, velocity)
+        force += Vector3(wrench[0], wrench[1], wrench[2])
+        torque += Vector3(wrench[3], wrench[4], wrench[5])
     linear_damping = model.tree_linear_damping[world, tree]
     if linear_damping != 0.0:
         force -= velocity * (mass * damping_rate(linear_damping, wp.length(velocity)))

@@ -4,7 +4,7 @@ import warp as wp
 
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity
 from carom.kernels.linearization.contact_points import greatest_of, move_contact
-from carom.kernels.linearization.dof_motion import find_axes, find_reach
+from carom.kernels.linearization.dof_motion import find_reach
 from carom.kernels.linearization.friction_rows import add_friction_rows
 from carom.kernels.linearization.link_rows import add_row_of_links, parting
 from carom.kernels.linearization.rows import note_problem
@@ -14,7 +14,6 @@ from carom.kernels.structs import (
     Contacts,
     Model,
     PairRows,
-    Scratch,
     Settings,
     Shapes,
     State,
@@ -126,7 +125,8 @@ def add_normal(
     """Add the normal row of a contact; returns its number among the rows of all worlds."""
     n = space.dofs
     impulse = contacts.contact_impulse[world, touch.contact][0]
-    row = add_row_of_links(settings, space, steps, place, touch, CONTACT_ROW, 0, Int32(0), impulse)
+    kept = touch.normal_law[0]
+    row = add_row_of_links(settings, space, steps, place, touch, CONTACT_ROW, 0, Int32(0), impulse, kept)
     number = row - place * space.most_rows
     steps.alpha[row * space.most_rows + number] = 1.0
     approach = real(0.0)
@@ -213,7 +213,6 @@ def add_contacts(
     model: Model,
     settings: Settings,
     state: State,
-    scratch: Scratch,
     shapes: Shapes,
     contacts: Contacts,
     pair_rows: PairRows,
@@ -223,7 +222,6 @@ def add_contacts(
     world: Int32,
 ):
     """Add the rows of all contacts that push."""
-    find_axes(model, state, scratch, space, steps, place, world)
     for contact in range(contacts.count_contacts[world, THERE]):
         if contacts.contact_impulse[world, contact][0] > 0.0:
             add_contact(

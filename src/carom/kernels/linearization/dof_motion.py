@@ -65,7 +65,7 @@ def follows(space: StepSpace, dof: Int32, other: Int32) -> bool:
 def find_reach(
     model: Model, space: StepSpace, steps: StepBatch, place: Int32, link_a: Int32, link_b: Int32
 ) -> Int32:
-    """List the dofs that move two links; returns their number."""
+    """List the dofs that move two links, -1 for the world; returns their number."""
     n = space.dofs
     count = Int32(0)
     for dof in range(n):
@@ -73,7 +73,9 @@ def find_reach(
     for end in range(2):
         link = wp.where(end == 0, link_a, link_b)
         side = wp.where(end == 0, Int32(MOVES_A), Int32(MOVES_B))
-        row = model.link[link].nearest_dof + 0
+        row = Int32(-1)
+        if link >= 0:
+            row = model.link[link].nearest_dof + 0
         while row >= 0:
             dof = space.row_dof[row]
             if steps.reach_side[place * n + dof] == 0:

@@ -2,10 +2,9 @@
 
 import warp as wp
 
-from carom.kernels.linearization.dof_motion import add_inertia_changes
-from carom.kernels.linearization.link_rows import add_row_of_links, jacobian_change, law_of_row, parting
-from carom.kernels.linearization.matrices import add_products, clear
+from carom.kernels.linearization.link_rows import add_row_of_links, add_turning_changes, law_of_row, parting
 from carom.kernels.linearization.rows import status_of
+from carom.kernels.linearization.soft_rows import write_mass_changes
 from carom.kernels.linearization.yielding_rows import add_yielding, set_friction
 from carom.kernels.structs import Model, Settings, Shapes, State, StepBatch, StepSpace, TouchingLinks
 from carom.kernels.types import Int32, func, real
@@ -79,29 +78,12 @@ def add_mass_changes(
     n = space.dofs
     angular = wp.where(kind == CONTACT_FRICTION, Int32(0), Int32(1))
     law = law_of_row(touch, kind)
-    # The memory of M⁻¹ Jᵀ of all rows, which is written later.
-    response = place * n * space.most_rows
-    change = response + n
-    clear(steps.response, response, 2 * n)
-    add_products(
-        steps.response, response, n, real(1.0), steps.jacobian, row * n, n,
-        steps.inverse, place * n * n, n, 1, n, n,
-    )  # fmt: skip
-    inverse = law[1] + 0.0
+    inverse = law[1] + write_mass_changes(model, state, space, steps, place, world, row)
+    add_turning_changes(space, steps, place, touch, number, angular)
+    change = place * n * space.most_rows + n
     for index in range(touch.reach):
         dof = steps.reach[place * n + index]
-        rate = steps.response[response + dof]
-        inverse += rate * steps.jacobian[row * n + dof]
-        for rank in range(touch.reach):
-            other = steps.reach[place * n + rank]
-            bent = jacobian_change(space, steps, place, touch, number, angular, dof, other)
-            steps.response[change + other] += 2.0 * rate * bent
         steps.response[change + dof] += law[2] * parting(touch, steps, place * n + dof)
-    tree = space.dof_tree[steps.reach[place * n]]
-    last = space.dof_tree[steps.reach[place * n + touch.reach - 1]]
-    add_inertia_changes(model, state, space, steps, place, world, tree, response, change)
-    if last != tree:
-        add_inertia_changes(model, state, space, steps, place, world, last, response, change)
     factor /= inverse * inverse
     for dof in range(n):
         steps.side[side * space.columns + dof] -= factor * steps.response[change + dof]
@@ -243,10 +225,11 @@ def add_friction_rows(
     angular = wp.where(kind == CONTACT_FRICTION, Int32(0), Int32(1))
     alone = kind == SPINNING_FRICTION
     direction = wp.where(alone, Int32(0), Int32(1))
-    first = add_row_of_links(settings, space, steps, place, touch, kind, direction, angular, x)
+    kept = law_of_row(touch, kind)[0]
+    first = add_row_of_links(settings, space, steps, place, touch, kind, direction, angular, x, kept)
     count = Int32(1)
     if not alone:
-        add_row_of_links(settings, space, steps, place, touch, kind, 2, angular, y)
+        add_row_of_links(settings, space, steps, place, touch, kind, 2, angular, y, kept)
         count = Int32(2)
     number = first - place * room
     push = steps.row_impulse[normal]

@@ -1,19 +1,21 @@
-"""Rows of joints, linearised: motors, limits, friction, actuators, and joints that are tied together."""
+"""Rows of joints, linearised: motors, limits, friction and actuators."""
 
 import warp as wp
 
+from carom.kernels.linearization.ball_rows import add_ball_motor
+from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.rows import (
     NEAR,
-    add_row,
     add_row_of_dof,
+    joint_position,
     note_problem,
     set_input,
     status_of,
 )
-from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace, UserConstraints
+from carom.kernels.linearization.soft_rows import ERROR_ITSELF, set_error, write_mass_changes, yielding_law
+from carom.kernels.structs import Model, Scratch, Settings, State, StepBatch, StepSpace
 from carom.kernels.types import Int32, Vector3, func, real
 from carom.layouts.codes import (
-    ABSENT,
     ACTUATOR,
     FRICTION,
     LIMIT,
@@ -25,9 +27,8 @@ from carom.layouts.codes import (
     MOTOR_VELOCITY,
     MOTOR_VELOCITY_CLAMP,
     SPHERICAL_LIMIT,
+    SPHERICAL_MOTOR,
     UNFILTERED,
-    USER_COUPLING,
-    USER_GEAR,
 )
 from carom.layouts.linearization import (
     ACTUATOR_ROW,
@@ -35,9 +36,7 @@ from carom.layouts.linearization import (
     BASE_DOF,
     BASE_SPRING,
     BOUNDED_SUM,
-    COUPLING_ROW,
     FRICTION_ROW,
-    GEAR_ROW,
     INPUT_BIAS,
     INPUT_BOUND,
     INPUT_CONTROL,
@@ -49,105 +48,7 @@ from carom.layouts.linearization import (
     ROW_LOWER,
     ROW_SATURATED,
     ROW_UPPER,
-    YIELDING_FRICTION,
-    YIELDING_LIMIT,
-    YIELDING_USER,
 )
-
-
-@func
-def joint_position(scratch: Scratch, space: StepSpace, world: Int32, dof: Int32) -> real:
-    """Position before the step of the joint of a dof that has one."""
-    return scratch.position_start[world, space.dof_position[dof]]
-
-
-@func
-def is_there(state: State, world: Int32, tree: Int32) -> Int32:
-    """1 unless a tree is absent; -1 is the world."""
-    there = Int32(1)
-    if tree >= 0:
-        if state.tree_activity[world, tree] == ABSENT:
-            there = Int32(0)
-    return there
-
-
-@func
-def add_tie(
-    model: Model,
-    settings: Settings,
-    state: State,
-    scratch: Scratch,
-    users: UserConstraints,
-    space: StepSpace,
-    steps: StepBatch,
-    place: Int32,
-    world: Int32,
-    user: Int32,
-):
-    """Add the row of a gear or of a coupling."""
-    n = space.dofs
-    if users.user_impedance[user][1] > 0.0:
-        note_problem(steps, place, YIELDING_USER, user)
-    impulse = state.user_impulse[world, user][0]
-    bound = users.user_max_impulse[user]
-    status = status_of(impulse, -bound, bound)
-    holds = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
-    is_gear = users.user_kind[user] == USER_GEAR
-    kind = wp.where(is_gear, Int32(GEAR_ROW), Int32(COUPLING_ROW))
-    row = add_row(space, steps, place, kind, status, user, holds, 1.0 - holds)
-    steps.row_impulse[row] = impulse
-    first = row * n
-    follower = space.row_dof[model.link[users.user_link_a[user]].first_dof]
-    steps.jacobian[first + follower] += 1.0
-    bent = real(0.0)
-    leader = Int32(-1)
-    if is_gear:
-        other = space.row_dof[model.link[users.user_link_b[user]].first_dof]
-        steps.jacobian[first + other] += users.user_gear_ratio[user]
-    elif users.user_tree_b[user] >= 0:
-        leader = space.row_dof[model.link[users.user_link_b[user]].first_dof]
-        x = joint_position(scratch, space, world, leader)
-        c = users.user_polynomial[user]
-        steps.jacobian[first + leader] -= c[0] + x * (2.0 * c[1] + x * (3.0 * c[2] + x * 4.0 * c[3]))
-        bent = -(2.0 * c[1] + x * (6.0 * c[2] + x * 12.0 * c[3]))
-    if status == ROW_HOLDS:
-        gain = users.user_erp[user] * settings.joint_erp / settings.time_step
-        for dof in range(n):
-            steps.side[row * space.columns + dof] = -gain * steps.jacobian[first + dof]
-        if is_gear:
-            auxiliary = users.user_gear_auxiliary[user]
-            if auxiliary >= 0:
-                third = space.row_dof[model.link[auxiliary].first_dof]
-                steps.through[first + third] = 1.0
-                steps.side[row * space.columns + third] += gain
-    if leader >= 0:
-        # The Jacobian changes with the position of the leader.
-        force = ((2 * place + 1) * n + leader) * space.columns + leader
-        steps.force[force] += impulse / settings.time_step * bent
-        solved = steps.velocity[(3 * place + 2) * n + leader]
-        steps.side[row * space.columns + leader] -= holds * solved * bent
-
-
-@func
-def add_ties(
-    model: Model,
-    settings: Settings,
-    state: State,
-    scratch: Scratch,
-    users: UserConstraints,
-    space: StepSpace,
-    steps: StepBatch,
-    place: Int32,
-    world: Int32,
-):
-    """Add the rows of gears and couplings; those of other user constraints are added on the host."""
-    for user in range(space.users):
-        kind = users.user_kind[user]
-        if kind == USER_GEAR or kind == USER_COUPLING:
-            there = is_there(state, world, users.user_tree_a[user])
-            there *= is_there(state, world, users.user_tree_b[user])
-            if users.user_enabled[world, user] != 0 and there == 1:
-                add_tie(model, settings, state, scratch, users, space, steps, place, world, user)
 
 
 @func
@@ -191,9 +92,35 @@ def add_motor(
 
 
 @func
+def let_joint_yield(
+    model: Model,
+    settings: Settings,
+    state: State,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    constraint: Int32,
+    row: Int32,
+    error: real,
+):
+    """Let the row of a limit or of friction on one dof yield, as `dynamics.yielding.yielding_row` does."""
+    n = space.dofs
+    clear(steps.rate, row * n, n)
+    impedance = model.constraint_impedance[world, constraint]
+    law = yielding_law(settings, model.constraint_reference[world, constraint], impedance, error)
+    stated = impedance[3] + 0.0
+    of_row = stated <= 0.0
+    if of_row:
+        stated = write_mass_changes(model, state, space, steps, place, world, row)
+    set_error(space, steps, place, row, law, error, ERROR_ITSELF, stated, real(1.0), of_row)
+
+
+@func
 def add_limit(
     model: Model,
     settings: Settings,
+    state: State,
     scratch: Scratch,
     space: StepSpace,
     steps: StepBatch,
@@ -207,14 +134,21 @@ def add_limit(
     position = joint_position(scratch, space, world, dof)
     impulse = steps.impulse[place * space.dofs + dof]
     side = wp.where(impulse > 0.0, real(1.0), real(-1.0))
-    violation = model.constraint_lower[world, constraint] - position
+    margin = model.constraint_margin[world, constraint]
+    violation = model.constraint_lower[world, constraint] + margin - position
     if side < 0.0:
-        violation = position - model.constraint_upper[world, constraint]
+        violation = position - model.constraint_upper[world, constraint] + margin
     if violation >= 0.0 and side * impulse > least:
         steps.impulse[place * space.dofs + dof] = 0.0
+        bound = model.constraint_max_impulse[world, constraint] * (1.0 - NEAR)
         if model.constraint_impedance[world, constraint][1] > 0.0:
-            note_problem(steps, place, YIELDING_LIMIT, dof)
-        if side * impulse >= model.constraint_max_impulse[world, constraint] * (1.0 - NEAR):
+            row = add_row_of_dof(space, steps, place, LIMIT_ROW, ROW_HOLDS, dof, real(1.0), real(0.0))
+            steps.row_impulse[row] = impulse
+            steps.side[row * space.columns + dof] = 1.0
+            let_joint_yield(
+                model, settings, state, space, steps, place, world, constraint, row, -side * violation
+            )
+        elif side * impulse >= bound:
             status = wp.where(side > 0.0, Int32(ROW_UPPER), Int32(ROW_LOWER))
             add_row_of_dof(space, steps, place, LIMIT_ROW, status, dof, real(0.0), real(1.0))
         else:
@@ -227,6 +161,7 @@ def add_limit(
 def add_friction(
     model: Model,
     settings: Settings,
+    state: State,
     space: StepSpace,
     steps: StepBatch,
     place: Int32,
@@ -245,7 +180,10 @@ def add_friction(
         row = add_row_of_dof(space, steps, place, FRICTION_ROW, status, dof, alpha, 1.0 - alpha)
         if status == ROW_HOLDS:
             if model.constraint_impedance[world, constraint][1] > 0.0:
-                note_problem(steps, place, YIELDING_FRICTION, dof)
+                steps.row_impulse[row] = impulse
+                let_joint_yield(
+                    model, settings, state, space, steps, place, world, constraint, row, real(0.0)
+                )
         else:
             sign = wp.where(status == ROW_LOWER, real(-1.0), real(1.0))
             set_input(
@@ -336,7 +274,7 @@ def add_joint_rows(
     """Add the rows of all joints.
 
     Impulses of motors and actuators are known; those of limits and friction are what is left of the impulses
-    on their dofs. Motors of spherical joints are added on the host.
+    on their dofs.
     """
     greatest = real(1.0e-300)
     for dof in range(space.dofs):
@@ -347,7 +285,7 @@ def add_joint_rows(
     for part in range(3):
         for constraint in range(space.constraints):
             kind = model.constraint[constraint].kind
-            own = part == 0 and (kind == MOTOR or kind == ACTUATOR)
+            own = part == 0 and (kind == MOTOR or kind == SPHERICAL_MOTOR or kind == ACTUATOR)
             own = own or (part == 1 and (kind == LIMIT or kind == SPHERICAL_LIMIT))
             own = own or (part == 2 and kind == FRICTION)
             if own:
@@ -355,14 +293,20 @@ def add_joint_rows(
                 dof = space.row_dof[model.link[link].first_dof]
                 if kind == MOTOR:
                     add_motor(settings, state, scratch, space, steps, place, world, dof)
+                elif kind == SPHERICAL_MOTOR:
+                    add_ball_motor(model, settings, state, scratch, space, steps, place, world, link, dof)
                 elif kind == ACTUATOR:
                     actuator = model.constraint[constraint].actuator
                     add_actuator(model, settings, state, scratch, space, steps, place, world, actuator, dof)
                 elif kind == LIMIT:
-                    add_limit(model, settings, scratch, space, steps, place, world, constraint, dof, least)
+                    add_limit(
+                        model, settings, state, scratch, space, steps, place, world, constraint, dof, least
+                    )
                 elif kind == FRICTION:
                     for axis in range(model.link[link].dof_count):
-                        add_friction(model, settings, space, steps, place, world, constraint, dof + axis)
+                        add_friction(
+                            model, settings, state, space, steps, place, world, constraint, dof + axis
+                        )
                 else:
                     for axis in range(3):
                         if wp.abs(steps.impulse[place * space.dofs + dof + axis]) > least:

@@ -110,6 +110,22 @@ def jacobian_change(
 
 
 @func
+def add_turning_changes(
+    space: StepSpace, steps: StepBatch, place: Int32, touch: TouchingLinks, number: Int32, angular: Int32
+):
+    """Add to what `write_mass_changes` has written of a row how its Jacobian turns."""
+    n = space.dofs
+    response = place * n * space.most_rows
+    for index in range(touch.reach):
+        dof = steps.reach[place * n + index]
+        rate = steps.response[response + dof]
+        for rank in range(touch.reach):
+            other = steps.reach[place * n + rank]
+            bent = jacobian_change(space, steps, place, touch, number, angular, dof, other)
+            steps.response[response + n + other] += 2.0 * rate * bent
+
+
+@func
 def add_row_of_links(
     settings: Settings,
     space: StepSpace,
@@ -120,11 +136,12 @@ def add_row_of_links(
     number: Int32,
     angular: Int32,
     impulse: real,
+    kept: real,
 ) -> Int32:
     """Add a row along the direction `number` of a contact, or about it, without α and β.
 
-    How its rate, less that of before the step which it keeps, changes as its Jacobian turns is kept in
-    `steps.rate` for `add_yielding`.
+    How its rate, less that of before the step of which it keeps the share `kept`, changes as its Jacobian
+    turns is written to `steps.rate`.
 
     Returns:
         Its number among the rows of all worlds.
@@ -132,7 +149,6 @@ def add_row_of_links(
     n = space.dofs
     row = add_row(space, steps, place, kind, ROW_HOLDS, touch.known_as, real(0.0), real(0.0))
     steps.row_impulse[row] = impulse
-    kept = law_of_row(touch, kind)[0]
     clear(steps.rate, row * n, n)
     direction, none = direction_of(touch, number), Vector3(0.0, 0.0, 0.0)
     linear, about = wp.where(angular == 1, none, direction), wp.where(angular == 1, direction, none)

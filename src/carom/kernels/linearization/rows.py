@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.linearization.matrices import clear
-from carom.kernels.structs import StepBatch, StepSpace
+from carom.kernels.structs import Scratch, StepBatch, StepSpace
 from carom.kernels.types import Int32, func, real
 from carom.layouts.linearization import ROW_HOLDS, ROW_LOWER, ROW_UPPER, ROWS_OF_CONTACT
 
@@ -65,6 +65,7 @@ def add_row(
     steps.row_kind[row] = kind
     steps.row_status[row] = status
     steps.row_dof[row] = number
+    steps.row_yield[row] = 0.0
     steps.alpha[row * space.most_rows + count] = alpha
     steps.beta[row * space.most_rows + count] = beta
     steps.row_count[place] = count + 1
@@ -96,3 +97,9 @@ def set_input(space: StepSpace, steps: StepBatch, row: Int32, first: Int32, numb
         if space.input_number[given] == number:
             steps.side[row * space.columns + space.states + given] += derivative * space.input_scale[given]
         given = space.input_next[given]
+
+
+@func
+def joint_position(scratch: Scratch, space: StepSpace, world: Int32, dof: Int32) -> real:
+    """Position before the step of the joint of a dof that has one."""
+    return scratch.position_start[world, space.dof_position[dof]]

@@ -3,7 +3,8 @@
 import warp as wp
 
 from carom.kernels.linearization.contact_rows import add_contacts, pushing_contacts
-from carom.kernels.linearization.joint_rows import add_joint_rows, add_ties
+from carom.kernels.linearization.dof_motion import find_axes
+from carom.kernels.linearization.joint_rows import add_joint_rows
 from carom.kernels.linearization.matrices import (
     add_products,
     clear,
@@ -12,6 +13,7 @@ from carom.kernels.linearization.matrices import (
     transposed,
 )
 from carom.kernels.linearization.rows import make_room
+from carom.kernels.linearization.user_rows import add_users
 from carom.kernels.mechanism.sweep import cross_matrix
 from carom.kernels.structs import (
     Contacts,
@@ -280,11 +282,10 @@ def solution_of_step_kernel(
         if stage == ALL_STAGES or stage == ROWS_STAGE:
             pushing = pushing_contacts(contacts, world)
             make_room(space, steps, place, pushing)
+            find_axes(model, state, scratch, space, steps, place, world)
             if pushing > 0:
-                add_contacts(
-                    model, settings, state, scratch, shapes, contacts, pair_rows, space, steps, place, world
-                )
-            add_ties(model, settings, state, scratch, users, space, steps, place, world)
+                add_contacts(model, settings, state, shapes, contacts, pair_rows, space, steps, place, world)
+            add_users(model, settings, state, scratch, users, space, steps, place, world)
             find_impulses(space, steps, place)
             add_joint_rows(model, settings, state, scratch, space, steps, place, world)
         if stage == ALL_STAGES or stage == EQUATIONS_STAGE:

@@ -26,6 +26,10 @@ def later_maximum(before: real, value: real) -> real:
     return wp.where(before > value, before, value)
 
 
+INDEFINITE = real(float("nan"))
+"""Change of the velocity of a row along which nothing can move, 0/0; see `later_maximum`."""
+
+
 @func
 def within_bounds(value: real, lower: real, upper: real) -> real:
     """Clamp `value` to [lower, upper]; NaN stays NaN.

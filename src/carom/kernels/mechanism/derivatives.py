@@ -92,7 +92,7 @@ def inverse_derivatives(
                 2.0 * wp.cross(angular, momentum) + inertia_force(sweep, node, rate_angular, rate_linear),
             )  # fmt: skip
         add_to_parent(mechanism, sweep, node)
-    for dof in range(sizes.base_dofs, count):
+    for dof in range(count):
         answer[start + (2 * count + dof) * count + dof] += mechanism.dof_armature[dof]
 
 
@@ -148,7 +148,13 @@ def turn_base(count: Int32, turn: Matrix3, answer: Reals, start: Int32):
 
 @func
 def put_in_world_axes(
-    sizes: MechanismSizes, sweep: SweepTable, question: Reals, first: Int32, answer: Reals, start: Int32
+    sizes: MechanismSizes,
+    mechanism: MechanismTable,
+    sweep: SweepTable,
+    question: Reals,
+    first: Int32,
+    answer: Reals,
+    start: Int32,
 ):
     """Give a free base coordinates along the axes of the world; `inverse_derivatives` was called."""
     count = sizes.dofs
@@ -168,6 +174,8 @@ def put_in_world_axes(
         pushed = sweep.subtree[0].torque
         if part == 1:
             pushed = sweep.subtree[0].force
+        # That of a base is the same along all axes.
+        pushed += mechanism.dof_armature[3 * part] * vector_at(question, changes + 3 * part)
         place = start + 3 * part * count
         answer[place + 1] += pushed[2]
         answer[place + 2] -= pushed[1]
@@ -201,7 +209,7 @@ def step_derivatives(
         sizes, mechanism, sweep, batch.question, first, batch.question, changes, batch.answer, start
     )
     if sizes.base_dofs > 0:
-        put_in_world_axes(sizes, sweep, batch.question, first, batch.answer, start)
+        put_in_world_axes(sizes, mechanism, sweep, batch.question, first, batch.answer, start)
     note_overflow(batch.answer, start, 3 * count * count)
 
 
@@ -226,7 +234,7 @@ def write_subtree_forces(
                 axis, sweep.subtree[node].torque, sweep.subtree[node].force
             )
         add_to_parent(mechanism, sweep, node)
-    for dof in range(sizes.base_dofs, count):
+    for dof in range(count):
         answer[start + dof * count + dof] += mechanism.dof_armature[dof]
 
 

@@ -123,7 +123,7 @@ def newton_euler(
     The motion of the base is its angular velocity, the derivative of that, and its linear acceleration minus
     gravity. `joints` has rates and accelerations of the dofs: `rates` and `accelerations` are the indices in
     it of those of dof 0, counted as if a free base's were there; `accelerations` is negative if all of them
-    are 0.
+    are 0. What the armature of a free base calls for is left out.
     """
     keep_motion(mechanism, 0, omega, alpha, acceleration)
     mechanism.motion[0].force = Vector3(0.0, 0.0, 0.0)
@@ -348,7 +348,7 @@ def composite_inertia(sizes: MechanismSizes, mechanism: MechanismTable):
             mechanism.motion[parent].moment += moment
             mechanism.motion[parent].inertia += inertia
     if sizes.has_armature != 0:
-        for dof in range(sizes.base_dofs, sizes.dofs):
+        for dof in range(sizes.dofs):
             mechanism.matrix[dof * sizes.dofs + dof] += mechanism.dof_armature[dof]
 
 

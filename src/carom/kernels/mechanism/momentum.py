@@ -154,7 +154,7 @@ def centroidal_kernel(
             twist -= wp.cross(centre, push)
             put_column(batch.answer, force_by_rate, count, other, turn, push, twist)
 
-    for dof in range(sizes.base_dofs, count):
+    for dof in range(count):
         rate = batch.question[rates + dof]
         kinetic += 0.5 * mechanism.dof_armature[dof] * rate * rate
     batch.answer[start] = mass

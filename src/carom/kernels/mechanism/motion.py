@@ -108,7 +108,7 @@ def forces_of_motion(
     """Compute in `output` what `motion_kernel` does, for a question that begins at `first`."""
     positions = first + POSE
     acceleration = -vector_at(question, first)
-    omega, alpha = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
+    omega, alpha, own = Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)
     unused = real(0.0)
     if sizes.base_dofs > 0:
         positions += BASE_POSITIONS
@@ -129,6 +129,9 @@ def forces_of_motion(
             torque = mechanism.output[axis]
             mechanism.output[axis] = mechanism.output[3 + axis] + unused
             mechanism.output[3 + axis] = torque
+            if sizes.has_armature != 0:
+                mechanism.output[axis] += mechanism.dof_armature[3 + axis] * own[axis]
+                mechanism.output[3 + axis] += mechanism.dof_armature[axis] * alpha[axis]
 
 
 @kernel

@@ -33,9 +33,9 @@ def matrix_parts(matrices: Int32, place: Index4) -> Index4:
 
 @func
 def relax_articulated_normals(
-    scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+    scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32, before: real
 ) -> real:
-    """Relax the normal rows of a manifold block; returns the maximum change of velocity squared."""
+    """Relax the normal rows of a manifold block; returns as `normal_residual`."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     wanted = normals_alone(pair_rows, world, manifold_block)
@@ -55,14 +55,19 @@ def relax_articulated_normals(
                 scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
                 place[2 * side + 1],
             )  # fmt: skip
-    return normal_residual(pair_rows, world, manifold_block, change)
+    return normal_residual(pair_rows, world, manifold_block, change, before)
 
 
 @func
 def relax_articulated_friction(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    before: real,
 ) -> real:
-    """Relax the friction rows of a manifold block; returns as `relax_articulated_normals`."""
+    """Relax the friction rows of a manifold block; returns as `friction_residual`."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     wanted = friction_alone(pair_rows, world, manifold_block)
@@ -82,4 +87,4 @@ def relax_articulated_friction(
                 scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
                 place[2 * side + 1],
             )  # fmt: skip
-    return friction_residual(settings, pair_rows, world, manifold_block, change)
+    return friction_residual(settings, pair_rows, world, manifold_block, change, before)

@@ -87,6 +87,8 @@ def add_contact_rows(
             upper = real(0.0) + _UNBOUNDED
             softness = terms.softness
         write_row(pair_rows, world, place, inverse_mass, change, softness, lower, upper, coefficient)
+        if terms.ignored != 0:
+            pair_rows.row_terms[world, place].inverse_mass = real(0.0)
         pair_rows.row_bound[world, place] = row
     return end, block
 

@@ -5,7 +5,7 @@ import warp as wp
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero
 from carom.kernels.maths.equal_steps import equal_steps
-from carom.kernels.maths.min_max import within_bounds
+from carom.kernels.maths.min_max import INDEFINITE, within_bounds
 from carom.kernels.structs import Model, PairRows, RowTerms, Scratch, Settings, State
 from carom.kernels.types import Index4, Int32, Vector2, Vector3, func, real
 from carom.layouts.codes import ISOTROPIC
@@ -108,7 +108,7 @@ def write_row(
     `softness` (constraint force mixing) is the velocity by which the row yields per unit of impulse.
     """
     effective_mass = inverse_or_off(inverse_mass + softness)
-    diagonal = 1.0 / effective_mass if effective_mass > 0.0 else 0.0
+    diagonal = 1.0 / effective_mass if effective_mass > 0.0 else INDEFINITE
     terms = RowTerms()
     terms.share = change * effective_mass
     terms.effective_mass = effective_mass
@@ -200,11 +200,13 @@ def relax_in_circle(
     terms2 = pair_rows.row_terms[world, row + 1]
     first = wanted_impulse(scratch, pair_rows, world, place, start1, terms1)
     second = wanted_impulse(scratch, pair_rows, world, place, start2, terms2)
+    inverse1 = terms1.inverse_mass if terms1.effective_mass > 0.0 else 0.0
+    inverse2 = terms2.inverse_mass if terms2.effective_mass > 0.0 else 0.0
     if settings.cone_friction == ISOTROPIC:
         coupling = dot_product(
             pair_rows.jacobian_response, start1, pair_rows.jacobian_row, start2, world, place[1] + place[3]
         )
-        steps = equal_steps(terms1.inverse_mass, terms2.inverse_mass, coupling)
+        steps = equal_steps(inverse1, inverse2, coupling)
         first = terms1.impulse + (first - terms1.impulse) * steps[0]
         second = terms2.impulse + (second - terms2.impulse) * steps[1]
     square = first * first + second * second
@@ -217,7 +219,7 @@ def relax_in_circle(
     push_row(scratch, pair_rows, world, place, start1, change1)
     push_row(scratch, pair_rows, world, place, start2, change2)
     if settings.cone_friction == ISOTROPIC:
-        return wp.length(Vector2(change1 * terms1.inverse_mass, change2 * terms2.inverse_mass))
+        return wp.length(Vector2(change1 * inverse1, change2 * inverse2))
     return change1 * terms1.inverse_mass + change2 * terms2.inverse_mass
 
 

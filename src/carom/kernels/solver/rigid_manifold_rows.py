@@ -44,6 +44,12 @@ def row_direction(terms: ContactTerms, row: Int32) -> Vector3:
 
 
 @func
+def stuck_bit(contact: Int32, row: Int32) -> Int32:
+    """Bit of `ManifoldBlock.stuck` for a row of a contact: 0 is the normal, 1 and 2 are friction."""
+    return Int32(1) << (contact + (4 if row > 0 else 0))
+
+
+@func
 def write_row_numbers(
     settings: Settings,
     shapes: Shapes,
@@ -76,6 +82,9 @@ def write_row_numbers(
     mass = inverse_or_off(inverse_mass)
     if mass == 0.0:
         inverse_mass = real(0.0)
+        if terms.ignored == 0:
+            stuck = pair_rows.manifold_block[world, manifold_block].stuck
+            pair_rows.manifold_block[world, manifold_block].stuck = stuck | stuck_bit(contact, row)
     impulse = terms.start[row] if mass > 0.0 and terms.start[0] > 0.0 else 0.0
     if row == 0:
         pair_rows.manifold_block[world, manifold_block].friction[contact] = terms.friction[0]

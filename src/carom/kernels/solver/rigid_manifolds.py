@@ -14,7 +14,7 @@ from typing import Any
 import warp as wp
 
 from carom.kernels.maths.equal_steps import equal_steps
-from carom.kernels.maths.min_max import maximum, within_bounds
+from carom.kernels.maths.min_max import INDEFINITE, later_maximum, maximum, within_bounds
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, shared_func
 from carom.layouts.codes import ISOTROPIC
@@ -113,11 +113,31 @@ def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) ->
 
 
 @func
-def normal_residual(pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector4) -> real:
-    """Maximum squared change of a row's velocity by a change of normal impulses."""
-    return greatest_square(
-        wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].normal_inverse_mass)
-    )
+def residual_of_block(
+    pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector4, stuck: Int32, before: real
+) -> real:
+    """Residual of a sweep after a block, from the residual `before` and the changes of its rows' velocities.
+
+    It is the maximum of their squares. As in Bullet, the change of a row along which nothing can move is 0/0,
+    so the maximum is that of the rows after it, and NaN if none follows. Bit i of `stuck` says so of row i.
+    """
+    if stuck == 0:
+        return later_maximum(before, greatest_square(change))
+    residual = before + 0.0
+    for i in range(pair_rows.manifold_block[world, manifold_block].count):
+        square = change[i] * change[i] if (stuck >> i) & 1 == 0 else INDEFINITE
+        residual = later_maximum(residual, square)
+    return residual
+
+
+@func
+def normal_residual(
+    pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector4, before: real
+) -> real:
+    """Residual of a sweep after a change of normal impulses; see `residual_of_block`."""
+    velocity = wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].normal_inverse_mass)
+    stuck = pair_rows.manifold_block[world, manifold_block].stuck & 15
+    return residual_of_block(pair_rows, world, manifold_block, velocity, stuck, before)
 
 
 @shared_func
@@ -176,11 +196,17 @@ def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, mani
 
 @func
 def friction_residual(
-    settings: Settings, pair_rows: PairRows, world: Int32, manifold_block: Int32, change: Vector8
+    settings: Settings,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    change: Vector8,
+    before: real,
 ) -> real:
-    """Maximum square of the sum of a contact's two velocity changes, by a change of friction impulses.
+    """Residual of a sweep after a change of friction impulses; see `residual_of_block`.
 
-    If friction is isotropic, the maximum of the sum of their squares.
+    The change of a contact is the sum of those of its two rows; if friction is isotropic, their length, and
+    rows along which nothing can move are left out.
     """
     velocity = wp.cw_mul(change, pair_rows.manifold_block[world, manifold_block].friction_inverse_mass)
     if settings.cone_friction == ISOTROPIC:
@@ -188,20 +214,27 @@ def friction_residual(
         for i in range(4):
             first, second = velocity[2 * i], velocity[2 * i + 1]
             most = maximum(most, first * first + second * second)
-        return most
-    return greatest_square(
-        Vector4(
-            velocity[0] + velocity[1],
-            velocity[2] + velocity[3],
-            velocity[4] + velocity[5],
-            velocity[6] + velocity[7],
-        )
+        return later_maximum(before, most)
+    stuck = pair_rows.manifold_block[world, manifold_block].stuck >> 4
+    if stuck != 0 and settings.cone_friction == 0:
+        # Without a cone, rows without a normal impulse are not relaxed.
+        for i in range(4):
+            if pair_rows.manifold_block[world, manifold_block].normal_impulse[i] <= 0.0:
+                stuck = stuck & ~(1 << i)
+    sums = Vector4(
+        velocity[0] + velocity[1],
+        velocity[2] + velocity[3],
+        velocity[4] + velocity[5],
+        velocity[6] + velocity[7],
     )
+    return residual_of_block(pair_rows, world, manifold_block, sums, stuck, before)
 
 
 @func
-def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
-    """Relax the normal rows of a rigid manifold block; returns the maximum change of velocity squared."""
+def relax_rigid_normals(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32, before: real
+) -> real:
+    """Relax the normal rows of a rigid manifold block; returns as `normal_residual`."""
     place = pair_rows.manifold_block[world, manifold_block].place
     pair_rows.manifold_block[world, manifold_block].normal_wanted = normals_alone(
         pair_rows, world, manifold_block
@@ -216,14 +249,19 @@ def relax_rigid_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, man
         if place[2 * body + 1] > 0:
             response = pair_rows.side[world, 2 * manifold_block + body].normal_response
             add_change(scratch, world, place[2 * body], push_of_normals(response, change))
-    return normal_residual(pair_rows, world, manifold_block, change)
+    return normal_residual(pair_rows, world, manifold_block, change, before)
 
 
 @func
 def relax_rigid_friction(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    before: real,
 ) -> real:
-    """Relax the friction rows of a manifold block of rigid bodies; returns as `relax_rigid_normals`."""
+    """Relax the friction rows of a manifold block of rigid bodies; returns as `friction_residual`."""
     place = pair_rows.manifold_block[world, manifold_block].place
     pair_rows.manifold_block[world, manifold_block].friction_wanted = friction_alone(
         pair_rows, world, manifold_block
@@ -238,4 +276,4 @@ def relax_rigid_friction(
         if place[2 * body + 1] > 0:
             response = pair_rows.side[world, 2 * manifold_block + body].friction_response
             add_change(scratch, world, place[2 * body], combination(response, change))
-    return friction_residual(settings, pair_rows, world, manifold_block, change)
+    return friction_residual(settings, pair_rows, world, manifold_block, change, before)

@@ -125,8 +125,7 @@ def sweep_island(
             change = resting_sweep(settings, scratch, pair_rows, world, manifold_blocks)
             residual = later_maximum(residual, change)
         elif units > 0:
-            change = contact_sweep(settings, scratch, pair_rows, world, units, torsion)
-            residual = later_maximum(residual, change)
+            residual = contact_sweep(settings, scratch, pair_rows, world, units, torsion, residual)
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)

@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.min_max import later_maximum, maximum
+from carom.kernels.maths.min_max import later_maximum
 from carom.kernels.solver.articulated_manifolds import relax_articulated_friction, relax_articulated_normals
 from carom.kernels.solver.joint_solver import relax_rows, row_sweep
 from carom.kernels.solver.pair_rows import relax_in_circle, relax_pair_row, relax_within
@@ -19,9 +19,6 @@ from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
 
-INDEFINITE = real(float("nan"))
-"""Change of a row along which nothing can move: 0/0."""
-
 
 @func
 def visit_sweep(
@@ -36,8 +33,8 @@ def visit_sweep(
     """Relax motors, limits and user constraints once; returns the maximum change squared.
 
     `rows` and `visits` are the numbers of rows without and with those of user constraints. As in Bullet, the
-    change of a user row along which nothing can move is 0/0, so the maximum is that of the rows after it, and
-    NaN if none follows.
+    change of a row along which nothing can move is 0/0, so the maximum is that of the rows after it, and NaN
+    if none follows. This also holds for all rows of contacts.
     """
     residual = real(0.0)
     if visits == 0:
@@ -62,8 +59,6 @@ def visit_sweep(
                     scratch.block_response, world, row, 1, stride,
                 )  # fmt: skip
                 residual = later_maximum(residual, square)
-            elif pair_rows.row_terms[world, -1 - row].effective_mass == 0.0:
-                residual = INDEFINITE
             else:
                 change = relax_pair_row(scratch, pair_rows, world, -1 - row)
                 residual = later_maximum(residual, change * change)
@@ -74,41 +69,48 @@ def visit_sweep(
 
 
 @func
-def relax_normals(scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> real:
-    """Relax the normal rows of a manifold block; returns the maximum change of velocity squared."""
+def relax_normals(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32, before: real
+) -> real:
+    """Relax the normal rows of a manifold block; returns the residual after it, from that `before`."""
     if pair_rows.manifold_block[world, manifold_block].matrices < 0:
-        return relax_rigid_normals(scratch, pair_rows, world, manifold_block)
-    return relax_articulated_normals(scratch, pair_rows, world, manifold_block)
+        return relax_rigid_normals(scratch, pair_rows, world, manifold_block, before)
+    return relax_articulated_normals(scratch, pair_rows, world, manifold_block, before)
 
 
 @func
 def relax_friction(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, manifold_block: Int32
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    manifold_block: Int32,
+    before: real,
 ) -> real:
     """Relax the friction rows of a manifold block; returns as `relax_normals`."""
     if pair_rows.manifold_block[world, manifold_block].matrices < 0:
-        return relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block)
-    return relax_articulated_friction(settings, scratch, pair_rows, world, manifold_block)
+        return relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block, before)
+    return relax_articulated_friction(settings, scratch, pair_rows, world, manifold_block, before)
 
 
 @func
-def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32) -> real:
-    """Relax the normal rows of an island's contacts once; returns the maximum change squared."""
-    residual = real(0.0)
+def normal_sweep(scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, before: real) -> real:
+    """Relax the normal rows of an island's contacts once; returns the residual after them."""
+    residual = before + 0.0
     unit = Int32(0)
     while unit < units:
         code = pair_rows.unit_code[world, unit]
         unit += 1
         if code < 0:
-            residual = maximum(residual, relax_normals(scratch, pair_rows, world, -1 - code))
+            residual = relax_normals(scratch, pair_rows, world, -1 - code, residual)
         elif code >= SINGLES:
             change = relax_single_normal(scratch, pair_rows, world, single_of(code))
-            residual = maximum(residual, change * change)
+            residual = later_maximum(residual, change * change)
         else:
             change = relax_pair_row(
                 scratch, pair_rows, world, pair_rows.contact_rows[world, code][NORMAL_ROW]
             )
-            residual = maximum(residual, change * change)
+            residual = later_maximum(residual, change * change)
     return residual
 
 
@@ -134,7 +136,7 @@ def relax_contact_friction(
         elif not in_circle and bound > 0.0:
             last = row + 0 if kind == SPINNING_ROW else row + 1
             while row <= last:
-                change = maximum(
+                change = later_maximum(
                     wp.abs(change), wp.abs(relax_within(scratch, pair_rows, world, row, -bound, bound))
                 )
                 row += 1
@@ -143,10 +145,16 @@ def relax_contact_friction(
 
 @func
 def friction_sweep(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, kind: Int32
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    units: Int32,
+    kind: Int32,
+    before: real,
 ) -> real:
     """Relax the spinning, rolling or lateral rows of an island's contacts; returns as `normal_sweep`."""
-    residual = real(0.0)
+    residual = before + 0.0
     unit = Int32(0)
     while unit < units:
         code = pair_rows.unit_code[world, unit]
@@ -154,31 +162,37 @@ def friction_sweep(
         if code >= SINGLES:
             if kind == LATERAL_ROW:
                 change = relax_single_friction(settings, scratch, pair_rows, world, single_of(code))
-                residual = maximum(residual, change * change)
+                residual = later_maximum(residual, change * change)
             elif code >= SINGLES + TWISTING:
                 change = relax_single_torsion(settings, scratch, pair_rows, world, single_of(code), kind)
-                residual = maximum(residual, change * change)
+                residual = later_maximum(residual, change * change)
         elif code >= 0:
-            residual = maximum(
+            residual = later_maximum(
                 residual, relax_contact_friction(settings, scratch, pair_rows, world, code, kind)
             )
         elif kind == LATERAL_ROW:
-            residual = maximum(residual, relax_friction(settings, scratch, pair_rows, world, -1 - code))
+            residual = relax_friction(settings, scratch, pair_rows, world, -1 - code, residual)
     return residual
 
 
 @func
 def contact_sweep(
-    settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, units: Int32, torsion: Int32
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    units: Int32,
+    torsion: Int32,
+    before: real,
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` and `torsion` are returned by `units.write_units`. Returns the maximum change squared.
+    `units` and `torsion` are returned by `units.write_units`. Returns the residual after them.
     """
-    residual = normal_sweep(scratch, pair_rows, world, units)
+    residual = normal_sweep(scratch, pair_rows, world, units, before)
     kind = Int32(SPINNING_ROW) if torsion != 0 else Int32(LATERAL_ROW)
     while kind >= LATERAL_ROW:
-        residual = maximum(residual, friction_sweep(settings, scratch, pair_rows, world, units, kind))
+        residual = friction_sweep(settings, scratch, pair_rows, world, units, kind, residual)
         kind -= 1
     return residual
 
@@ -194,9 +208,7 @@ def resting_sweep(
     residual = real(0.0)
     manifold_block = Int32(0)
     while manifold_block < manifold_blocks:
-        residual = maximum(residual, relax_rigid_normals(scratch, pair_rows, world, manifold_block))
-        residual = maximum(
-            residual, relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block)
-        )
+        residual = relax_rigid_normals(scratch, pair_rows, world, manifold_block, residual)
+        residual = relax_rigid_friction(settings, scratch, pair_rows, world, manifold_block, residual)
         manifold_block += 1
     return residual

@@ -5,7 +5,7 @@ All of one tree: the Jacobian of such a row is the moment arms of a path, or a w
 
 import warp as wp
 
-from carom.kernels.dynamics.actuators import actuator_law
+from carom.kernels.dynamics.actuators import actuator_law, within_own_range
 from carom.kernels.dynamics.limits import limit_change
 from carom.kernels.dynamics.motors import unless_nan
 from carom.kernels.dynamics.rows import MIN_INVERSE_MASS
@@ -220,6 +220,34 @@ def add_site_wrench(
 
 
 @func
+def share_of_tendon(
+    model: Model, state: State, world: Int32, actuator: Int32, length: real, rate: real
+) -> real:
+    """By what the forces of all actuators of a tendon are multiplied, so that their sum is within its bounds.
+
+    `length` and `rate` are those of one of them. The forces are those at the present velocity, without their
+    own bounds, which come after.
+    """
+    least, greatest = model.actuator_joint_lower[world, actuator], model.actuator_joint_upper[world, actuator]
+    if least <= -_UNBOUNDED and greatest >= _UNBOUNDED:
+        return real(1.0)
+    gear = model.actuator_gear[world, actuator]
+    total = real(0.0)
+    other = actuator - model.actuator[actuator].follows
+    while other >= 0:
+        ratio = model.actuator_gear[world, other] / gear
+        force, _stiffness, damping = actuator_law(model, state, world, other, ratio * length, ratio * rate)
+        total += force - damping * ratio * rate
+        step = model.actuator[other].to_next + 0
+        other = wp.where(step > 0, other + step, Int32(-1))
+    if total > greatest and total != 0.0:
+        return greatest / total
+    if total < least and total != 0.0:
+        return least / total
+    return real(1.0)
+
+
+@func
 def add_transmission_row(
     settings: Settings,
     model: Model,
@@ -232,7 +260,10 @@ def add_transmission_row(
     row: Int32,
     block: Int32,
 ):
-    """Add the row of an actuator of a tendon or a site, as that of an actuator of a joint."""
+    """Add the row of an actuator of a tendon or a site, as that of an actuator of a joint.
+
+    One of a tendon whose actuators' forces are bounded as a whole exerts its share of the bound.
+    """
     h = settings.time_step
     tree, actuator = users.user_tree_a[user], users.user_actuator[user]
     gear = model.actuator_gear[world, actuator]
@@ -249,8 +280,15 @@ def add_transmission_row(
     force, stiffness, damping = actuator_law(model, state, world, actuator, length, rate)
     lower, upper = model.actuator_force_lower[world, actuator], model.actuator_force_upper[world, actuator]
     yielding = h * (damping + h * stiffness)
-    if inverse_mass <= MIN_INVERSE_MASS:
-        write_row(pair_rows, world, row, inverse_mass, 0.0, 0.0, 0.0, 0.0, 0.0)
+    share = real(1.0)
+    if users.user_is_wrench[user] == 0:
+        share = share_of_tendon(model, state, world, actuator, length, rate)
+    if share != 1.0 or inverse_mass <= MIN_INVERSE_MASS:
+        impulse = h * within_own_range(model, world, actuator, share * (force - damping * rate))
+        write_row(pair_rows, world, row, inverse_mass, impulse * inverse_mass, 0.0, impulse, impulse, 0.0)
+        if inverse_mass <= MIN_INVERSE_MASS:
+            # It accelerates nothing; the row only tells the force.
+            pair_rows.row_terms[world, row].impulse = impulse
     elif yielding == 0.0:
         impulse = unless_nan(within_bounds(h * force, h * lower, h * upper), force)
         write_row(pair_rows, world, row, inverse_mass, impulse * inverse_mass, 0.0, impulse, impulse, 0.0)

@@ -64,7 +64,7 @@ class StepWatch:
             if before is None:
                 values = measured(source, body, spec)
             else:
-                values = _acceleration(source, body, spec, before)
+                values = acceleration(source, body, spec, before)
             values = _imperfect(source, body, spec, values)
             filled = push(memory[chosen], spec, times[chosen], values[chosen])
             source.engine.arrays.state.numpy["sensor_memory"][chosen, part] = filled
@@ -94,7 +94,8 @@ def _part(body: Body, index: int) -> slice:
     return slice(first, first + body.spec.sensors[index].memory)
 
 
-def _acceleration(source: Source, body: Body, spec: SensorSpec, before: Motion) -> Array:
+def acceleration(source: Source, body: Body, spec: SensorSpec, before: Motion) -> Array:
+    """What a sensor of one of the kinds `OF_STEPS` measures after a step, with the motion before it."""
     frame = object_frame(body, spec)
     after, duration = motion(source, frame), source.parameters.time_step
     if spec.kind is SensorKind.FRAME_ANGULAR_ACCELERATION:

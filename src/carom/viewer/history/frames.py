@@ -11,7 +11,7 @@ from carom.viewer.lenses import Lenses
 from carom.viewer.scene_feed import SceneFeed
 
 if TYPE_CHECKING:
-    from carom.viewer.board import Board
+    from carom.viewer.latest_messages import LatestMessages
     from carom.world.world import World
 
 
@@ -21,7 +21,7 @@ class Frames:
     Args:
         world: The world.
         lock: The lock of its steps.
-        board: The board of its viewer.
+        latest: Those of its viewer.
         history: Memory for the past [bytes]; with 0 nothing is kept.
 
     Attributes:
@@ -30,11 +30,11 @@ class Frames:
         past: The frames that are kept.
     """
 
-    def __init__(self, world: World, lock: Any, board: Board, history: int) -> None:
-        self._feed = SceneFeed(world, lock, board)
-        self.past: HistoryRecorder = HistoryRecorder(board, history)
-        self.lenses: Lenses = Lenses(board, lock)
-        self.details: Details = Details(world, lock, board, always=self.past.is_on)
+    def __init__(self, world: World, lock: Any, latest: LatestMessages, history: int) -> None:
+        self._feed = SceneFeed(world, lock, latest)
+        self.past: HistoryRecorder = HistoryRecorder(latest, history)
+        self.lenses: Lenses = Lenses(latest, lock)
+        self.details: Details = Details(world, lock, latest, always=self.past.is_on)
         self._values: dict[str, float] = {}
 
     def plot(self, name: str, value: float) -> None:

@@ -70,7 +70,7 @@ class History:
         return self.first + len(self._frames)
 
     def take(self, changes: Iterable[tuple[Hashable, bytes | None]]) -> None:
-        """Adds messages by the keys of the board, shown from the next frame on; None removes one."""
+        """Adds messages by key, shown from the next frame on; None removes one."""
         for key, message in changes:
             kind, name = (key, key) if isinstance(key, str) else _named(key)
             if kind not in _KEPT or not self.budget:

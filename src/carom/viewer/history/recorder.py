@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from carom.viewer.board import Board
 from carom.viewer.history.history import Excerpt, History
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.messages import decoded, encoded
 from carom.viewer.protocol import to_page
 from carom.viewer.replay.recording import Recording
@@ -13,16 +13,16 @@ _PART_BYTES = 400_000
 
 
 class HistoryRecorder:
-    """Keeps the frames of a viewer, and the messages on its board. For use by one thread.
+    """Keeps the frames of a viewer, and the its latest messages. For use by one thread.
 
     Args:
-        board: The board.
+        latest: The latest messages of its viewer.
         budget: Memory for the past [bytes]; with 0 nothing is kept.
     """
 
-    def __init__(self, board: Board, budget: int) -> None:
+    def __init__(self, latest: LatestMessages, budget: int) -> None:
         self._history = History(budget)
-        self._reader = board.reader() if budget else None
+        self._reader = latest.reader() if budget else None
 
     @property
     def is_on(self) -> bool:
@@ -35,7 +35,7 @@ class HistoryRecorder:
         return self._history.end
 
     def take(self, frame: bytes | None) -> None:
-        """Takes what has changed on the board, and a frame; None if it is as the last one."""
+        """Takes what has changed among the latest messages, and a frame; None if it is as the last one."""
         if self._reader is None:
             return
         self._history.take(self._reader.changes())
@@ -47,7 +47,7 @@ class HistoryRecorder:
         return self._history.before(number, _PART_BYTES, known=known)
 
 
-def told(excerpt: Excerpt) -> bytes:
+def packed_past(excerpt: Excerpt) -> bytes:
     """A part of the past as a message to a page, compressed. Safe to use from all threads."""
     packed = Recording()
     for version in excerpt.versions:

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from math import isfinite
 
-from carom.viewer.board import Board
 from carom.viewer.items import Choice, Slider
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 
 class Controls:
-    """Sliders and buttons by number, on the board. Safe to use from all threads.
+    """Sliders and buttons by number, among the latest messages. Safe to use from all threads.
 
     Attributes:
         sliders: The sliders and buttons shown now, by number.
     """
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self.sliders: dict[int, Slider] = {}
 
     def add(self, number: int, slider: Slider) -> None:
@@ -28,7 +28,7 @@ class Controls:
     def remove(self, number: int) -> None:
         """Removes a slider or a button; unknown numbers are ignored."""
         self.sliders.pop(number, None)
-        self._board.take_down(("slider", number), to_page.NO_SLIDER(slider=number))
+        self._latest.remove(("slider", number), to_page.NO_SLIDER(slider=number))
 
     def move(self, number: int, value: float) -> None:
         """Sets the value of a slider that the user has moved, clipped to its range."""
@@ -55,4 +55,4 @@ class Controls:
             value=slider.value,
             **({"options": slider.options} if isinstance(slider, Choice) else {}),
         )
-        self._board.put(("slider", number), header)
+        self._latest.put(("slider", number), header)

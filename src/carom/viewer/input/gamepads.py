@@ -43,7 +43,7 @@ class Gamepads:
         self._lock = Lock()
         self._pads: dict[int, list[Gamepad]] = {}
 
-    def take(self, page: int, told: dict[str, Any]) -> None:
+    def take(self, page: int, message: dict[str, Any]) -> None:
         """Sets the gamepads of a page, by its message."""
         pads = [
             Gamepad(
@@ -52,7 +52,7 @@ class Gamepads:
                 _numbers(pad["buttons"], 0.0),
                 bool(pad["standard"]),
             )
-            for pad in told["gamepads"][:_MAX_GAMEPADS]
+            for pad in message["gamepads"][:_MAX_GAMEPADS]
         ]
         with self._lock:
             self._pads[page] = pads
@@ -68,6 +68,6 @@ class Gamepads:
             return [pad for page in sorted(self._pads) for pad in self._pads[page]]
 
 
-def _numbers(told: list[Any], lower: float) -> tuple[float, ...]:
-    values = [float(value) for value in told[:_MAX_PARTS]]
+def _numbers(message: list[Any], lower: float) -> tuple[float, ...]:
+    values = [float(value) for value in message[:_MAX_PARTS]]
     return tuple(min(max(value, lower), 1.0) if isfinite(value) else 0.0 for value in values)

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 
-from carom.viewer.board import Board
 from carom.viewer.items import Handle
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 
 class Handles:
-    """Handles by number, on the board. Safe to use from all threads."""
+    """Handles by number, among the latest messages. Safe to use from all threads."""
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self._handles: dict[int, Handle] = {}
 
     def add(self, name: str, position: Sequence[float], orientation: Sequence[float]) -> Handle:
@@ -40,4 +40,4 @@ class Handles:
         handle = self._handles[number]
         position, orientation = handle.pose
         header = to_page.HANDLE(handle=number, name=handle.name, position=position, orientation=orientation)
-        self._board.put(("handle", number), header)
+        self._latest.put(("handle", number), header)

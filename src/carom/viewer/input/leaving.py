@@ -35,7 +35,7 @@ class Leaving:
             self._timer.daemon = True
             self._timer.start()
 
-    def told(self, events: dict[int, int]) -> None:
+    def take_events(self, events: dict[int, int]) -> None:
         """Ends the simulation if ESC is among the key events that the script has read."""
         if self._timer is not None and ESCAPE in events:
             self._timer.cancel()

@@ -53,13 +53,13 @@ class Turning:
         self._asked: dict[int, tuple[int, int, Quaternion] | None] = {}
         self._turns: dict[int, _Turn] = {}
 
-    def turn(self, page: int, told: dict[str, Any]) -> None:
+    def turn(self, page: int, message: dict[str, Any]) -> None:
         """Sets what a page turns, by a message with body, link and the orientation of its inertial frame."""
-        x, y, z, w = map(float, told["orientation"])
+        x, y, z, w = map(float, message["orientation"])
         length = hypot(x, y, z, w)
         if isfinite(length) and length > 1e-6:
             orientation = (x / length, y / length, z / length, w / length)
-            self._asked[page] = (int(told["body"]), int(told["link"]), orientation)
+            self._asked[page] = (int(message["body"]), int(message["link"]), orientation)
 
     def release(self, page: int) -> None:
         """Ends the turn of a page."""

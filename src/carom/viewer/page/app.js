@@ -222,7 +222,7 @@ export class App {
     const name = nameOf(header);
     const fleeting = header.type === ToPage.FRAME || (name !== null && !name.startsWith("slider"));
     if (fleeting && !this.player.live) return;
-    if (name !== null) this.player.stageNow(name, isRemoval(header) ? null : this.history.ledger.newest(name));
+    if (name !== null) this.player.stageNow(name, isRemoval(header) ? null : this.history.messages.newest(name));
     this.show(header, payload);
     if (header.type === ToPage.FRAME) this.timeline.show();
   }

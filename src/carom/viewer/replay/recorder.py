@@ -7,8 +7,8 @@ from threading import RLock
 from typing import TYPE_CHECKING, Any
 
 from carom.checks import positive
-from carom.viewer.board import Board, Reader, boards
 from carom.viewer.details import DetailRequest, Details
+from carom.viewer.latest_messages import LatestMessages, Reader, latest_of
 from carom.viewer.messages import decoded
 from carom.viewer.notebook import replay_frame
 from carom.viewer.protocol import to_page
@@ -59,13 +59,13 @@ class ReplayRecorder:
         self._path = Path(path)
         self._title = self._path.stem if title is None else title
         self._interval = 1.0 / float(positive(fps, "fps"))
-        self._board = Board()
-        self._bodies = self._board.reader()
-        # The board of the viewer has the drawings of scripts.
+        self._latest = LatestMessages()
+        self._bodies = self._latest.reader()
+        # The latest messages of the viewer has the drawings of scripts.
         self._scripts: Reader | None = None
         lock = RLock()
-        self._feed = SceneFeed(world, lock, self._board)
-        self._details = Details(world, lock, self._board)
+        self._feed = SceneFeed(world, lock, self._latest)
+        self._details = Details(world, lock, self._latest)
         wish = DetailRequest(
             contacts=contacts, joints="all" if joints else frozenset(), dynamics=True, constraints=True
         )
@@ -120,8 +120,8 @@ class ReplayRecorder:
         blocks = self._details.blocks()
         frame = self._feed.frame({}, blocks)
         self._take_from(self._bodies, _OF_BODIES)
-        if self._scripts is None and self._world in boards:
-            self._scripts = boards[self._world].reader()
+        if self._scripts is None and self._world in latest_of:
+            self._scripts = latest_of[self._world].reader()
         if self._scripts is not None:
             self._take_from(self._scripts, _OF_SCRIPTS)
         if frame is not None:
@@ -155,8 +155,8 @@ class ReplayRecorder:
         return replay_of(self._recording.packed(title=self._title, **self._facts))
 
     def _take_from(self, reader: Reader, kept: frozenset[str]) -> None:
-        for told in reader.messages():
-            header, payload = decoded(told)
+        for message in reader.messages():
+            header, payload = decoded(message)
             message = to_page.declaration(header)
             if message.kind in kept:
                 self._recording.add(header, payload)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.errors import StateError
-from carom.viewer.board import Board
+from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
@@ -22,9 +22,9 @@ class Moments:
     The start is the state before the first step with the present bodies.
     """
 
-    def __init__(self, world: World, board: Board) -> None:
+    def __init__(self, world: World, latest: LatestMessages) -> None:
         self._world = world
-        self._board = board
+        self._latest = latest
         self._start: Snapshot | None = None
         self._bodies: list[Body] = []
         self._marks: dict[int, Snapshot] = {}
@@ -42,7 +42,7 @@ class Moments:
         self._start = self._world.snapshot()
         self._bodies = list(self._world.bodies.values())
         for number in self._marks:
-            self._take_down(number)
+            self._remove(number)
         self._marks.clear()
 
     def reset(self) -> None:
@@ -55,11 +55,11 @@ class Moments:
         if len(self._marks) >= _MAX_MARKS:
             oldest = next(iter(self._marks))
             del self._marks[oldest]
-            self._take_down(oldest)
+            self._remove(oldest)
         state = self._world.snapshot()
         self._marks[self._next] = state
         header = to_page.MARK(mark=self._next, time=float(state.time))
-        self._board.put(("mark", self._next), header)
+        self._latest.put(("mark", self._next), header)
         self._next += 1
 
     def restore(self, number: int) -> None:
@@ -71,8 +71,8 @@ class Moments:
             self._world.restore(state)
         except StateError:
             del self._marks[number]
-            self._take_down(number)
+            self._remove(number)
             raise
 
-    def _take_down(self, number: int) -> None:
-        self._board.take_down(("mark", number), to_page.NO_MARK(mark=number))
+    def _remove(self, number: int) -> None:
+        self._latest.remove(("mark", number), to_page.NO_MARK(mark=number))

@@ -42,7 +42,8 @@ class VariedParameters:
         """The parameters in all worlds; None if they are those of the original body."""
         body = self._body
         links = slice(body.first_link, body.first_link + 1 + body.joint_count)
-        dofs = slice(body.first_velocity + BASE_VELOCITIES, self._last_dof())
+        first = body.first_velocity + (BASE_VELOCITIES if body.fixed_base else 0)
+        dofs = slice(first, self._last_dof())
         fields = (("link_mass", links), ("link_inertia", links), ("dof_armature", dofs))
         model = self._engine.arrays.model.numpy
         if all(len(model[name]) == 1 for name, _ in fields):
@@ -63,7 +64,4 @@ class VariedParameters:
             base = body.dynamics(BASE)
             masses, inertias = masses.copy(), inertias.copy()
             masses[:, 0], inertias[:, 0] = base.mass, base.inertia
-            return NodeParameters(*node_inertias(body, self._ends, masses, inertias), armature)
-        of_base = np.zeros((len(armature), int(BASE_VELOCITIES)))
-        of_dofs = np.concatenate([of_base, armature], axis=1)
-        return NodeParameters(*node_inertias(body, self._ends, masses, inertias), of_dofs)
+        return NodeParameters(*node_inertias(body, self._ends, masses, inertias), armature)

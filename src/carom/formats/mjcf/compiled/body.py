@@ -130,6 +130,7 @@ class BodyReader:
         if only_paired is not None and body.contact.lateral_friction is None:
             body.contact = read_contact(*only_paired, body.contact, self.model.options)
         body.visuals = [geom.visual for geom in geoms]
+        body.fluids = [geom.fluid for geom in geoms if geom.fluid is not None]
         body.collisions = [
             Collision(geom.geometry, geom.frame, name=geom.name, group=geom.kinds[0], mask=geom.kinds[1])
             for geom in geoms
@@ -226,7 +227,8 @@ def _read_inertial(scope: Scope, element: Element) -> BodyInertia:
     else:
         tensor = np.zeros((3, 3))
     turn = np.array(rotation_matrix(pose.orientation))
-    return BodyInertia(mass, np.array(pose.position), turned_tensor(turn, tensor))
+    axes = None if "fullinertia" in attributes else turn
+    return BodyInertia(mass, np.array(pose.position), turned_tensor(turn, tensor), axes)
 
 
 def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None:
@@ -234,7 +236,7 @@ def _read_free_terms(scope: Scope, element: Element, body: CompiledBody) -> None
     if element.tag == "freejoint":
         return
     attributes: Attributes = scope.attributes(element)
-    body.free_damping = first_number(scope, element, attributes, "damping")
+    body.free_damping = first_number(scope, element, attributes, "damping", may_drive=True)
     body.free_armature = first_number(scope, element, attributes, "armature")
     body.free_friction = first_number(scope, element, attributes, "frictionloss")
     if body.free_friction:

@@ -27,11 +27,14 @@ class BodyInertia:
         mass: [kg].
         centre: Centre of mass in the frame of the body [m].
         tensor: (3, 3) inertia about it along the axes of the body [kg m²].
+        axes: (3, 3) its principal axes as columns, if the file states them. Of equal moments any would do,
+            but not for the box that a fluid sees.
     """
 
     mass: float
     centre: Matrix
     tensor: Matrix
+    axes: Matrix | None = None
 
     @classmethod
     def none(cls) -> BodyInertia:
@@ -51,19 +54,27 @@ class GeomMass:
 def inertia_of(geoms: Iterable[GeomMass], without: BodyInertia) -> BodyInertia:
     """The inertia of all geoms of a body together; `without` if they have no mass."""
     parts = []
-    for geom in geoms:
+    whole = list(geoms)
+    for geom in whole:
         turn = np.array(rotation_matrix(geom.frame.orientation))
         centre = np.array(geom.frame.position) + dots(turn, geom.shape.centre)
         parts.append((geom.mass, centre, geom.mass * turned_tensor(turn, geom.shape.tensor)))
     mass = sum(part[0] for part in parts)
     if mass == 0.0:
         return without
+    axes = np.array(rotation_matrix(whole[0].frame.orientation)) if len(whole) == 1 else None
+    if axes is not None and not _is_diagonal(whole[0].shape.tensor):
+        axes = None
     middle = np.asarray(sum(m * centre for m, centre, _ in parts)) / mass
     tensor = np.zeros((3, 3))
     for m, centre, own in parts:
         away = centre - middle
         tensor += own + m * (dots(away, away) * np.eye(3) - np.outer(away, away))
-    return BodyInertia(mass, middle, tensor)
+    return BodyInertia(mass, middle, tensor, axes)
+
+
+def _is_diagonal(tensor: Matrix) -> bool:
+    return not (tensor - np.diag(np.diagonal(tensor))).any()
 
 
 def bounded(inertia: BodyInertia, compiler: Compiler) -> str | None:

@@ -46,10 +46,10 @@ def read_joint(scope: Scope, element: Element) -> CompiledJoint:
     described = _TYPES[kind]
     if kind == "hinge" and not limited:
         described = JointType.CONTINUOUS
-    damping = first_number(scope, element, attributes, "damping")
+    damping = first_number(scope, element, attributes, "damping", may_drive=True)
     friction = first_number(scope, element, attributes, "frictionloss")
     reference = 0.0 if kind == "ball" else _position(scope, element, attributes, "ref", kind)
-    bounds = _actuator_range(scope, element, attributes)
+    bounds = actuator_range(scope, element, attributes)
     joint = Joint(
         scope.name(element),
         described,
@@ -136,8 +136,8 @@ def _effort(bounds: tuple[float, float]) -> float:
     return 0.0 if (lower, upper) == (-inf, inf) else max(-lower, upper)
 
 
-def _actuator_range(scope: Scope, element: Element, attributes: Attributes) -> tuple[float, float]:
-    """The bounds of the sum of actuators' forces on the joint."""
+def actuator_range(scope: Scope, element: Element, attributes: Attributes) -> tuple[float, float]:
+    """The bounds of the sum of actuators' forces on a joint or tendon."""
     if not is_limited(scope, element, attributes, "actuatorfrclimited", "actuatorfrcrange"):
         return (-inf, inf)
     text = attributes.get("actuatorfrcrange", "")
@@ -147,14 +147,19 @@ def _actuator_range(scope: Scope, element: Element, attributes: Attributes) -> t
     return lower, upper
 
 
-def first_number(scope: Scope, element: Element, attributes: Attributes, name: str) -> float:
-    """The first number of an attribute; others are coefficients of higher powers."""
+def first_number(
+    scope: Scope, element: Element, attributes: Attributes, name: str, *, may_drive: bool = False
+) -> float:
+    """The first number of an attribute; others are coefficients of higher powers.
+
+    It is negative only if it `may_drive` the joint, as damping may.
+    """
     text = attributes.get(name)
     if text is None:
         return 0.0
     numbers = scope.context.numbers(element, name, text, 1, 100)
     if any(numbers[1:]):
         scope.context.leave_out(element, "only the linear term counts", "polynomials are not built", name)
-    if numbers[0] < 0.0:
+    if numbers[0] < 0.0 and not may_drive:
         raise scope.context.error(element, f"{name}={shown(text)} must not be negative")
     return numbers[0]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, Joint, Pose, Visual
 from carom.description.compliance import Compliance, PairContact
+from carom.description.fluid import FluidEllipsoid
 from carom.description.link import ContactParameters
 from carom.description.pose import IDENTITY, Vector3
 from carom.formats.mjcf.compiled.inertia import BodyInertia
@@ -83,6 +84,7 @@ class CompiledBody:
         visuals: Its shapes that are seen.
         contact: Friction of its geoms.
         gravity_compensation: Share of its weight that is carried.
+        fluids: Ellipsoids on which the fluid acts, instead of the box of its inertia, and their poses.
         children: Bodies in it.
     """
 
@@ -102,6 +104,7 @@ class CompiledBody:
     visuals: list[Visual] = field(default_factory=list)
     contact: ContactParameters = field(default_factory=ContactParameters)
     gravity_compensation: float = 0.0
+    fluids: list[tuple[FluidEllipsoid, Pose]] = field(default_factory=list)
     children: list[CompiledBody] = field(default_factory=list)
 
 
@@ -277,6 +280,7 @@ class FileTendon:
         range: Least and greatest length.
         friction: Greatest force of its friction.
         armature: Inertia along it.
+        actuator_range: Bounds of the sum of its actuators' forces [N].
         limit_compliance: How its limit yields.
         limit_margin: Distance from its limit at which it begins to act [m].
     """
@@ -292,6 +296,7 @@ class FileTendon:
     limit_compliance: Compliance = field(default_factory=Compliance)
     limit_margin: float = 0.0
     armature: float = 0.0
+    actuator_range: tuple[float, float] = (-inf, inf)
 
 
 @dataclass(frozen=True, slots=True)

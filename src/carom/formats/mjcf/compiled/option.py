@@ -41,9 +41,9 @@ def read_option(context: CompiledContext, element: Element, options: dict[str, A
     for name in _SCALARS:
         if name in attributes:
             options[name] = context.number(element, attributes, name, 0.0)
-    fluid = [name for name in ("density", "viscosity") if options.get(name) and name in attributes]
-    if fluid:
-        context.leave_out(element, "there is no fluid", "fluids are not built", *fluid)
+    for name in ("density", "viscosity"):
+        if options.get(name, 0.0) < 0.0:
+            raise context.error(element, f"{name}={shown(attributes[name])} must not be negative")
     for name in _VECTORS:
         if name in attributes:
             options[name] = tuple(context.numbers(element, name, attributes[name], 3, 3))

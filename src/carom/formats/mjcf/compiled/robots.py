@@ -2,7 +2,9 @@
 
 All joints of a body share its frame: each moves the body about an anchor in it. A link has its joint at its
 own origin, so all but the last joint of a body get a massless link in between, and the last one as well if
-its anchor is not at the origin of the body, which is then fixed to that link.
+its anchor is not at the origin of the body, which is then fixed to that link; likewise if it is a ball and
+the body's principal axes are not its own. Each ellipsoid on which the
+fluid acts is a massless link as well, fixed to that of its body.
 """
 
 from __future__ import annotations
@@ -10,13 +12,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from carom.description import Inertial, Joint, JointType, Link, Pose, Robot
+from carom.description.fluid import SHELTERED
 from carom.description.pose import IDENTITY, Vector3
-from carom.description.transform import compose
+from carom.description.transform import Matrix3, compose, quaternion_from_matrix
 from carom.formats.mjcf.compiled.body import WORLD
 from carom.formats.mjcf.compiled.inertia import BodyInertia
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledJoint
 from carom.formats.placed import PlacedRobot
 from carom.formats.robot.link import MASSLESS
+from carom.native.products import turned_tensor
 from carom.native.trigonometry import cos, sin
 
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -89,6 +93,11 @@ class _Maker:
             own = len(self.links) - 1
             if parent is not None:
                 self.joints.append(Joint(f"{body.name}@fixed", JointType.FIXED, parent, own, frame))
+        assert own is not None, "the body has a link now"
+        for number, (fluid, place) in enumerate(body.fluids):
+            self.links.append(Link(f"{body.name}@fluid{number}", MASSLESS, fluid=fluid))
+            name = f"{body.name}@fluid{number}@fixed"
+            self.joints.append(Joint(name, JointType.FIXED, own, len(self.links) - 1, place))
         for child in body.children:
             self.add(child, own)
 
@@ -121,11 +130,18 @@ def _link(body: CompiledBody) -> Link:
         tuple(body.visuals),
         body.contact,
         body.gravity_compensation,
+        SHELTERED if body.fluids else None,
     )
 
 
 def _inertial(inertia: BodyInertia) -> Inertial:
     x, y, z = (float(value) for value in inertia.centre)
     position: Vector3 = (x, y, z)
+    if inertia.axes is not None:
+        rows: Matrix3 = tuple(tuple(float(value) for value in row) for row in inertia.axes)  # pyright: ignore
+        turned = turned_tensor(inertia.axes.T, inertia.tensor)
+        a, b, c = (float(turned[i, i]) for i in range(3))
+        frame = Pose(position, quaternion_from_matrix(rows))
+        return Inertial(inertia.mass, frame, (a, 0.0, 0.0, b, 0.0, c))
     t = [[float(value) for value in row] for row in inertia.tensor]
     return Inertial(inertia.mass, Pose(position), (t[0][0], t[0][1], t[0][2], t[1][1], t[1][2], t[2][2]))

@@ -12,7 +12,7 @@ from carom.description.transform import compose
 from carom.errors import DescriptionError
 from carom.formats.mjcf.compiled.body import WORLD, BodyReader
 from carom.formats.mjcf.compiled.elements import Scope
-from carom.formats.mjcf.compiled.joint import is_limited
+from carom.formats.mjcf.compiled.joint import actuator_range, is_limited
 from carom.formats.mjcf.compiled.model import CompiledBody, CompiledModel, FilePart, FileTendon, Site
 from carom.formats.mjcf.compiled.names import Names, full, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
@@ -78,6 +78,7 @@ class TendonReader:
                     ),
                     copy.context.number(element, attributes, "margin", 0.0),
                     self._armature(copy, element, attributes),
+                    actuator_range(copy, element, attributes),
                 )
                 self._check(copy, element, tendon)
                 self.model.tendons[name] = self._in_world(tendon)

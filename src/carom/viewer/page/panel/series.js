@@ -85,7 +85,7 @@ export class Series {
   /** Where the poses of each body are in the frames of a layout. */
   startsOf(layout) {
     if (!this.starts.has(layout)) {
-      const known = this.history.ledger.versions.get("layout")?.find(({ message }) => message.header.layout === layout);
+      const known = this.history.messages.versions.get("layout")?.find(({ message }) => message.header.layout === layout);
       if (!known) return new Map();
       let at = 0;
       const starts = new Map();

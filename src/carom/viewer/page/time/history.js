@@ -1,6 +1,6 @@
 // The last frames of a simulation, and the other messages shown with them.
 
-import { Ledger, sameBytes } from "./ledger.js";
+import { MessageVersions, sameBytes } from "./message_versions.js";
 import { KEPT_BY, REMOVAL, ToPage } from "../protocol.js";
 
 /** Maximum memory for frames and other messages [bytes]. */
@@ -27,7 +27,7 @@ export class History {
   }
 
   clear() {
-    this.ledger = new Ledger();
+    this.messages = new MessageVersions();
     /** @type {Frame[]} */
     this.frames = [];
     /**
@@ -45,7 +45,7 @@ export class History {
 
   /** Whether there is memory for more frames. */
   get hasRoom() {
-    return this.bytes + this.ledger.bytes < this.budget;
+    return this.bytes + this.messages.bytes < this.budget;
   }
 
   /** Clock of the first and of the last kept frame: time since the first frame that has arrived [s]. */
@@ -63,8 +63,8 @@ export class History {
     const name = nameOf(header);
     if (name === null) return;
     const moment = this.first + this.frames.length;
-    if (isRemoval(header)) this.ledger.remove(name, moment);
-    else this.ledger.put(name, { header, payload }, moment);
+    if (isRemoval(header)) this.messages.remove(name, moment);
+    else this.messages.put(name, { header, payload }, moment);
   }
 
   takeFrame(header, payload) {
@@ -95,21 +95,21 @@ export class History {
     }
     this.frames = earlier.concat(this.frames);
     this.first -= earlier.length;
-    this.ledger.prepend(versions);
+    this.messages.prepend(versions);
     this.prepended(earlier);
   }
 
   /** Drops the oldest frames until the budget is met. */
   tidy() {
     let drop = 0;
-    while (this.bytes + this.ledger.bytes > this.budget && drop < this.frames.length - 1) {
+    while (this.bytes + this.messages.bytes > this.budget && drop < this.frames.length - 1) {
       this.bytes -= this.frames[drop].payload.byteLength + FRAME_BYTES;
       drop += 1;
     }
     if (drop === 0) return;
     this.frames.splice(0, drop);
     this.first += drop;
-    this.ledger.forget(this.first);
+    this.messages.forget(this.first);
   }
 
   /** Index of the last frame that is not later than a time on the clock [s]. */
@@ -125,7 +125,7 @@ export class History {
 
   /** The messages shown with a frame: versions by name. */
   sceneAt(index) {
-    return this.ledger.at(this.first + index);
+    return this.messages.at(this.first + index);
   }
 }
 

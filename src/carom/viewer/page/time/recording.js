@@ -7,7 +7,7 @@ const FORMAT = 1;
 /** The scene messages of a history and their removals, in order of the frames they were first shown with. */
 export function messagesOf(history) {
   const events = [];
-  for (const [name, list] of history.ledger.versions) {
+  for (const [name, list] of history.messages.versions) {
     for (const { from, to, message } of list) {
       events.push({ moment: Math.max(from, history.first), order: 1, ...message });
       if (to !== Infinity) events.push({ moment: to, order: 0, name });

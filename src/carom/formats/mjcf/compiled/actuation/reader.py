@@ -130,7 +130,8 @@ class ActuatorReader:
         found = self.model.tendons[tendon]
         gear = scope.context.number(element, attributes, "gear", 1.0)
         problem = "its tendon is not simulated" if not found.robot else ""
-        spec = ActuatorSpec("", "", tendon=tendon, gear=gear or 1.0)
+        bounds = found.actuator_range
+        spec = ActuatorSpec("", "", tendon=tendon, gear=gear or 1.0, joint_range=bounds)
         self._add_path(
             scope, element, attributes, law, spec, problem or ("" if gear else "its gear is 0"), found.range
         )

@@ -1,7 +1,8 @@
-"""Meshes that MJCF makes by name: cones and spheres."""
+"""Meshes that MJCF makes by name: cones, spheres, plates and wedges."""
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -18,7 +19,9 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
     """Vertices (n, 3) and triangles (m, 3) of a mesh, or what is wrong with its name and parameters.
 
     A `cone` has the number of its sides and the radius of its upper end, for 1 at its lower end; it goes
-    from -1 to 1 along z. A `sphere` is an icosahedron of radius 1, divided so many times.
+    from -1 to 1 along z. A `sphere` is an icosahedron of radius 1, divided so many times. A `plate` has so
+    many points along x and y in the plane z = -1. A `wedge` has them on a sphere of radius 1 around -z,
+    within two angles [degrees], and the denser in the middle the more its last parameter is above 0.
     """
     if name == "cone":
         if len(parameters) != 2 or parameters[0] < 3 or not 0.0 <= parameters[1] <= 1.0:
@@ -28,7 +31,43 @@ def builtin_mesh(name: str, parameters: list[float]) -> Made | str:
         if len(parameters) != 1 or not 0 <= parameters[0] <= _MAX_DIVISIONS:
             return f"params of a sphere are a number of divisions from 0 to {_MAX_DIVISIONS}"
         return _sphere(int(parameters[0]))
-    return f"Carom makes no mesh builtin={name!r}; it makes cone and sphere. Write the mesh to a file"
+    if name == "plate":
+        if len(parameters) != 2 or min(parameters) < 2:
+            return "params of a plate are two numbers of points, at least 2 each"
+        x, y = (_centres(int(count), 0.0) for count in parameters)
+        return _grid([[(a, b, -1.0) for b in y] for a in x])
+    if name == "wedge":
+        if len(parameters) != 5 or min(parameters[:2]) < 2:
+            return "params of a wedge are two numbers of points, at least 2 each, two angles, and a density"
+        return _wedge(int(parameters[0]), int(parameters[1]), *parameters[2:])
+    made = "it makes cone, plate, sphere and wedge"
+    return f"Carom makes no mesh builtin={name!r}; {made}. Write the mesh to a file"
+
+
+def _centres(count: int, density: float) -> list[float]:
+    """Centres of so many cells from -1 to 1; their ends are equally spaced if the density is 0."""
+    even = [2.0 * end / count - 1.0 for end in range(count + 1)]
+    ends = [(1.0 - density) * x + density * x**5 for x in even]
+    return [0.5 * (first + second) for first, second in pairwise(ends)]
+
+
+def _wedge(columns: int, rows: int, across: float, along: float, density: float) -> Made:
+    turns = [across * pi / 180.0 * x for x in _centres(columns, density)]
+    slopes = [along * pi / 180.0 * x for x in _centres(rows, density)]
+    return _grid(
+        [[(sin(a) * cos(b), sin(b), -cos(a) * cos(b)) for b in slopes] for a in turns],
+    )
+
+
+def _grid(points: list[list[tuple[float, float, float]]]) -> Made:
+    """Two triangles between each four points of a grid, seen from below."""
+    rows = len(points[0])
+    triangles: list[tuple[int, int, int]] = []
+    for column in range(len(points) - 1):
+        for row in range(rows - 1):
+            here = column * rows + row
+            triangles += [(here, here + 1, here + rows), (here + 1, here + rows + 1, here + rows)]
+    return np.array([point for column in points for point in column]), np.array(triangles, np.int32)
 
 
 def _cone(sides: int, upper: float) -> Made:

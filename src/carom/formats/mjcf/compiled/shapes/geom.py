@@ -18,6 +18,7 @@ from carom.description import (
     TriangleMesh,
     Visual,
 )
+from carom.description.fluid import FluidEllipsoid
 from carom.description.pose import Vector3
 from carom.description.transform import compose, turn_of_z
 from carom.formats.mjcf.compiled.context import CompiledContext
@@ -25,6 +26,7 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.inertia import GeomMass
 from carom.formats.mjcf.compiled.shapes.ellipsoid import ellipsoid_points
 from carom.formats.mjcf.compiled.shapes.fitting import fitted
+from carom.formats.mjcf.compiled.shapes.fluid import read_fluid
 from carom.formats.mjcf.compiled.shapes.hfield import read_hfield
 from carom.formats.mjcf.compiled.shapes.looks import read_material
 from carom.formats.mjcf.compiled.shapes.meshes import MeshAsset, Meshes
@@ -51,6 +53,7 @@ class Geom:
         group: The number of its group, for `inertiagrouprange`.
         kinds: Bits `contype` and `conaffinity`.
         is_paired: A `<pair>` lets it collide whatever its bits.
+        fluid: The ellipsoid on which the fluid acts, and its pose in the body; None for none.
     """
 
     name: str
@@ -61,6 +64,7 @@ class Geom:
     group: int
     kinds: tuple[int, int]
     is_paired: bool = False
+    fluid: tuple[FluidEllipsoid, Pose] | None = None
 
 
 def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
@@ -75,6 +79,7 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         return None
     pose = scope.pose(element, attributes)
     mesh = meshes.find(context, element, attributes["mesh"]) if "mesh" in attributes else None
+    size: Vector3 = (0.0, 0.0, 0.0)
     hull: Geometry | None = None
     seen: Geometry | None = None
     if kind == "plane":
@@ -111,6 +116,7 @@ def read_geom(scope: Scope, element: Element, meshes: Meshes) -> Geom | None:
         mass,
         int(context.number(element, attributes, "group", 0.0)),
         (_bits(scope, element, attributes, "contype"), _bits(scope, element, attributes, "conaffinity")),
+        fluid=read_fluid(context, element, attributes, kind, size, pose, mesh),
     )
 
 
@@ -166,9 +172,9 @@ def _size_and_pose(
 
 
 def frame_between(context: CompiledContext, element: Element, text: str) -> tuple[Pose, float]:
-    """A frame midway between two ends, its z axis along them, and half their distance."""
+    """A frame midway between two ends, its z axis from the second to the first, and half their distance."""
     ax, ay, az, bx, by, bz = context.numbers(element, "fromto", text, 6, 6)
-    x, y, z = bx - ax, by - ay, bz - az
+    x, y, z = ax - bx, ay - by, az - bz
     length = hypot(x, y, z)
     if length == 0.0:
         raise context.error(element, "fromto: both ends are the same point")

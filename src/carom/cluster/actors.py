@@ -12,8 +12,8 @@ from ray.exceptions import RayError, RayTaskError  # pyright: ignore[reportMissi
 
 from carom.cluster.episode import Episode
 from carom.cluster.errors import ClusterError
-from carom.cluster.ledger import Outcome
 from carom.cluster.nodes import Failed, Failure, Node, living_nodes, unpacked
+from carom.cluster.progress import Outcome
 
 _log = logging.getLogger("carom.cluster")
 _ALL = "all"

@@ -1,6 +1,6 @@
 // The messages over time: the versions of each named message, and in which frames each version was shown.
 
-export class Ledger {
+export class MessageVersions {
   constructor() {
     /** Versions by name, the oldest first: shown from a frame on until another (Infinity: now), message. */
     this.versions = new Map();

@@ -24,7 +24,7 @@ Outcome: TypeAlias = Sequence[Entry] | EpisodeError
 """Result of a batch."""
 
 
-class Ledger:
+class CollectionProgress:
     """The bookkeeping of one collection: of `episodes`, or of at least `steps`; the other is None.
 
     Nodes play *batches* of consecutive episodes. Finished batches are counted in the order of their episodes,

@@ -22,7 +22,7 @@ class _Entry:
     gone: bool = False
 
 
-class Board:
+class LatestMessages:
     """Newest messages by key, numbered in order of change. Safe to use from all threads."""
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class Board:
         return self._revision
 
     def put(self, key: Hashable, header: Mapping[str, Any], payload: bytes = b"") -> None:
-        """Puts a message on the board, replacing one of the same key."""
+        """Adds a message, replacing one of the same key."""
         self._enter(key, encoded(header, payload), gone=False)
 
     def amend(self, key: Hashable, header: Mapping[str, Any]) -> None:
@@ -49,7 +49,7 @@ class Board:
             if entry is not None:
                 entry.message = encoded(header)
 
-    def take_down(self, key: Hashable, header: Mapping[str, Any]) -> None:
+    def remove(self, key: Hashable, header: Mapping[str, Any]) -> None:
         """Removes a message. Pages that have it are sent `header`; unknown keys are ignored."""
         entry = self._entries.get(key)
         if entry is not None and not entry.gone:
@@ -108,26 +108,26 @@ class Board:
 
 
 class Reader:
-    """Takes the changes of a board one after the other.
+    """Takes the changes of the latest messages one after the other.
 
     Attributes:
         revision: The revision up to which it has them.
     """
 
-    def __init__(self, board: Board) -> None:
-        self._board = board
+    def __init__(self, latest: LatestMessages) -> None:
+        self._latest = latest
         self.revision: int = 0
 
     def changes(self) -> list[tuple[Hashable, bytes | None]]:
         """What has changed since the last call: messages by key, None where one is gone."""
-        changes, self.revision = self._board.changes(self.revision)
+        changes, self.revision = self._latest.changes(self.revision)
         return [(key, None if gone else message) for key, message, gone in changes]
 
     def messages(self) -> list[bytes]:
         """What pages would be told of what has changed since the last call."""
-        messages, self.revision = self._board.since(self.revision)
+        messages, self.revision = self._latest.since(self.revision)
         return messages
 
 
-boards: WeakKeyDictionary[Any, Board] = WeakKeyDictionary()
-"""The board of the viewer of each world that has one."""
+latest_of: WeakKeyDictionary[Any, LatestMessages] = WeakKeyDictionary()
+"""The latest messages of the viewer of each world that has one."""

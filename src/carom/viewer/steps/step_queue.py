@@ -19,11 +19,11 @@ class StepQueue:
         self._world_lock = lock
         self._waiting: deque[Callable[[], None]] = deque()
 
-    def add(self, chore: Callable[[], None]) -> None:
+    def add(self, task: Callable[[], None]) -> None:
         """Queues a function to be run between steps; its errors are logged."""
-        self._waiting.append(chore)
+        self._waiting.append(task)
 
-    def do(self) -> None:
+    def run(self) -> None:
         """Runs the queue; if the world is busy, at the next call."""
         if not self._waiting or not self._world_lock.acquire(timeout=_PATIENCE):
             return

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 pytest.importorskip("ray", reason="needs Ray: make cluster")
 
 from carom.cluster import ClusterError, Episode, EpisodeError
-from carom.cluster.ledger import Ledger
+from carom.cluster.progress import CollectionProgress
 
 NOTHING = np.zeros((0, 1))
 
@@ -36,28 +36,28 @@ def played(ids: range) -> list[Episode]:
 )
 def test_each_episode_counts_once(chance: random.Random, first, size, amount, by_steps, nodes):
     wanted = {"episodes": None, "steps": amount} if by_steps else {"episodes": amount, "steps": None}
-    ledger = Ledger(first, size, **wanted, attempts=10**6)
+    progress = CollectionProgress(first, size, **wanted, attempts=10**6)
     out: list[range] = []
     late: list[range] = []
     back: set[int] = set()
-    while not ledger.is_full:
-        while len(out) < nodes and (batch := ledger.take()) is not None:
+    while not progress.is_full:
+        while len(out) < nodes and (batch := progress.take()) is not None:
             out.append(batch)
         batch = out.pop(chance.randrange(len(out)))
         event = chance.choice(["finished", "lost", "believed lost", "twice"])
         if "lost" in event:
-            ledger.lose(batch, "")
+            progress.lose(batch, "")
             late += [batch] if event == "believed lost" else []
         else:
-            assert ledger.finish(batch, played(batch)) == (batch.start not in back)
+            assert progress.finish(batch, played(batch)) == (batch.start not in back)
             back.add(batch.start)
             late += [batch] if event == "twice" else []
         if late and chance.random() < 0.5:
             # What was given up, or has been counted, comes in after all.
             again = late.pop()
-            assert ledger.finish(again, played(again)) == (again.start not in back)
+            assert progress.finish(again, played(again)) == (again.start not in back)
             back.add(again.start)
-    ids = [episode.id for episode in ledger.counted if isinstance(episode, Episode)]
+    ids = [episode.id for episode in progress.counted if isinstance(episode, Episode)]
     assert ids == list(range(first, first + len(ids)))
     if by_steps:
         lengths = [length_of(number) for number in ids]
@@ -67,22 +67,22 @@ def test_each_episode_counts_once(chance: random.Random, first, size, amount, by
 
 
 def test_a_batch_that_kills_those_who_play_it_is_given_up():
-    ledger = Ledger(0, 4, episodes=8, steps=None, attempts=3)
+    progress = CollectionProgress(0, 4, episodes=8, steps=None, attempts=3)
     for _ in range(2):
-        batch = ledger.take()
+        batch = progress.take()
         assert batch == range(4)
-        ledger.lose(range(4), "out of memory")
-    assert ledger.repeated == 4
-    ledger.take()
+        progress.lose(range(4), "out of memory")
+    assert progress.repeated == 4
+    progress.take()
     with pytest.raises(ClusterError, match=r"3 processes died while they played episodes 0 to 3.*of memory"):
-        ledger.lose(range(4), "out of memory")
+        progress.lose(range(4), "out of memory")
 
 
 def test_a_failure_counts_if_the_episodes_before_it_were_not_enough():
     def failure() -> EpisodeError:
         return EpisodeError("the policy", [4, 5], [4, 5], "it is bad")
 
-    enough = Ledger(0, 2, episodes=None, steps=6, attempts=3)
+    enough = CollectionProgress(0, 2, episodes=None, steps=6, attempts=3)
     batches = [enough.take() for _ in range(3)]
     assert batches == [range(2), range(2, 4), range(4, 6)]
     enough.finish(range(4, 6), failure())
@@ -91,7 +91,7 @@ def test_a_failure_counts_if_the_episodes_before_it_were_not_enough():
     enough.finish(range(2, 4), played(range(2, 4)))
     assert enough.is_full
 
-    missing = Ledger(0, 2, episodes=6, steps=None, attempts=3)
+    missing = CollectionProgress(0, 2, episodes=6, steps=None, attempts=3)
     for _ in range(3):
         missing.take()
     missing.finish(range(4, 6), failure())

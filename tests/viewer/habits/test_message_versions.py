@@ -6,17 +6,17 @@ pytestmark = needs_browser
 
 # What is shown in frames 0 to 6: a message is put at frame 1, replaced at 3 and removed at 5; another stays.
 SHOWN = """async () => {
-  const { Ledger } = await import("/time/ledger.js");
-  const ledger = new Ledger();
+  const { MessageVersions } = await import("/time/message_versions.js");
+  const versions = new MessageVersions();
   const message = (text) => ({ header: { text }, payload: new ArrayBuffer(0) });
-  ledger.put("stays", message("s"), 0);
-  ledger.put("goes", message("a"), 1);
-  ledger.put("goes", message("b"), 3);
-  ledger.remove("goes", 5);
-  const at = (moment) => [...ledger.at(moment).values()].map(({ message }) => message.header.text).join("");
+  versions.put("stays", message("s"), 0);
+  versions.put("goes", message("a"), 1);
+  versions.put("goes", message("b"), 3);
+  versions.remove("goes", 5);
+  const at = (moment) => [...versions.at(moment).values()].map(({ message }) => message.header.text).join("");
   const shown = [0, 1, 2, 3, 4, 5, 6].map(at);
-  ledger.forget(4);
-  return [shown, [4, 5].map(at), ledger.newest("goes"), ledger.newest("stays").header.text];
+  versions.forget(4);
+  return [shown, [4, 5].map(at), versions.newest("goes"), versions.newest("stays").header.text];
 }"""
 
 
