@@ -220,7 +220,7 @@ def test_a_kernel_runs_after_memory_is_written(way: str) -> None:
 def test_blocks_of_memory_can_be_made_beforehand() -> None:
     source, target = c_int32(7), c_int32(0)
     change = Change()
-    change.copy_blocks([packed_block(addressof(source), addressof(target), 4)], (source, target))
+    change.copy_blocks(packed_block(addressof(source), addressof(target), 4), (source, target))
     change.commit()
     assert target.value == 7
 

@@ -127,15 +127,19 @@ class Engine:
 
     def note_change(self, change: Change) -> None:
         """The same with a change."""
-        for name in ("_plan", "_plan_before", "_loaded_for", "_prepared_for"):
-            change.set(self, name, None)
-        change.set(self, "_detection_ready", False)
-        change.set(self, "changes", self.changes + 1)
+        change.set_all(
+            self,
+            _plan=None,
+            _plan_before=None,
+            _loaded_for=None,
+            _prepared_for=None,
+            _detection_ready=False,
+            changes=self.changes + 1,
+        )
 
     def note_constraints(self, change: Change) -> None:
         """Check the launches before the next step: a change is one of constraints, and of nothing else."""
-        change.set(self, "_plan_before", self._plan or self._plan_before)
-        change.set(self, "_plan", None)
+        change.set_all(self, _plan=None, _plan_before=self._plan or self._plan_before)
 
     # Structs
 

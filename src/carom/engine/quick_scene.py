@@ -76,7 +76,7 @@ class QuickScene:
         # The last launch that updates link poses, and the structs that it and other addresses are made for.
         self._posing: TreeLaunch | None = None
         self._posed: tuple[Any, ...] = ()
-        self._known_blanks: dict[tuple[str, ...], list[bytes]] = {}
+        self._known_blanks: dict[tuple[str, ...], bytes] = {}
         # Nothing was set since everything was forgotten.
         self._is_empty = True
 
@@ -85,23 +85,20 @@ class QuickScene:
         if self._is_empty:
             return
         change.copy_blocks(self._blanks(_ALL), self.record)
-        change.set(self, "_run", None)
-        change.set(self, "_stepped", ())
-        change.set(self, "_kept", [])
-        change.set(self, "_is_empty", True)
+        change.set_all(self, _run=None, _stepped=(), _kept=[], _is_empty=True)
 
     def pause_step(self, change: Change) -> None:
         """Forget the addresses that detect collisions, and perform no steps until they are known again."""
         change.copy_blocks(self._blanks(_OF_STEP), self.record)
 
-    def _blanks(self, fields: tuple[str, ...]) -> list[bytes]:
+    def _blanks(self, fields: tuple[str, ...]) -> bytes:
         """Blocks of memory that blank some fields of the record."""
         known = self._known_blanks.get(fields)
         if known is None:
-            known = [
+            known = b"".join(
                 blank(self.record, field, _MINUS_ONE) if field == _CHANGES else blank(self.record, field)
                 for field in fields
-            ]
+            )
             self._known_blanks[fields] = known
         return known
 

@@ -395,8 +395,8 @@ class WorldArrays:
             else other.first
             for other in others
         ]
-        change.set_each([(other, "first", first) for other, first in zip(others, firsts, strict=True)])
-        change.set_each([(other, "tree", first["tree"]) for other, first in zip(others, firsts, strict=True)])
+        for other, first in zip(others, firsts, strict=True):
+            change.set_all(other, first=first, tree=first["tree"])
         return firsts
 
     def structs(self) -> dict[str, Any]:

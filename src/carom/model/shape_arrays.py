@@ -323,13 +323,9 @@ class ShapeArrays:
             if other is not body
         }
         change.set(self, "_bodies", bodies)
-        change.set_each(
-            [
-                (other, "first", {axis: row - count[axis] for axis, row in other.first.items()})
-                for link, other in self._bodies.items()
-                if link > first_link
-            ]
-        )
+        for link, other in self._bodies.items():
+            if link > first_link:
+                change.set(other, "first", {axis: row - count[axis] for axis, row in other.first.items()})
 
     def write_surface(self, link_row: int, surface: Surface) -> None:
         """Write the contact parameters of a link."""

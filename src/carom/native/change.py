@@ -10,29 +10,32 @@ from __future__ import annotations
 import ctypes
 import sys
 import sysconfig
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from struct import Struct
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
+from carom.native.builtins import new_builtin
 from carom.native.uninterrupted import uninterrupted
 
 T = TypeVar("T")
 
 _MISSING = object()
 _ZERO = ctypes.c_int64(0)
-packed_block = Struct("=QQq").pack
+_BLOCK = Struct("=QQq")
+packed_block = _BLOCK.pack
 """A `layouts.table_rows.Block` of memory to be copied: addresses of source and target, and its size."""
 
 # `layouts.table_rows.RowCut` and `KernelRun`.
-_PACK_CUT, _PACK_RUN = Struct("=4Q").pack, Struct("=4Qq").pack
-# Types of prepared records and their numbers: cuts, blocks and runs.
-_MEMORY = (ctypes.c_char_p, ctypes.c_int64) * 3
+_PACK_CUT, _RUN = Struct("=4Q").pack, Struct("=4Qq")
 # Ctrl-C may come while Python makes a change: maximum number of attempts to complete it.
 _PATIENCE = 100
+
+Attributes = dict[int, tuple[object, dict[str, Any]]]
+"""Attributes that change, by object: it and its attributes, by its `id`."""
 
 
 class Table(Protocol):
@@ -62,60 +65,74 @@ class Change:
         "_items",
         "_kept",
         "_more",
-        "_others",
         "_renew",
         "_runs",
+        "_writes",
     )
 
     def __init__(self, renew: Callable[[Change], None] | None = None) -> None:
         self._renew = renew
-        self._attributes: dict[tuple[int, str], tuple[Any, str, Any]] = {}
-        self._others: list[tuple[Any, str, Any]] = []
-        self._items: list[tuple[dict[Any, Any], Any, Any]] = []
-        self._contents: list[tuple[dict[Any, Any], dict[Any, Any]]] = []
-        self._more: list[tuple[list[Any], list[Any]]] = []
-        self._blocks: list[bytes] = []
-        self._copies: dict[int, _Copies] = {}
+        self._attributes: Attributes = {}
+        # Dictionaries, keys and values, each in turn; likewise dictionaries, contents and present contents,
+        # lists and items for their ends, and arrays and what is written to them.
+        self._items: list[Any] = []
+        self._contents: list[dict[Any, Any]] = []
+        self._more: list[list[Any]] = []
+        self._writes: list[np.ndarray] = []
+        # Records, one or more in a byte string.
         self._cuts: list[bytes] = []
+        self._blocks: list[bytes] = []
         self._runs: list[bytes] = []
-        # Memory that these point to.
+        self._copies: dict[int, _Copies] | None = None
+        # Memory that the records point to.
         self._kept: list[Any] = []
 
     def set(self, owner: object, name: str, value: object) -> None:
         """Set an attribute, which its object has in a dictionary or a slot: no code of Python runs for it."""
-        self._attributes[id(owner), name] = owner, name, value
+        noted = self._attributes.get(id(owner))
+        if noted is None:
+            self._attributes[id(owner)] = owner, {name: value}
+        else:
+            noted[1][name] = value
 
-    def set_each(self, values: Iterable[tuple[object, str, object]]) -> None:
-        """Set attributes (object, name, value) that `get` is not asked for: quicker where there are many."""
-        self._others += values
+    def set_all(self, owner: object, /, **values: object) -> None:
+        """Set several attributes of an object."""
+        noted = self._attributes.get(id(owner))
+        if noted is None:
+            self._attributes[id(owner)] = owner, values
+        else:
+            noted[1].update(values)
 
     def get(self, owner: object, name: str) -> Any:
         """An attribute as it will be."""
-        noted = self._attributes.get((id(owner), name))
-        return getattr(owner, name) if noted is None else noted[2]
+        noted = self._attributes.get(id(owner))
+        if noted is None or name not in noted[1]:
+            return getattr(owner, name)
+        return noted[1][name]
 
     def put(self, dictionary: dict[Any, Any], key: int | str, value: object) -> None:
         """Set an item of a dictionary."""
-        self._items.append((dictionary, key, value))
+        self._items += dictionary, key, value
 
     def put_all(self, dictionary: dict[Any, Any], values: Mapping[Any, object]) -> None:
         """Set several items of a dictionary."""
-        self._items += [(dictionary, key, value) for key, value in values.items()]
+        for key, value in values.items():
+            self._items += dictionary, key, value
 
     def drop(self, dictionary: dict[Any, Any], key: int | str) -> None:
         """Remove an item of a dictionary, if it is there."""
-        self._items.append((dictionary, key, _MISSING))
+        self._items += dictionary, key, _MISSING
 
     def refill(self, dictionary: dict[Any, Any], content: dict[Any, Any]) -> None:
         """Replace all items of a dictionary, which stays the same object."""
-        self._contents.append((dictionary, content))
+        self._contents += dictionary, content, dictionary.copy()
 
     def content(self, dictionary: dict[Any, T]) -> dict[Any, T]:
         """The items of a dictionary as they will be, if they are refilled or some of them are set."""
-        for it, content in self._contents:
+        for it, content, _ in _in_turn(self._contents, 3):
             if it is dictionary:
                 return content
-        noted = [(key, value) for it, key, value in self._items if it is dictionary]
+        noted = [(key, value) for it, key, value in _in_turn(self._items, 3) if it is dictionary]
         if not noted:
             return dictionary
         content = {**dictionary, **dict(noted)}
@@ -126,6 +143,8 @@ class Change:
 
         The same copies are returned each time.
         """
+        if self._copies is None:
+            self._copies = {}
         copies = self._copies.get(id(arrays))
         if copies is None:
             copies = self._copies[id(arrays)] = _Copies(arrays)
@@ -133,7 +152,7 @@ class Change:
 
     def extend(self, items: list[T], more: list[T]) -> None:
         """Append items to a list."""
-        self._more.append((items, more))
+        self._more += items, more
 
     def write(self, target: np.ndarray, values: npt.ArrayLike, *, lasting: bool = False) -> None:
         """Write to an array, or to a view of a part of it; the values are broadcast to its shape.
@@ -153,28 +172,11 @@ class Change:
             source = np.empty(shape, dtype)
             source[...] = values
             values = source
-        self._kept += values, target
-        self._note_blocks(_place(values), target)
+        self._writes += target, values
 
-    def _note_blocks(self, source: int, target: np.ndarray) -> None:
-        """Copy contiguous memory to an array, whose entries need not be next to each other."""
-        if target.flags.c_contiguous:
-            self._blocks.append(packed_block(source, _place(target), target.nbytes))
-            return
-        size = target.nbytes // len(target)
-        if target.ndim > 1:
-            for place in range(len(target)):
-                self._note_blocks(source + place * size, target[place])
-            return
-        address, stride = target.ctypes.data, target.strides[0]
-        self._blocks += [
-            packed_block(source + place * size, address + place * stride, size)
-            for place in range(len(target))
-        ]
-
-    def copy_blocks(self, blocks: Sequence[bytes], kept: object) -> None:
+    def copy_blocks(self, blocks: bytes, kept: object) -> None:
         """Copy blocks of memory, given as records (`layouts.table_rows.Block`), which point into `kept`."""
-        self._blocks += blocks
+        self._blocks.append(blocks)
         self._kept.append(kept)
 
     def cut(self, table: int, first: bytes, count: bytes, used: bytes, kept: object) -> None:
@@ -195,28 +197,26 @@ class Change:
 
     def run(self, addresses: Sequence[int], tree: int, kept: object) -> None:
         """Run a kernel on a tree after memory is written; see `TreeLaunch.addresses`."""
-        self._runs.append(_PACK_RUN(*addresses, tree))
+        self._runs.append(_RUN.pack(*addresses, tree))
         self._kept.append(kept)
 
     def commit(self) -> None:
         """Make the change, once; if memory is short, nothing of it."""
-        for copies in self._copies.values():
-            for name, copy in copies.items():
-                self.write(copies.originals[name], copy, lasting=True)
-        parts = (
-            [*self._attributes.values(), *self._others],
+        if self._copies is not None:
+            for copies in self._copies.values():
+                for name, copy in copies.items():
+                    self.write(copies.originals[name], copy, lasting=True)
+        commit = _commit() or _make
+        commit(
+            self._attributes,
             self._items,
-            [(dictionary, content, dictionary.copy()) for dictionary, content in self._contents],
+            self._contents,
             self._more,
+            self._writes,
+            self._cuts,
+            self._blocks,
+            self._runs,
         )
-        memory: list[Any] = []
-        for packed in (self._cuts, self._blocks, self._runs):
-            memory += b"".join(packed) if packed else None, len(packed)
-        commit = _commit()
-        if commit is None:
-            _make(*parts, memory)
-        else:
-            commit(*parts, _MISSING, [_MISSING] * sum(map(len, parts)), *memory)
 
 
 def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 = _ZERO) -> bytes:
@@ -227,14 +227,6 @@ def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 = _ZERO) ->
         holder = getattr(holder, step)
     field = getattr(type(holder), name)
     return packed_block(ctypes.addressof(value), ctypes.addressof(holder) + field.offset, field.size)
-
-
-def _place(array: np.ndarray) -> int:
-    """Address of an array of contiguous memory, which is not empty; quicker than with NumPy."""
-    if array.flags.writeable:
-        memory: Any = array
-        return ctypes.addressof(ctypes.c_char.from_buffer(memory))
-    return array.ctypes.data
 
 
 class _Copies(dict[str, np.ndarray]):
@@ -249,70 +241,84 @@ class _Copies(dict[str, np.ndarray]):
         return copy
 
 
+def _in_turn(items: list[Any], count: int) -> list[tuple[Any, ...]]:
+    """Items of a list, so many at a time."""
+    return list(zip(*[iter(items)] * count, strict=True))
+
+
 @cache
-def _commit() -> Callable[..., None] | None:
+def _commit() -> Callable[..., object] | None:
     """The native function that makes changes; None where Python does.
 
     It needs a usual build of CPython: others have other objects, or threads that run in parallel.
     """
     if sys.implementation.name != "cpython" or sysconfig.get_config_var("Py_GIL_DISABLED"):
         return None
-    from carom.native.library import library
-
-    symbols = library().symbols
+    symbols = _symbols()
+    if symbols is None:
+        # The library is in another process; see `tools.wheels.elsewhere`.
+        return None
     first = ctypes.c_char.in_dll(symbols, "carom_change_functions")
     names = ctypes.string_at(ctypes.addressof(first)).decode().split()
-    addresses = [ctypes.addressof(ctypes.c_char.in_dll(ctypes.pythonapi, name)) for name in names]
-    table = (ctypes.c_void_p * len(names))(*addresses)
-    of_objects = [ctypes.py_object] * 6
-    declared = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.c_void_p, *of_objects, *_MEMORY)
-    return partial(declared(("carom_commit", symbols)), table)
+    table = (ctypes.c_void_p * len(names)).in_dll(symbols, "carom_change_table")
+    table[:] = [ctypes.addressof(ctypes.c_char.in_dll(ctypes.pythonapi, name)) for name in names]
+    return new_builtin("commit", symbols.carom_commit, _MISSING)
 
 
-@cache
-def _write() -> Callable[..., None]:
-    """The native function that writes to memory."""
+def _symbols() -> Any:
     from carom.native.library import library
 
-    return ctypes.PYFUNCTYPE(None, *_MEMORY)(("carom_write", library().symbols))
+    return library().symbols
 
 
 def _make(
-    attributes: list[tuple[Any, str, Any]],
-    items: list[tuple[dict[Any, Any], Any, Any]],
-    contents: list[tuple[dict[Any, Any], dict[Any, Any], dict[Any, Any]]],
-    more: list[tuple[list[Any], list[Any]]],
-    memory: list[Any],
+    attributes: Attributes,
+    items: list[Any],
+    contents: list[dict[Any, Any]],
+    more: list[list[Any]],
+    writes: list[np.ndarray],
+    cuts: list[bytes],
+    blocks: list[bytes],
+    runs: list[bytes],
 ) -> None:
     """Make a change in Python: in a section, and if an exception comes in the middle, first to the end."""
     ends: dict[int, int] = {}
-    starts = []
-    for extended, added in more:
-        starts.append(ends.get(id(extended), len(extended)))
-        ends[id(extended)] = starts[-1] + len(added)
+    extensions = []
+    for extended, added in _in_turn(more, 2):
+        start = ends.get(id(extended), len(extended))
+        extensions.append((extended, added, start))
+        ends[id(extended)] = start + len(added)
     # Old values are dropped at the end, so that no finalizer runs in the middle.
-    kept = [getattr(owner, name, None) for owner, name, _ in attributes]
-    kept += [dictionary.get(key) for dictionary, key, _ in items]
+    kept = [getattr(owner, name, None) for owner, values in attributes.values() for name in values]
+    kept += [dictionary.get(key) for dictionary, key, _ in _in_turn(items, 3)]
     error: BaseException | None = None
     with uninterrupted:
         for _ in range(_PATIENCE):
             try:
-                for owner, name, value in attributes:
-                    object.__setattr__(owner, name, value)
-                for dictionary, key, value in items:
+                for owner, values in attributes.values():
+                    for name, value in values.items():
+                        object.__setattr__(owner, name, value)
+                for dictionary, key, value in _in_turn(items, 3):
                     if value is _MISSING:
                         dictionary.pop(key, None)
                     else:
                         dictionary[key] = value
-                for dictionary, content, _ in contents:
+                for dictionary, content, _ in _in_turn(contents, 3):
                     dictionary.clear()
                     dictionary.update(content)
-                for (extended, added), start in zip(more, starts, strict=True):
+                for extended, added, start in extensions:
                     extended[start:] = added
                 break
             except BaseException as problem:
                 error = problem
-        _write()(*memory)
+        if cuts:
+            _symbols().carom_cut_rows(b"".join(cuts), ctypes.c_int64(len(cuts)))
+        for target, source in _in_turn(writes, 2):
+            target[...] = source
+        for source, target, size in _BLOCK.iter_unpack(b"".join(blocks)):
+            ctypes.memmove(target, source, size)
+        if runs:
+            _symbols().carom_launch(b"".join(runs), ctypes.c_int64(len(runs)))
     kept.clear()
     if error is not None:
         raise error

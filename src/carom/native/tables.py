@@ -233,10 +233,7 @@ class ArrayTable:
         change.put_all(self.capacity, self._lengths(arrays))
         change.put_all(self.numpy, _by_part(arrays))
         change.set(self, "replacements", self.replacements + 1)
-        change.set(self, "_made", None)
-        change.set(self, "_bytes", {})
-        change.set(self, "_by_axis", {})
-        change.set(self, "_row_changes", None)
+        change.set_all(self, _made=None, _bytes={}, _by_axis={}, _row_changes=None)
 
     def take_over(self, change: Change, other: ArrayTable, *, but: Collection[str] = ()) -> None:
         """Replace the arrays by those of an equal table with a change, except for those that are named."""

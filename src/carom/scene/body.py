@@ -116,14 +116,13 @@ class Body:
     def relocate(self, change: Change, first: Mapping[str, int]) -> None:
         """Update the rows of the body in the flat arrays with a change of them; they begin at `first`."""
         position, velocity = first["position"], first["dof"]
-        change.set_each(
-            (
-                (self, "first_link", first["link"]),
-                (self, "first_position", position),
-                (self, "first_velocity", velocity),
-                (self, "position_index", _first_rows(position + BASE_POSITIONS, self.position_count)),
-                (self, "velocity_index", _first_rows(velocity + BASE_VELOCITIES, self.velocity_count)),
-            )
+        change.set_all(
+            self,
+            first_link=first["link"],
+            first_position=position,
+            first_velocity=velocity,
+            position_index=_first_rows(position + BASE_POSITIONS, self.position_count),
+            velocity_index=_first_rows(velocity + BASE_VELOCITIES, self.velocity_count),
         )
 
     def __repr__(self) -> str:

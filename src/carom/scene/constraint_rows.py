@@ -57,8 +57,7 @@ class ConstraintRows:
 
     def forget(self, change: Change) -> None:
         """Make all rows anew the next time: with a change they, or the arrays, become others."""
-        change.set(self, "_rows", None)
-        change.set(self, "_changes", [])
+        change.set_all(self, _rows=None, _changes=[])
 
     def note(self, change: Change, constraint: JointConstraint, *, added: bool) -> None:
         """With a change, a user constraint is added at the end of Bullet's list, or removed from it."""

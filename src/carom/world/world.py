@@ -128,25 +128,31 @@ class World(
     def _start_empty(self, change: Change) -> None:
         """Remove everything with a change."""
         arrays = WorldArrays()
-        change.set(self, "constraints", JointConstraints())
-        change.set(self, "user_constraints", UserConstraints())
-        change.set(self, "user_data", UserData())
+        change.set_all(
+            self,
+            constraints=JointConstraints(),
+            user_constraints=UserConstraints(),
+            user_data=UserData(),
+            free_ids=[],
+            next_id=0,
+            links_loaded=0,
+            unspent_time=0.0,
+        )
         change.refill(self.bodies, {})
         change.refill(self.listing, {})
-        change.set(self, "free_ids", [])
-        change.set(self, "next_id", 0)
-        change.set(self, "links_loaded", 0)
-        change.set(self, "unspent_time", 0.0)
         self.take_arrays(change, arrays, ContactArrays(arrays))
 
     def take_arrays(self, change: Change, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Replace all arrays with a change, which has noted the constraints that go with them."""
         engine = Engine(arrays, contact_arrays)
-        change.set(self, "arrays", arrays)
-        change.set(self, "contact_arrays", contact_arrays)
-        change.set(self, "engine", engine)
-        change.set(self, "_status", memoryview(engine.status[0]))
-        change.set(self, "_growths", 0)
+        change.set_all(
+            self,
+            arrays=arrays,
+            contact_arrays=contact_arrays,
+            engine=engine,
+            _status=memoryview(engine.status[0]),
+            _growths=0,
+        )
         self.change_scene(change)
 
     def __enter__(self) -> World:
@@ -372,8 +378,7 @@ class World(
     def change_scene(self, change: Change) -> None:
         """Discard derived data with a change of bodies, constraints or arrays, which has noted all else."""
         self.quick.forget(change)
-        change.set(self, "_derived", Derived())
-        change.set(self, "_made_for", None)
+        change.set_all(self, _derived=Derived(), _made_for=None)
         change.get(self, "constraints").rows.forget(change)
         change.get(self, "user_constraints").forget_written(change)
         change.get(self, "engine").note_change(change)
@@ -381,8 +386,7 @@ class World(
         replacements = change.get(state, "replacements")
         if state is not self._viewed or replacements != self._replacements:
             self.view(change, state)
-            change.set(self, "_viewed", state)
-            change.set(self, "_replacements", replacements)
+            change.set_all(self, _viewed=state, _replacements=replacements)
 
     def constraints_changed(self) -> None:
         """Set the prepared step aside: constraints have changed, and nothing else."""
@@ -393,8 +397,7 @@ class World(
     def change_constraints(self, change: Change) -> None:
         """Set the prepared step aside with a change of constraints, and of nothing else."""
         derived = self._derived
-        change.set(derived, "step_before", derived.step or derived.step_before)
-        change.set(derived, "step", None)
+        change.set_all(derived, step=None, step_before=derived.step or derived.step_before)
         self.quick.pause_step(change)
         self.engine.note_constraints(change)
 
@@ -420,7 +423,7 @@ class World(
         """Set the simulated time [s] with a change."""
         value = c_double(time)
         block = packed_block(addressof(value), addressof(self._clock), sizeof(value))
-        change.copy_blocks([block], value)
+        change.copy_blocks(block, value)
 
     def step(self, count: int = 1) -> None:
         """Advance the world by `count` time steps.

@@ -20,27 +20,14 @@ from collections.abc import Callable
 from types import CodeType, FunctionType
 from typing import Any, NamedTuple, TypeVar
 
+from carom.native.builtins import MethodDefinition, builtin_of, defined
+
 F = TypeVar("F", bound=Callable[..., Any])
 
-_METH_FASTCALL_WITH_KEYWORDS = 0x0080 | 0x0002
 # Flags of code objects: CO_VARARGS and CO_VARKEYWORDS.
 _TAKES_MORE_BY_PLACE, _TAKES_MORE_BY_NAME = 0x04, 0x08
 
 
-class _MethodDefinition(ctypes.Structure):
-    """`PyMethodDef` of the C API."""
-
-    _fields_ = (
-        ("name", ctypes.c_char_p),
-        ("code", ctypes.c_void_p),
-        ("flags", ctypes.c_int),
-        ("documentation", ctypes.c_char_p),
-    )
-
-
-_new_builtin = ctypes.pythonapi.PyCFunction_NewEx
-_new_builtin.restype = ctypes.py_object
-_new_builtin.argtypes = (ctypes.POINTER(_MethodDefinition), ctypes.py_object, ctypes.py_object)
 # Python 3.10 does not export `PyObject_Vectorcall`, but an equivalent for Python functions only.
 _VECTORCALL = "PyObject_Vectorcall" if sys.version_info >= (3, 11) else "_PyFunction_Vectorcall"
 vectorcall: int = ctypes.cast(getattr(ctypes.pythonapi, _VECTORCALL), ctypes.c_void_p).value or 0
@@ -64,26 +51,17 @@ class Export(NamedTuple):
     function: FunctionType
     builtin: Callable[..., Any]
     usual_form: UsualForm | None
-    definition: _MethodDefinition
+    definition: MethodDefinition
     code: CodeType
 
 
 exports: dict[str, Export] = {}
 """All functions of the public interface, by name."""
 
-# Keeps the definitions in memory: the builtins of a module point to them and are never freed.
-_definitions: list[_MethodDefinition] = []
-
 
 def new_builtin(name: str, code: int, its_self: Any) -> Any:
     """A builtin of C code at an address, of the form `f(self, args, nargs, kwnames)`."""
-    return _new_builtin(ctypes.byref(_defined(name, code, "")), its_self, "pybullet")
-
-
-def _defined(name: str, code: int, documentation: str) -> _MethodDefinition:
-    definition = _MethodDefinition(name.encode(), code, _METH_FASTCALL_WITH_KEYWORDS, documentation.encode())
-    _definitions.append(definition)
-    return definition
+    return builtin_of(defined(name, code, keywords=True), its_self, "pybullet")
 
 
 def exported(function: F) -> F:
@@ -101,8 +79,8 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
         assert isinstance(function, FunctionType)
         function.__module__ = "pybullet"
         documentation = f"{function.__name__}{signature}\n--\n\n{_documentation(function)}"
-        definition = _defined(function.__name__, vectorcall, documentation)
-        builtin = _new_builtin(ctypes.byref(definition), function, "pybullet")
+        definition = defined(function.__name__, vectorcall, documentation, keywords=True)
+        builtin = builtin_of(definition, function, "pybullet")
         exports[function.__name__] = Export(function, builtin, usual_form, definition, function.__code__)
         return builtin
 

@@ -149,7 +149,7 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
             change.refill(client.origins, {})
             change.set(client, "maximal", set())
             record = client.bodies.quick.record
-            change.copy_blocks([blank(record, "reports_analytics")], record)
+            change.copy_blocks(blank(record, "reports_analytics"), record)
             change.set(client, "deformable", deformable)
 
         with uninterrupted:

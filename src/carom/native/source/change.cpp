@@ -1,7 +1,8 @@
 // A change that Python has prepared, made by one call: attributes, items of dictionaries and lists, rows of tables,
 // memory. No code of Python runs in the middle, so that nobody sees half of it. If memory is short, nothing is changed.
 //
-// The old values are kept until the end, where Python drops them: no finalizer runs in the middle.
+// New values are exchanged for the old ones, which the change keeps until Python drops it: no finalizer runs in the
+// middle, and the same exchange takes a part of the change back.
 
 #include "perform.h"
 #include "python.h"
@@ -17,173 +18,274 @@
     F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))               \
     F(int, PyList_SetItem, (PyObject*, intptr_t, PyObject*))          \
     F(int, PyList_SetSlice, (PyObject*, intptr_t, intptr_t, PyObject*)) \
+    F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**)) \
     F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))     \
     F(int, PyDict_SetItem, (PyObject*, PyObject*, PyObject*))         \
     F(int, PyDict_DelItem, (PyObject*, PyObject*))                    \
     F(void, PyDict_Clear, (PyObject*))                                \
     F(int, PyDict_Update, (PyObject*, PyObject*))                     \
+    F(int, PyBytes_AsStringAndSize, (PyObject*, char**, intptr_t*))   \
+    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))           \
+    F(void, PyBuffer_Release, (PyBuffer*))                            \
+    F(void*, PyMem_Malloc, (uintptr_t))                                  \
+    F(void, PyMem_Free, (void*))                                      \
+    F(PyObject*, PyErr_NoMemory, ())                                  \
     F(PyObject*, PyErr_Occurred, ())                                  \
     F(void, PyErr_Clear, ())                                          \
     F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))        \
     F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))         \
-    F(void, Py_IncRef, (PyObject*))
+    F(void, Py_IncRef, (PyObject*))                                   \
+    F(void, Py_DecRef, (PyObject*))
 
-namespace {
-
-struct ChangeFunctions {
 #define F(result, name, arguments) result(*name) arguments;
+extern "C" CAROM_EXPORT struct ChangeFunctions {
     CAROM_CHANGE_FUNCTIONS(F)
+} carom_change_table;
 #undef F
-};
 
-// Prepared changes of objects; there is a list of tuples of each kind.
-enum Kind { ATTRIBUTES, ITEMS, CONTENTS, MORE, KIND_COUNT };
+ChangeFunctions carom_change_table;
 
-struct Committer {
-    const ChangeFunctions& python;
-    PyObject* missing;  // stands for no value
-    PyObject* before;   // a list with room for the old values
-
-    // Keeps an old value, of which this takes the reference.
-    void keep(intptr_t place, PyObject* value) {
-        if (value)
-            python.PyList_SetItem(before, place, value);
-        else
-            python.PyErr_Clear();
-    }
-
-    PyObject* old(intptr_t place) { return python.PyList_GetItem(before, place); }
-
-    int put(PyObject* dictionary, PyObject* key, PyObject* value) {
-        if (value != missing)
-            return python.PyDict_SetItem(dictionary, key, value);
-        if (!python.PyDict_GetItemWithError(dictionary, key))
-            return python.PyErr_Occurred() ? -1 : 0;
-        return python.PyDict_DelItem(dictionary, key);
-    }
-
-    int refill(PyObject* dictionary, PyObject* content) {
-        python.PyDict_Clear(dictionary);
-        return python.PyDict_Update(dictionary, content);
-    }
-
-    // Makes a change and keeps what was there before at a place; -1 if it failed.
-    int make(Kind kind, PyObject* change, intptr_t place) {
-        PyObject* target = python.PyTuple_GetItem(change, 0);
-        PyObject* second = python.PyTuple_GetItem(change, 1);
-        switch (kind) {
-        case ATTRIBUTES:
-            keep(place, python.PyObject_GenericGetAttr(target, second));
-            return python.PyObject_GenericSetAttr(target, second, python.PyTuple_GetItem(change, 2));
-        case ITEMS: {
-            PyObject* value = python.PyDict_GetItemWithError(target, second);
-            if (value)
-                python.Py_IncRef(value);
-            keep(place, value);
-            return put(target, second, python.PyTuple_GetItem(change, 2));
-        }
-        case CONTENTS:
-            return refill(target, second);
-        default: {
-            const intptr_t length = python.PyList_Size(target);
-            return python.PyList_SetSlice(target, length, length, second);
-        }
-        }
-    }
-
-    // Takes back a change that was made. Nothing new is allocated, except for the content of a dictionary.
-    void unmake(Kind kind, PyObject* change, intptr_t place) {
-        PyObject* target = python.PyTuple_GetItem(change, 0);
-        PyObject* second = python.PyTuple_GetItem(change, 1);
-        switch (kind) {
-        case ATTRIBUTES:
-            python.PyObject_GenericSetAttr(target, second, old(place) == missing ? nullptr : old(place));
-            break;
-        case ITEMS:
-            put(target, second, old(place));
-            break;
-        case CONTENTS:
-            refill(target, python.PyTuple_GetItem(change, 2));
-            break;
-        default: {
-            const intptr_t length = python.PyList_Size(target);
-            python.PyList_SetSlice(target, length - python.PyList_Size(second), length, nullptr);
-        }
-        }
-    }
-};
-
-}  // namespace
-
-// Takes rows out of tables, then writes to memory, and then runs kernels on it.
-extern "C" CAROM_EXPORT void carom_write(
-    const RowCut* cuts,
-    int64_t cut_count,
-    const Block* blocks,
-    int64_t block_count,
-    const KernelRun* runs,
-    int64_t run_count
-) {
-    for (int64_t i = 0; i < cut_count; ++i)
-        carom_take_rows(cuts[i].table, cuts[i].first, cuts[i].count, cuts[i].used);
-    carom_copy_blocks(blocks, block_count);
-    for (int64_t i = 0; i < run_count; ++i) {
-        const TreeCall& call = runs[i].call;
-        // The host relies on the tree that it set last.
-        const int32_t before = *call.tree;
-        *call.tree = static_cast<int32_t>(runs[i].tree);
-        run(call.call);
-        *call.tree = before;
-    }
-}
-
-// Names of the functions that the host writes to a table, in order.
+// Names of the functions that the host writes to the table, in order.
 #define F(result, name, arguments) #name " "
 extern "C" CAROM_EXPORT const char carom_change_functions[] = CAROM_CHANGE_FUNCTIONS(F);
 #undef F
 
-// Makes a change, or nothing of it: then it returns -1, and an error of Python is set. `changes` are lists by `Kind`, of
-// tuples (object, name, value), (dictionary, key, value), (dictionary, content, old content) and (list, more items).
-// `before` is a list of as many `missing` as there are changes, in which the old values are kept. The GIL is held.
-extern "C" CAROM_EXPORT int carom_commit(
-    const ChangeFunctions* functions,
-    PyObject* attributes,
-    PyObject* items,
-    PyObject* contents,
-    PyObject* more,
-    PyObject* missing,
-    PyObject* before,
-    const RowCut* cuts,
-    int64_t cut_count,
-    const Block* blocks,
-    int64_t block_count,
-    const KernelRun* runs,
-    int64_t run_count
-) {
-    Committer committer = {*functions, missing, before};
-    PyObject* changes[KIND_COUNT] = {attributes, items, contents, more};
-    intptr_t place = 0;
-    for (int kind = 0; kind < KIND_COUNT; ++kind) {
-        const intptr_t count = functions->PyList_Size(changes[kind]);
-        for (intptr_t i = 0; i < count; ++i, ++place) {
-            if (!committer.make(Kind(kind), functions->PyList_GetItem(changes[kind], i), place))
-                continue;
-            PyObject *type, *value, *traceback;
-            functions->PyErr_Fetch(&type, &value, &traceback);
-            // A dictionary may have been emptied.
-            if (kind == CONTENTS)
-                committer.unmake(CONTENTS, functions->PyList_GetItem(changes[kind], i), place);
-            for (;;) {
-                while (i > 0)
-                    committer.unmake(Kind(kind), functions->PyList_GetItem(changes[kind], --i), --place);
-                if (!kind)
-                    break;
-                i = functions->PyList_Size(changes[--kind]);
+namespace {
+
+const ChangeFunctions& host = carom_change_table;
+
+// What a change consists of: a dictionary of attributes, and lists.
+enum Part { ATTRIBUTES, ITEMS, CONTENTS, MORE, WRITES, CUTS, BLOCKS, RUNS };
+
+// Flags of buffers: any strides, with or without permission to write.
+constexpr int STRIDED = 0x18, WRITABLE = 0x01;
+
+// Exchanges parts of a change that are Python's objects. `missing` stands for no value. Functions return false if memory
+// is short, with an error of Python; then they have done nothing.
+struct Exchange {
+    PyObject* missing;
+
+    bool attribute(PyObject* owner, PyObject* values, PyObject* name, PyObject* value) {
+        PyObject* old = host.PyObject_GenericGetAttr(owner, name);
+        if (!old) {
+            host.PyErr_Clear();
+            host.Py_IncRef(old = missing);
+        }
+        host.Py_IncRef(value);
+        const bool made = !host.PyObject_GenericSetAttr(owner, name, value == missing ? nullptr : value);
+        // The key is there, so that this takes no memory.
+        if (made)
+            host.PyDict_SetItem(values, name, old);
+        host.Py_DecRef(value);
+        host.Py_DecRef(old);
+        return made;
+    }
+
+    // At most `count` attributes, which becomes the number of those that were exchanged.
+    bool attributes(PyObject* owners, intptr_t& count) {
+        intptr_t place = 0, made = 0;
+        PyObject *number, *entry, *name, *value;
+        while (made < count && host.PyDict_Next(owners, &place, &number, &entry)) {
+            PyObject *owner = host.PyTuple_GetItem(entry, 0), *values = host.PyTuple_GetItem(entry, 1);
+            for (intptr_t within = 0; made < count && host.PyDict_Next(values, &within, &name, &value); ++made) {
+                if (!attribute(owner, values, name, value)) {
+                    count = made;
+                    return false;
+                }
             }
-            functions->PyErr_Restore(type, value, traceback);
-            return -1;
+        }
+        count = made;
+        return true;
+    }
+
+    // An item, at a place in a list of dictionaries, keys and values.
+    bool item(PyObject* list, intptr_t place) {
+        PyObject *dictionary = host.PyList_GetItem(list, place), *key = host.PyList_GetItem(list, place + 1);
+        PyObject *value = host.PyList_GetItem(list, place + 2), *old = host.PyDict_GetItemWithError(dictionary, key);
+        if (!old && host.PyErr_Occurred())
+            return false;
+        const bool is_new = !old;
+        if (is_new)
+            old = missing;
+        host.Py_IncRef(old);
+        host.Py_IncRef(value);
+        const bool made = value != missing ? !host.PyDict_SetItem(dictionary, key, value)
+                                           : is_new || !host.PyDict_DelItem(dictionary, key);
+        if (made)
+            host.PyList_SetItem(list, place + 2, old);
+        else
+            host.Py_DecRef(old);
+        host.Py_DecRef(value);
+        return made;
+    }
+
+    // All items of a dictionary, at a place in a list of dictionaries, contents and copies of their present contents.
+    bool content(PyObject* list, intptr_t place) {
+        PyObject* dictionary = host.PyList_GetItem(list, place);
+        PyObject *next = host.PyList_GetItem(list, place + 1), *now = host.PyList_GetItem(list, place + 2);
+        host.PyDict_Clear(dictionary);
+        if (host.PyDict_Update(dictionary, next)) {
+            PyObject *type, *value, *traceback;
+            host.PyErr_Fetch(&type, &value, &traceback);
+            host.PyDict_Clear(dictionary);
+            host.PyDict_Update(dictionary, now);
+            host.PyErr_Restore(type, value, traceback);
+            return false;
+        }
+        host.Py_IncRef(next);
+        host.Py_IncRef(now);
+        host.PyList_SetItem(list, place + 1, now);
+        host.PyList_SetItem(list, place + 2, next);
+        return true;
+    }
+
+    // Items for the end of a list, at a place in a list of such pairs.
+    bool extend(PyObject* list, intptr_t place) {
+        PyObject *extended = host.PyList_GetItem(list, place), *more = host.PyList_GetItem(list, place + 1);
+        const intptr_t length = host.PyList_Size(extended);
+        return length >= 0 && !host.PyList_SetSlice(extended, length, length, more);
+    }
+
+    void shorten(PyObject* list, intptr_t place) {
+        PyObject *extended = host.PyList_GetItem(list, place), *more = host.PyList_GetItem(list, place + 1);
+        const intptr_t length = host.PyList_Size(extended);
+        host.PyList_SetSlice(extended, length - host.PyList_Size(more), length, nullptr);
+    }
+
+    // All of them, or none.
+    bool all(PyObject* const* parts) {
+        intptr_t attributes_made = INTPTR_MAX, items = 0, contents = 0, mores = 0;
+        const intptr_t item_end = host.PyList_Size(parts[ITEMS]), content_end = host.PyList_Size(parts[CONTENTS]);
+        const intptr_t more_end = host.PyList_Size(parts[MORE]);
+        bool made = attributes(parts[ATTRIBUTES], attributes_made);
+        for (; made && items < item_end; items += made ? 3 : 0)
+            made = item(parts[ITEMS], items);
+        for (; made && contents < content_end; contents += made ? 3 : 0)
+            made = content(parts[CONTENTS], contents);
+        for (; made && mores < more_end; mores += made ? 2 : 0)
+            made = extend(parts[MORE], mores);
+        if (made)
+            return true;
+        PyObject *type, *value, *traceback;
+        host.PyErr_Fetch(&type, &value, &traceback);
+        while ((mores -= 2) >= 0)
+            shorten(parts[MORE], mores);
+        while ((contents -= 3) >= 0)
+            content(parts[CONTENTS], contents);
+        while ((items -= 3) >= 0)
+            item(parts[ITEMS], items);
+        attributes(parts[ATTRIBUTES], attributes_made);
+        host.PyErr_Restore(type, value, traceback);
+        return false;
+    }
+};
+
+// Copies contiguous memory to entries that need not be next to each other: those of the first axes of an array, each in
+// one piece of `size` bytes. Returns where what is left of the memory begins.
+const char* spread(const char* source, char* target, const PyBuffer& array, int axis, int axes, intptr_t size) {
+    if (axis == axes) {
+        __builtin_memcpy(target, source, size);
+        return source + size;
+    }
+    for (intptr_t i = 0; i < array.shape[axis]; ++i, target += array.strides[axis])
+        source = spread(source, target, array, axis + 1, axes, size);
+    return source;
+}
+
+// The memory of arrays, by pairs of targets and contiguous sources.
+struct Buffers {
+    PyBuffer* buffers = nullptr;
+    intptr_t count = 0;
+
+    ~Buffers() {
+        while (count)
+            host.PyBuffer_Release(&buffers[--count]);
+        host.PyMem_Free(buffers);
+    }
+
+    // False after an error.
+    bool get(PyObject* arrays) {
+        const intptr_t wanted = host.PyList_Size(arrays);
+        if (!wanted)
+            return true;
+        buffers = static_cast<PyBuffer*>(host.PyMem_Malloc(wanted * sizeof(PyBuffer)));
+        if (!buffers) {
+            host.PyErr_NoMemory();
+            return false;
+        }
+        for (; count < wanted; ++count) {
+            const int flags = count % 2 ? STRIDED : STRIDED | WRITABLE;
+            if (host.PyObject_GetBuffer(host.PyList_GetItem(arrays, count), &buffers[count], flags))
+                return false;
+        }
+        return true;
+    }
+
+    void copy() const {
+        for (intptr_t i = 0; i < count; i += 2) {
+            const PyBuffer& target = buffers[i];
+            intptr_t size = target.item_size;
+            int axes = target.axes;
+            for (; axes && target.strides[axes - 1] == size; --axes)
+                size *= target.shape[axes - 1];
+            spread(static_cast<const char*>(buffers[i + 1].memory), static_cast<char*>(target.memory), target, 0, axes, size);
         }
     }
-    carom_write(cuts, cut_count, blocks, block_count, runs, run_count);
-    return 0;
+};
+
+// Calls a function with each record in a list of byte strings.
+template <typename Record, typename Function>
+void each(PyObject* list, Function function) {
+    const intptr_t count = host.PyList_Size(list);
+    for (intptr_t i = 0; i < count; ++i) {
+        char* bytes;
+        intptr_t size;
+        host.PyBytes_AsStringAndSize(host.PyList_GetItem(list, i), &bytes, &size);
+        const Record* record = reinterpret_cast<const Record*>(bytes);
+        for (intptr_t left = size / intptr_t(sizeof(Record)); left; --left, ++record)
+            function(*record);
+    }
+}
+
+}  // namespace
+
+static void cut_rows(const RowCut& cut) { carom_take_rows(cut.table, cut.first, cut.count, cut.used); }
+
+static void launch(const KernelRun& launched) {
+    const TreeCall& call = launched.call;
+    // The host relies on the tree that it set last.
+    const int32_t before = *call.tree;
+    *call.tree = static_cast<int32_t>(launched.tree);
+    run(call.call);
+    *call.tree = before;
+}
+
+// Makes a change, or nothing of it: then it returns null, and an error of Python is set. This is the C code of a builtin,
+// whose `self` stands for no value; it returns that. `parts` are, by `Part`:
+// - a dictionary of pairs of an object and its attributes, a dictionary;
+// - lists of dictionaries, keys and values; of dictionaries, contents and copies of their present contents; of lists and
+//   items for their ends; of arrays and what is written to them, each in turn;
+// - lists of byte strings of records: `RowCut`, `Block` and `KernelRun`.
+// Rows are taken out of tables before memory is written, and kernels run after that.
+extern "C" CAROM_EXPORT PyObject* carom_commit(PyObject* missing, PyObject* const* parts, intptr_t) {
+    Buffers writes;
+    if (!writes.get(parts[WRITES]) || !Exchange{missing}.all(parts))
+        return nullptr;
+    each<RowCut>(parts[CUTS], cut_rows);
+    writes.copy();
+    each<Block>(parts[BLOCKS], [](const Block& block) { carom_copy_blocks(&block, 1); });
+    each<KernelRun>(parts[RUNS], launch);
+    host.Py_IncRef(missing);
+    return missing;
+}
+
+// Where Python changes the objects and writes to memory, it does the rest by these, with records one after the other.
+extern "C" CAROM_EXPORT void carom_cut_rows(const RowCut* cuts, int64_t count) {
+    for (int64_t i = 0; i < count; ++i)
+        cut_rows(cuts[i]);
+}
+
+extern "C" CAROM_EXPORT void carom_launch(const KernelRun* runs, int64_t count) {
+    for (int64_t i = 0; i < count; ++i)
+        launch(runs[i]);
 }
