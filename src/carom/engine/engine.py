@@ -139,7 +139,8 @@ class Engine:
 
     def note_constraints(self, change: Change) -> None:
         """Check the launches before the next step: a change is one of constraints, and of nothing else."""
-        change.set_all(self, _plan=None, _plan_before=self._plan or self._plan_before)
+        if self._plan is not None:
+            change.set_all(self, _plan=None, _plan_before=self._plan)
 
     # Structs
 

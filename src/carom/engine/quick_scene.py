@@ -89,6 +89,8 @@ class QuickScene:
 
     def pause_step(self, change: Change) -> None:
         """Forget the addresses that detect collisions, and perform no steps until they are known again."""
+        if self._is_empty:
+            return
         change.copy_blocks(self._blanks(_OF_STEP), self.record)
 
     def _blanks(self, fields: tuple[str, ...]) -> bytes:

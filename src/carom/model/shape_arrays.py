@@ -337,33 +337,28 @@ class ShapeArrays:
         values = {name: getattr(surface, name) for name in SURFACE_FIELDS}
         if values["collision_margin"] == body.margins[link]:
             del values["collision_margin"]
-        self._write_surface(change, self.table.numpy, body, link, values)
+        for name, value in values.items():
+            if name == "collision_margin":
+                self._set_margin(change, self.table.numpy, body, link, value)
+            else:
+                self._surface_rows(change, name, body.rows.first["link"] + link, value)[...] = value
 
     def note_surface(self, change: Change, link_row: int, values: Mapping[str, Any]) -> None:
         """Write some contact parameters of a link with a change."""
-        numpy = change.arrays(self.table.numpy)
-        self._write_surface(change, numpy, *self._body_of(link_row), values)
-
-    def _write_surface(
-        self,
-        change: Change,
-        numpy: Mapping[str, np.ndarray],
-        body: BodyShapes,
-        link: int,
-        values: Mapping[str, Any],
-    ) -> None:
-        """Write contact parameters of a link to arrays, and note what else changes."""
-        link_row = body.rows.first["link"] + link
         for name, value in values.items():
-            field = SURFACE_FIELDS[name]
-            if field.startswith("link"):
-                numpy[field][:, link_row] = value
-            elif field == "shape_margin":
-                self._set_margin(change, numpy, body, link, value)
+            if name == "collision_margin":
+                self._set_margin(change, change.arrays(self.table.numpy), *self._body_of(link_row), value)
             else:
-                if field == "shape_ccd_radius" and value > 0.0:
-                    change.set(self, "looks_ahead", True)
-                numpy[field][self._shapes_of(link_row)] = value
+                change.write(self._surface_rows(change, name, link_row, value), value)
+
+    def _surface_rows(self, change: Change, name: str, link_row: int, value: Any) -> np.ndarray:
+        """Where a contact parameter of a link, other than its margin, is written to."""
+        field = SURFACE_FIELDS[name]
+        if field.startswith("link"):
+            return self.table.numpy[field][:, link_row]
+        if field == "shape_ccd_radius" and value > 0.0:
+            change.set(self, "looks_ahead", True)
+        return self.table.numpy[field][self._shapes_of(link_row)]
 
     def _set_margin(
         self, change: Change, numpy: Mapping[str, np.ndarray], body: BodyShapes, link: int, margin: float

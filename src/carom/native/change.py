@@ -41,6 +41,10 @@ Attributes = dict[int, tuple[object, dict[str, Any]]]
 class Table(Protocol):
     """What can grow: `carom.native.tables.ArrayTable`."""
 
+    def lacks(self, needed: Mapping[str, int]) -> bool:
+        """Whether there is no room for `needed` rows on one of the axes."""
+        ...
+
     def grow(self, change: Change, needed: Mapping[str, int]) -> dict[str, np.ndarray]:
         """Make room for rows by axis with a change; the new arrays by name."""
         ...
@@ -78,7 +82,7 @@ class Change:
         self._items: list[Any] = []
         self._contents: list[dict[Any, Any]] = []
         self._more: list[list[Any]] = []
-        self._writes: list[np.ndarray] = []
+        self._writes: list[Any] = []
         # Records, one or more in a byte string.
         self._cuts: list[bytes] = []
         self._blocks: list[bytes] = []
@@ -159,17 +163,14 @@ class Change:
 
         A `lasting` array of values stays as it is until the change is made, and need not be copied.
         """
-        if not target.size:
-            return
-        shape, dtype = target.shape, target.dtype
         if not (
             lasting
             and isinstance(values, np.ndarray)
-            and values.shape == shape
-            and values.dtype == dtype
+            and values.shape == target.shape
+            and values.dtype == target.dtype
             and values.flags.c_contiguous
         ):
-            source = np.empty(shape, dtype)
+            source = target.copy()
             source[...] = values
             values = source
         self._writes += target, values
@@ -188,12 +189,14 @@ class Change:
 
     def make_room(self, tables: Sequence[Table], needed: Mapping[str, int]) -> None:
         """Let tables grow at once, before this change: that is one of its own, and rows stay as they are."""
+        if not any(table.lacks(needed) for table in tables):
+            return
         growth = Change()
-        grown = [table.grow(growth, needed) for table in tables]
-        if any(grown):
-            if self._renew is not None:
-                self._renew(growth)
-            growth.commit()
+        for table in tables:
+            table.grow(growth, needed)
+        if self._renew is not None:
+            self._renew(growth)
+        growth.commit()
 
     def run(self, addresses: Sequence[int], tree: int, kept: object) -> None:
         """Run a kernel on a tree after memory is written; see `TreeLaunch.addresses`."""
@@ -276,7 +279,7 @@ def _make(
     items: list[Any],
     contents: list[dict[Any, Any]],
     more: list[list[Any]],
-    writes: list[np.ndarray],
+    writes: list[Any],
     cuts: list[bytes],
     blocks: list[bytes],
     runs: list[bytes],

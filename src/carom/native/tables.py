@@ -284,9 +284,10 @@ class ArrayTable:
 
     def reserve(self, needed: Mapping[str, int], growth: float = 2.0) -> bool:
         """Make room for `needed` rows by axis, growing by a least factor; true if arrays were replaced."""
-        change = Change()
-        if not self.grow(change, needed, growth):
+        if not self.lacks(needed):
             return False
+        change = Change()
+        self.grow(change, needed, growth)
         change.commit()
         return True
 

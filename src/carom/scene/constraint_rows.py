@@ -57,12 +57,16 @@ class ConstraintRows:
 
     def forget(self, change: Change) -> None:
         """Make all rows anew the next time: with a change they, or the arrays, become others."""
-        change.set_all(self, _rows=None, _changes=[])
+        if self._rows is not None:
+            change.set_all(self, _rows=None, _changes=[])
 
     def note(self, change: Change, constraint: JointConstraint, *, added: bool) -> None:
         """With a change, a user constraint is added at the end of Bullet's list, or removed from it."""
         rows = change.get(self, "_rows")
-        if rows is None or len(self._changes) > len(rows):
+        if rows is None:
+            # All rows are made anew anyway.
+            return
+        if len(self._changes) > len(rows):
             self.forget(change)
         else:
             change.set(self, "_changes", [*change.get(self, "_changes"), (constraint, added)])

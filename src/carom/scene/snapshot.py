@@ -128,12 +128,35 @@ def layout(world: World) -> Layout:
     return Layout.of(tuple(bodies))
 
 
-def take(world: World, layout: Layout) -> Snapshot:
-    """The present state of a world, which has this layout."""
+@dataclass(slots=True)
+class Shape:
+    """What `take` and `return_to` have to know of a world, found on demand.
+
+    Attributes:
+        layout: Its layout.
+        rows: Fields of its state by name, with their rows in use.
+    """
+
+    layout: Layout
+    rows: dict[str, np.ndarray] = field(default_factory=dict)
+    _used: dict[str, int] | None = None
+    _replacements: int = -1
+
+    def look(self, world: World) -> None:
+        """Bring `rows` up to date; bodies are as when the layout was made."""
+        state, used = world.arrays.state, world.arrays.used
+        if used is not self._used or state.replacements != self._replacements:
+            self.rows = dict(_rows(state, used))
+            self._used, self._replacements = used, state.replacements
+
+
+def take(world: World, shape: Shape) -> Snapshot:
+    """The present state of a world, which has this shape."""
+    layout = shape.layout
     snapshot = Snapshot(layout, world.time, world.unspent_time)
+    shape.look(world)
     snapshot.state = {
-        name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy()
-        for name, rows in _rows(world.arrays.state, world.arrays.used)
+        name: rows[layout.joint_dofs] if name in _DRIVES else rows.copy() for name, rows in shape.rows.items()
     }
     islands = snapshot.state["tree_island"]
     if islands.size and islands.max() >= len(islands):
@@ -146,8 +169,8 @@ def take(world: World, layout: Layout) -> Snapshot:
     return snapshot
 
 
-def return_to(change: Change, world: World, layout: Layout, snapshot: Snapshot) -> None:
-    """Restore a world, which has this layout, from a snapshot with a change, which notes nothing before.
+def return_to(change: Change, world: World, shape: Shape, snapshot: Snapshot) -> None:
+    """Restore a world, which has this shape, from a snapshot with a change, which notes nothing before.
 
     Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
     and loaded in another order.
@@ -155,16 +178,17 @@ def return_to(change: Change, world: World, layout: Layout, snapshot: Snapshot) 
     Raises:
         StateError: The world has other bodies.
     """
-    same = layout == snapshot.layout
+    same = shape.layout == snapshot.layout
     if not same:
-        snapshot = _reordered(snapshot, layout)
+        snapshot = _reordered(snapshot, shape.layout)
     else:
         world.grow(world.contact_arrays.contacts, counted_rows(snapshot.contacts["count_contacts"]))
     impulses, users = snapshot.user_impulses, world.user_constraints
     if len(impulses) == len(users.rows):
         world.grow(world.arrays.state, {"user": len(impulses)})
         users.set_impulses(change, world.arrays.state, impulses)
-    for name, rows in _rows(world.arrays.state, world.arrays.used):
+    shape.look(world)
+    for name, rows in shape.rows.items():
         saved = _of_drives(rows, snapshot, name) if name in _DRIVES else snapshot.state[name]
         change.write(rows, saved, lasting=True)
     counts = world.contact_arrays.contacts.numpy["count_contacts"][0]

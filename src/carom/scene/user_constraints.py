@@ -279,10 +279,12 @@ class UserConstraints:
     def put(self, change: Change, constraint: UserConstraint) -> None:
         """Add a constraint with its own number with a change; later ones get higher numbers."""
         change.put(self._by_id, constraint.id, constraint)
-        if constraint.id >= change.get(self, "next_id"):
-            change.set(self, "next_id", constraint.id + 1)
-        if constraint.id <= change.get(self, "_next_hidden_id"):
-            change.set(self, "_next_hidden_id", constraint.id - 1)
+        number = constraint.id
+        if number > 0:
+            if number >= change.get(self, "next_id"):
+                change.set(self, "next_id", number + 1)
+        elif number <= change.get(self, "_next_hidden_id"):
+            change.set(self, "_next_hidden_id", number - 1)
 
     def discard(self, change: Change, constraint_id: int) -> None:
         """Remove the constraint with a number, if it exists, with a change."""
@@ -302,7 +304,8 @@ class UserConstraints:
 
     def forget_written(self, change: Change) -> None:
         """Write all rows the next time: with a change the arrays may get other contents."""
-        change.set(self, "_written", [])
+        if self._written:
+            change.set(self, "_written", [])
 
     def write(self, contact_arrays: ContactArrays, state: ArrayTable) -> None:
         """Write all constraints that have changed to the arrays of the engine; impulses follow their rows."""

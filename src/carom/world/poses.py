@@ -21,7 +21,7 @@ from carom.scene.body import Body
 if TYPE_CHECKING:
     from carom.queries.present_poses import PresentPoses
     from carom.queries.queries import Queries
-    from carom.scene.snapshot import Layout
+    from carom.scene.snapshot import Shape
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Derived:
     present_poses: PresentPoses | None = None
     pose_launch: TreeLaunch | None = None
     twist_launch: TreeLaunch | None = None
-    layout: Layout | None = None
+    shape: Shape | None = None
     link_places: list[tuple[int, int]] | None = None
     link_columns: tuple[list[int], list[int]] | None = None
 

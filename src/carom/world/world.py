@@ -31,7 +31,7 @@ from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
 from carom.scene.faults import cause_in
 from carom.scene.joint_constraints import JointConstraints
 from carom.scene.observers import Observer, SubstepObserver
-from carom.scene.snapshot import Layout, Snapshot, layout, return_to, take
+from carom.scene.snapshot import Shape, Snapshot, layout, return_to, take
 from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
@@ -281,10 +281,10 @@ class World(
         return self._derived.link_columns
 
     @property
-    def _layout(self) -> Layout:
-        if self._derived.layout is None:
-            self._derived.layout = layout(self)
-        return self._derived.layout
+    def _shape(self) -> Shape:
+        if self._derived.shape is None:
+            self._derived.shape = Shape(layout(self))
+        return self._derived.shape
 
     def snapshot(self) -> Snapshot:
         """The present state, for `restore`, which can be called any number of times.
@@ -292,7 +292,7 @@ class World(
         It contains positions and velocities, motors, applied forces, contacts and time; not masses and shapes
         of bodies, constraints, gravity and other parameters.
         """
-        return take(self, self._layout)
+        return take(self, self._shape)
 
     def restore(
         self, state: Snapshot | str | Path, *, update_poses: bool = False, maximal: Collection[int] = ()
@@ -320,7 +320,7 @@ class World(
             return
         with uninterrupted:
             change = Change()
-            return_to(change, self, self._layout, state)
+            return_to(change, self, self._shape, state)
             if update_poses:
                 self.note_link_poses(change)
             change.commit()
@@ -397,14 +397,16 @@ class World(
     def change_constraints(self, change: Change) -> None:
         """Set the prepared step aside with a change of constraints, and of nothing else."""
         derived = self._derived
-        change.set_all(derived, step=None, step_before=derived.step or derived.step_before)
+        if derived.step is not None:
+            change.set_all(derived, step=None, step_before=derived.step)
         self.quick.pause_step(change)
         self.engine.note_constraints(change)
 
     def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
         """Make room for rows of a table of this world; nothing else of the world changes."""
-        change = Change()
-        if table.grow(change, needed):
+        if table.lacks(needed):
+            change = Change()
+            table.grow(change, needed)
             self.change_scene(change)
             change.commit()
 

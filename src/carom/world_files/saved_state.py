@@ -10,7 +10,7 @@ import numpy as np
 from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.native.change import Change
-from carom.scene.snapshot import BodyLayout, Layout, Snapshot, counted_rows, layout, return_to, take
+from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_rows, layout, return_to, take
 from carom.world_files.records import Reader
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 def state_of(world: World) -> dict[str, Any]:
     """The present state of a world, as a value for `Writer.write`."""
-    snapshot = take(world, layout(world))
+    snapshot = take(world, Shape(layout(world)))
     return {
         "bodies": list(snapshot.layout.bodies),
         "time": snapshot.time,
@@ -155,7 +155,7 @@ def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: 
     if whole:
         _return_to(world, present, snapshot)
         return
-    others = take(world, present)
+    others = take(world, Shape(present))
     for name, rows in others.state.items():
         if not name.startswith("tree"):
             rows[len(rows) - len(snapshot.state[name]) :] = snapshot.state[name]
@@ -165,7 +165,7 @@ def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: 
 
 def _return_to(world: World, present: Layout, snapshot: Snapshot) -> None:
     change = Change()
-    return_to(change, world, present, snapshot)
+    return_to(change, world, Shape(present), snapshot)
     change.commit()
 
 
@@ -186,7 +186,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
         "drive": len(snapshot.layout.joint_dofs),
         **counted_rows(counts),
     }
-    example = take(world, layout(world))
+    example = take(world, Shape(layout(world)))
     for given, wanted in ((snapshot.state, example.state), (snapshot.contacts, example.contacts)):
         if given.keys() != wanted.keys():
             raise ValueError("an array of the state is missing or unknown")
