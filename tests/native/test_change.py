@@ -104,6 +104,65 @@ def test_a_change_is_made_by_commit_and_not_before() -> None:
 
 
 @pytest.mark.usefixtures("way")
+def test_several_attributes_join_those_noted_before() -> None:
+    plain = Plain()
+    change = Change()
+    change.set_all(plain, number=2, other="new")
+    change.set_all(plain, number=3)
+    change.set(plain, "added", 4)
+    assert [change.get(plain, name) for name in ("number", "other", "added")] == [3, "new", 4]
+    change.commit()
+    assert vars(plain) == {"number": 3, "other": "new", "added": 4}
+
+
+@pytest.mark.usefixtures("way")
+def test_arrays_of_any_shape_and_stride_are_written() -> None:
+    whole = np.zeros((3, 4, 5, 2))
+    expected = whole.copy()
+    parts = [np.s_[:, 1], np.s_[1, :, 2], np.s_[::2, 1:3, 1::2], np.s_[0, 0, 0, 0:0], np.s_[2, ::-1, 4, 1:]]
+    change = Change()
+    for number, part in enumerate(parts, start=1):
+        values = number + np.arange(expected[part].size).reshape(expected[part].shape) / 100
+        change.write(whole[part], values, lasting=number % 2 == 0)
+        expected[part] = values
+    one = np.zeros(())
+    change.write(one, 3.0)
+    change.commit()
+    assert np.array_equal(whole, expected)
+    assert one == 3.0
+
+
+def test_nothing_is_changed_if_an_array_cannot_be_written() -> None:
+    if changes._commit() is None:
+        pytest.skip("Python makes changes here")
+    plain, array, fixed = Plain(), np.zeros(2), np.zeros(2)
+    fixed.flags.writeable = False
+    change = Change()
+    change.set(plain, "number", 2)
+    change.write(array, 1.0)
+    change.write(fixed, 1.0)
+    with pytest.raises(ValueError, match="read-only"):
+        change.commit()
+    assert plain.number == 1
+    assert not array.any()
+    assert not fixed.any()
+
+
+def test_old_values_are_dropped_with_the_change(way: str) -> None:
+    dropped: list[int] = []
+    plain, items = Plain(), {"a": Watched(lambda: dropped.append(2))}
+    plain.other = Watched(lambda: dropped.append(1))  # type: ignore[assignment]
+    change = Change()
+    change.set(plain, "other", "new")
+    change.drop(items, "a")
+    change.commit()
+    if way == "native":
+        assert not dropped
+    del change
+    assert sorted(dropped) == [1, 2]
+
+
+@pytest.mark.usefixtures("way")
 def test_rows_are_taken_out_before_memory_is_written() -> None:
     table = ArrayTable(Shapes, references={"shape_link": "link"})
     numpy = table.numpy

@@ -37,12 +37,13 @@
     F(void, Py_IncRef, (PyObject*))                                   \
     F(void, Py_DecRef, (PyObject*))
 
+struct ChangeFunctions {
 #define F(result, name, arguments) result(*name) arguments;
-extern "C" CAROM_EXPORT struct ChangeFunctions {
     CAROM_CHANGE_FUNCTIONS(F)
-} carom_change_table;
 #undef F
+};
 
+extern "C" CAROM_EXPORT ChangeFunctions carom_change_table;
 ChangeFunctions carom_change_table;
 
 // Names of the functions that the host writes to the table, in order.
