@@ -139,15 +139,14 @@ class Shape:
 
     layout: Layout
     rows: dict[str, np.ndarray] = field(default_factory=dict)
-    _used: dict[str, int] | None = None
     _replacements: int = -1
 
     def look(self, world: World) -> None:
-        """Bring `rows` up to date; bodies are as when the layout was made."""
-        state, used = world.arrays.state, world.arrays.used
-        if used is not self._used or state.replacements != self._replacements:
-            self.rows = dict(_rows(state, used))
-            self._used, self._replacements = used, state.replacements
+        """Bring `rows` up to date if arrays were replaced; bodies are as when the layout was made."""
+        state = world.arrays.state
+        if state.replacements != self._replacements:
+            self.rows = dict(_rows(state, world.arrays.used))
+            self._replacements = state.replacements
 
 
 def take(world: World, shape: Shape) -> Snapshot:
