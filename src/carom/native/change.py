@@ -13,13 +13,15 @@ import sysconfig
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from struct import Struct
-from typing import Any, Protocol, TypeVar
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from carom.native.builtins import new_builtin
 from carom.native.uninterrupted import uninterrupted
+
+if TYPE_CHECKING:
+    # `import pybullet` comes here, and NumPy waits until there is a world.
+    import numpy as np
+    import numpy.typing as npt
 
 T = TypeVar("T")
 
@@ -163,17 +165,16 @@ class Change:
 
         A `lasting` array of values stays as it is until the change is made, and need not be copied.
         """
+        source: Any = values
         if not (
             lasting
-            and isinstance(values, np.ndarray)
-            and values.shape == target.shape
-            and values.dtype == target.dtype
-            and values.flags.c_contiguous
+            and source.shape == target.shape
+            and source.dtype == target.dtype
+            and source.flags.c_contiguous
         ):
             source = target.copy()
             source[...] = values
-            values = source
-        self._writes += target, values
+        self._writes += target, source
 
     def copy_blocks(self, blocks: bytes, kept: object) -> None:
         """Copy blocks of memory, given as records (`layouts.table_rows.Block`), which point into `kept`."""
@@ -232,7 +233,7 @@ def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 = _ZERO) ->
     return packed_block(ctypes.addressof(value), ctypes.addressof(holder) + field.offset, field.size)
 
 
-class _Copies(dict[str, np.ndarray]):
+class _Copies(dict[str, "np.ndarray"]):
     """Copies of arrays by their names, made when they are asked for."""
 
     def __init__(self, originals: Mapping[str, np.ndarray]) -> None:
