@@ -166,6 +166,9 @@ class Engine:
         """Launches have copies of the settings: update them."""
         for workspace in self._workspaces:
             workspace.structs.changed("settings")
+        for stepper in self._interpreters:
+            if isinstance(stepper, Interpreter) and stepper.lane_work:
+                stepper.lane_work.settings_changed()
 
     def _bind(self) -> list[KernelStructs]:
         """Structs over the current arrays for each thread; the arrays are made longer if necessary."""
@@ -241,7 +244,7 @@ class Engine:
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
-                stepper.move_together(LaneWork(self.arrays, workspace.structs) if is_able else None)
+                stepper.move_together(LaneWork(self.arrays, workspace, plan) if is_able else None)
 
     @property
     def steps_in_lanes(self) -> int:

@@ -48,6 +48,8 @@ COLUMNS = 14
 # The neighbour list: number of its pairs; substeps since it was made; 1 if it has slack; `NO_LIST`, or one
 # more than `Settings.filter_both` was.
 NO_LIST = 0
+# In place of a row of a user constraint along which nothing can move.
+IMMOVABLE = -(2**30)
 # Value of START_CONTACTS and START_OVERLAPS, the numbers of contacts and of overlaps at the start of a step,
 # until these have been saved.
 NONE_KEPT = -1
@@ -514,7 +516,7 @@ class PairRows:
     entry_matrix: RealRows
 
     user_first_row: IntRows
-    visit_row: IntRows  # joint rows and, as -1 - row, those of user constraints, in order of relaxation
+    visit_row: IntRows  # joint rows, -1 - row of user constraints or `IMMOVABLE`, in order of relaxation
 
 
 # Fields that are views of another array's blocks, entry by entry.

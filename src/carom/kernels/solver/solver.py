@@ -24,6 +24,7 @@ from carom.kernels.solver.warm_starting import (
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import USER
+from carom.layouts.contacts import IMMOVABLE
 from carom.layouts.status import OVERFLOW, STATUS
 
 
@@ -62,7 +63,8 @@ def island_rows(
                     settings, model, state, scratch, users, pair_rows, world, user, pair_row, block
                 )
                 while first < pair_row:
-                    pair_rows.visit_row[world, visits] = -1 - first
+                    moves = pair_rows.row_terms[world, first].effective_mass != 0.0
+                    pair_rows.visit_row[world, visits] = wp.where(moves, -1 - first, Int32(IMMOVABLE))
                     visits += 1
                     first += 1
             else:
