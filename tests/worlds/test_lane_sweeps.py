@@ -55,6 +55,12 @@ def rows_of(worlds: Worlds) -> np.ndarray:
     return (beyond & limits).sum(axis=1)
 
 
+def assert_same_motion(worlds: Worlds, others: Worlds) -> None:
+    for name in ("position", "dof_velocity", "user_impulse", "actuator_force", "tree_iterations"):
+        ours, theirs = (one._engine.arrays.state.numpy[name] for one in (worlds, others))
+        np.testing.assert_array_equal(ours, theirs, err_msg=name)
+
+
 @pytest.mark.parametrize("servos", [True, False])
 @pytest.mark.parametrize(("count", "threads"), [(4, 1), (9, 1), (9, 2)])
 def test_worlds_with_different_rows(count: int, threads: int, servos: bool) -> None:
@@ -112,9 +118,7 @@ def test_a_coupling_that_some_worlds_lack() -> None:
         for number in range(4):
             one_by_one.step(steps, where=[number])
     assert sweeps_of(together) == 0
-    for name in ("position", "dof_velocity", "user_impulse"):
-        ours, theirs = (worlds._engine.arrays.state.numpy[name] for worlds in (together, one_by_one))
-        np.testing.assert_array_equal(ours, theirs)
+    assert_same_motion(together, one_by_one)
 
 
 def test_a_world_that_fails_leaves_the_others_alone() -> None:
@@ -130,15 +134,15 @@ def test_a_world_that_fails_leaves_the_others_alone() -> None:
         assert_same_bits(worlds, number, alone[number])
 
 
-def test_time_steps_that_change() -> None:
+def test_settings_that_change() -> None:
     scene, body = arm()
-    worlds, alone = controlled(scene, body, 4)
+    together, one_by_one = (controlled(scene, body, 4)[0] for _ in range(2))
     for seconds in (1 / 240, 1 / 60, 1 / 500):
-        worlds.time_step = seconds
-        worlds.step(7)
-        for world in alone:
-            world.parameters.time_step = seconds
-            world.step(7)
-        for number, lone in enumerate(alone):
-            assert_same_bits(worlds, number, lone)
-    assert sweeps_of(worlds) > 0
+        for worlds in (together, one_by_one):
+            worlds.time_step = seconds
+        for steps in (1, 7):
+            together.step(steps)
+            for number in range(4):
+                one_by_one.step(steps, where=[number])
+        assert_same_motion(together, one_by_one)
+    assert sweeps_of(together) > 0
