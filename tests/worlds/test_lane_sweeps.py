@@ -79,6 +79,22 @@ def test_worlds_with_different_rows(count: int, threads: int, servos: bool) -> N
     assert differed
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_worlds_whose_bodies_cannot_interact(threads: int) -> None:
+    scene = earth()
+    body = scene.load_urdf(f"{DATA}/franka_panda/panda.urdf", fixed_base=True, as_pybullet=True)
+    body.joints.reset(_HOME)
+    body.joints.set_position_targets(_HOME, max_forces=87.0)
+    worlds = stirred_worlds(scene, 9, threads)
+    alone = [stirred(scene, number) for number in range(9)]
+    for steps in (1, 20, 40):
+        worlds.step(steps)
+        for number, lone in enumerate(alone):
+            lone.step(steps)
+            assert_same_bits(worlds, number, lone)
+    assert sweeps_of(worlds) > 0
+
+
 def joint_motors(world: World, body: Body) -> None:
     body.joints.set_velocity_targets(0.3, max_forces=20.0)
 

@@ -69,6 +69,8 @@ class Engine:
     detection_program: Callable[[KernelStructs], Program] = staticmethod(detection_program)
     # Whether bodies can be absent in some worlds.
     allows_absence = True
+    # Whether it takes steps of several worlds at once where these have robots.
+    moves_together = True
     # Whether workspaces depend on nothing but the lengths of arrays and the numbers of rows in use.
     keeps_structs = True
 
@@ -240,7 +242,8 @@ class Engine:
 
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
-        together = self._make_program is self.step_program and can_move_together(self.arrays, plan)
+        together = self._make_program is self.step_program and plan.coupled and not plan.soft
+        together = together and can_move_together(self.arrays)
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
@@ -279,6 +282,7 @@ class Engine:
         soft = bool(self.contact_arrays.soft.bodies)
         coupled = touching or sleeping or absent or soft
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
+        coupled = coupled or (self.moves_together and can_move_together(self.arrays))
         self._plan = Plan(touching, sleeping, coupled, soft, absent)
         return self._plan
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ from carom.native.tables import array_view
 from carom.native.zeros import zeros
 
 NUMBER = np.dtype(np.float64)
+# Bytes of a cache line.
+_ALIGNMENT = 64
 
 
 class Wide(NamedTuple):
@@ -30,7 +33,7 @@ def widened(lone: np.ndarray, count: int, axes: int = 2) -> Wide:
     """An array of `count` rows, which has several numbers for each of those in `lone`."""
     shape = (count, *lone.shape[axes:])
     if lone.dtype == NUMBER:
-        return Wide(zeros((*shape, LANES), NUMBER), axes)
+        return Wide(_aligned_zeros((*shape, LANES)), axes)
     fields: list[Any] = []
     for field in lone.dtype.names or ():
         kind = lone.dtype[field]
@@ -39,6 +42,14 @@ def widened(lone: np.ndarray, count: int, axes: int = 2) -> Wide:
         else:
             fields.append((field, kind))
     return Wide(zeros(shape, np.dtype(fields)), axes)
+
+
+def _aligned_zeros(shape: tuple[int, ...]) -> np.ndarray:
+    """Numbers whose lanes are not in two cache lines."""
+    count = prod(shape)
+    room = zeros((count + _ALIGNMENT // NUMBER.itemsize,), NUMBER)
+    first = -room.ctypes.data % _ALIGNMENT // NUMBER.itemsize
+    return room[first : first + count].reshape(shape)
 
 
 def _has_numbers(kind: np.dtype[Any]) -> bool:

@@ -41,9 +41,9 @@ _LINK_NUMBERS = ("joint_rotation", "planar_axis2")
 _MOTION_NUMBERS = ("angular", "inverse_pivot")
 
 
-def can_move_together(arrays: WorldArrays, plan: Plan) -> bool:
-    """Whether several worlds can move at once, and have trees of several links, which then take less time."""
-    if arrays.world_count < LANES or not plan.coupled or plan.soft:
+def can_move_together(arrays: WorldArrays) -> bool:
+    """Whether there are enough worlds to move at once, and trees of several links, where that saves time."""
+    if arrays.world_count < LANES:
         return False
     return bool((arrays.model.numpy["tree_link_count"][: arrays.used["tree"]] > 1).any())
 
