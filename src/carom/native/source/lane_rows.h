@@ -55,11 +55,11 @@ inline void gather(const LaneRows& rows, int first, int count, int world = 0) {
     }
 }
 
-// Hands out some rows of a lane.
-inline void scatter(const LaneRows& rows, int lane, int first, int count) {
+// Hands out some rows of a lane, to the workspace of that or of another.
+inline void scatter(const LaneRows& rows, int lane, int to_lane, int first, int count) {
     for (int row = first; row < first + count; ++row) {
         const double* from = numbers_at(rows.wide, row * rows.wide_stride) + lane;
-        double* to = numbers_at(rows.lone[lane], row * rows.row_stride);
+        double* to = numbers_at(rows.lone[to_lane], row * rows.row_stride);
         int i = 0;
         for (; i + 4 <= rows.numbers; i += 4, from += 4 * LANES)
             four_at(to + i) = Four{from[0], from[LANES], from[2 * LANES], from[3 * LANES]};

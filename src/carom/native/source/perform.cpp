@@ -87,16 +87,22 @@ bool finish_step(const Run& run, const LaneWorld& lane, const WorldCall& solve, 
     return end_step(run, lane.program, world, step, 1, well);
 }
 
+// After this many steps in a row with rows that could not be relaxed together, lanes share a workspace, which stays in the
+// processor's caches; every so often they try it again.
+constexpr int64_t PATIENCE = 16, PAUSE = 64;
+
 // Takes a step of one substep of the worlds from `first` on that are going. Those whose rows can be relaxed together
 // wait for each other, unless one of them cannot.
 void take_step_together(const Run& run, int first, int step, bool (&is_going)[LANES]) {
     const LaneMotion& lanes = *run.lanes;
-    bool is_waiting[LANES], all_wait = true;
+    const bool is_shared = *lanes.steps_apart >= PATIENCE && *lanes.steps_apart % PAUSE != 0;
+    bool is_waiting[LANES], all_wait = !is_shared;
     for (int i = 0; i < LANES; ++i) {
         is_waiting[i] = false;
         if (is_going[i]) {
-            const LaneWorld& lane = lanes.worlds[i];
-            hand_over_motion(lanes, i);
+            const int own = is_shared ? 0 : i;
+            const LaneWorld& lane = lanes.worlds[own];
+            hand_over_motion(lanes, i, own);
             if (!perform(lane.program, 0, lanes.solving, first + i, 1, status_of(run, first + i)))
                 is_going[i] = end_step(run, lane.program, first + i, step, 1, false);
             else if (all_wait && lane.waiting[WAITING_ROOT] >= 0)
@@ -107,6 +113,7 @@ void take_step_together(const Run& run, int first, int step, bool (&is_going)[LA
         all_wait &= is_waiting[i];
     }
     const bool together = all_wait && relax_together(lanes);
+    *lanes.steps_apart = together ? 0 : *lanes.steps_apart + 1;
     for (int i = 0; i < LANES; ++i) {
         const LaneWorld& lane = lanes.worlds[i];
         if (is_waiting[i])
