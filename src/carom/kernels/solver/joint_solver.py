@@ -94,10 +94,12 @@ def joint_constraint_rows(
         i += stride;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {
+            // In a lane of several, whether this holds there. For one world nothing has to be chosen.
+            const auto is_out = after < own.lower || after > own.upper;
             // A negative greatest force exchanges the bounds: as in Bullet, the lower comes first.
-            after = after < own.lower ? own.lower : own.upper;
-            change = (after - before) / own.effective_mass;
-            after = before + change * own.effective_mass;
+            const auto bounded = wp::where(after < own.lower, own.lower, own.upper);
+            change = wp::where(is_out, (bounded - before) / own.effective_mass, change);
+            after = wp::where(is_out, before + change * own.effective_mass, after);
         }
         own.impulse = after;
         const auto* x = responses + own.response;
@@ -113,7 +115,7 @@ def joint_constraint_rows(
         for (int block = 0; block < own.blocks; ++block)
             y[block] = wp::add(y[block], wp::mul(change, x[block]));
         const auto square = change * change;
-        residual = square > residual ? square : residual;
+        residual = wp::where(square > residual, square, residual);
     }
     return residual;
 """)
