@@ -326,3 +326,70 @@ SAVE, RESTORE, REMOVE = call(4, "saveState"), call(6, "restoreState", {"$": 4}),
 )
 def test_states_are_restored_by_order_where_bodies_were_removed(calls: list[Call], expected: bool):
     assert is_known(calls, "base.0.0", 1.0, 2.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("flags", "kind", "expected"), [(4, 4, True), (5, 7, True), (4, 3, False), (1, 4, False)]
+)
+def test_images_without_labels_may_show_any_long_round_shape(flags: int, kind: int, expected: bool):
+    shape, body = call(3, "createCollisionShape", kind), call(4, "createMultiBody", 1, {"$": 3})
+    calls = [call(0, "loadURDF", "plane.urdf"), shape, body, call(5, "getCameraImage", shadow=0, flags=flags)]
+    said = "9 of 16 differ: [90, 90, 90, 255] of 0"
+    assert is_known(calls, "colour", said, [70, 70, 70, 255]) == expected
+    assert not is_known(calls, "colour", said, [70, 120, 70, 255])
+
+
+GIVEN = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
+
+
+@pytest.mark.parametrize(
+    ("shape", "visuals", "nearer", "label", "expected"),
+    [
+        (GIVEN, [-1], 90, 1, True),
+        (GIVEN, [-1], 90, 1 + (1 << 24), True),
+        (GIVEN, [{"$": 2}], 90, 1, False),
+        (GIVEN, [-1], 70, 1, False),
+        (GIVEN, [-1], 90, 0, False),
+        (GIVEN, [-1], 90, -1, False),
+        ({"fileName": "cube.obj"}, [-1], 90, 1, False),
+    ],
+)
+def test_vertices_of_collision_shapes_are_drawn(
+    shape: dict[str, Any], visuals: list[Any], nearer: int, label: int, expected: bool
+):
+    made = [call(1, "createCollisionShape", 5, **shape), call(2, "createVisualShape", 3)]
+    links = {"linkCollisionShapeIndices": [{"$": 1}], "linkVisualShapeIndices": visuals}
+    body = call(3, "createMultiBody", 1, -1, -1, **links)
+    calls = [BOX, *made, body, call(4, "getCameraImage")]
+    assert is_known(calls, "segments", f"90 of 768 differ, {nearer} are nearer: -1", label) == expected
+
+
+def test_vertices_of_a_base_are_drawn():
+    made = [call(1, "createCollisionShape", 5, **GIVEN), call(3, "createMultiBody", 1, {"$": 1}, -1)]
+    calls = [*made, call(4, "getCameraImage")]
+    assert is_known(calls, "segments", "90 of 768 differ, 90 are nearer: -1", 0)
+
+
+REACHER, PENDULUM = call(1, "loadMJCF", "mjcf/reacher.xml"), call(2, "loadMJCF", "mjcf/inverted_pendulum.xml")
+CUBES = [call(3, "createMultiBody", 1), call(4, "createMultiBody", 1)]
+BARE_ARM = call(5, "createMultiBody", 1, linkCollisionShapeIndices=[-1], linkJointTypes=[0])
+
+
+@pytest.mark.parametrize(
+    ("calls", "difference", "expected"),
+    [
+        ([REACHER, STEP, PROBE], 1e-7, True),
+        ([REACHER, STEP, PROBE], 1e-3, False),
+        ([PENDULUM, STEP, PROBE], 1e-7, False),
+        ([PENDULUM, CUBES[0], STEP, PROBE], 1e-7, True),
+        ([*CUBES, STEP, PROBE], 1e-7, False),
+        ([BARE_ARM, CUBES[0], STEP, PROBE], 1e-7, True),
+        ([BARE_ARM, STEP, PROBE], 1e-7, False),
+    ],
+)
+def test_links_without_shapes_make_islands_of_bodies(calls: list[Call], difference: float, expected: bool):
+    place = Place("positions.1.2", [0.0], [difference], difference)
+    found = Difference(len(calls) - 1, "@probe", place, "free")
+    assert bool(statement(calls, found)) == expected
+    later = Difference(len(calls) - 1, "@probe", place, "contact")
+    assert not statement(calls, later)

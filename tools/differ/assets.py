@@ -40,6 +40,8 @@ def _names(table: str) -> frozenset[str]:
 
 AT_LIMITS = _names("at_limits.json")
 """Files with a joint that stands exactly at one of its limits when it is loaded."""
+BARE = _names("bare.json")
+"""Files with a link that has a joint to move and no collision shape."""
 CHILDREN_FIRST = _names("children_first.json")
 """Files that list a link before its parent."""
 FINE = _names("fine.json")

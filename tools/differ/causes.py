@@ -10,6 +10,7 @@ from typing import Any
 
 from tools.differ.assets import (
     AT_LIMITS,
+    BARE,
     CHILDREN_FIRST,
     FILES,
     FINE,
@@ -63,6 +64,8 @@ _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
 _ROUND = frozenset({2, 4, 7})
 _LONG_AND_ROUND = frozenset({4, 7})
 _LABELS_OF_A_LINK = 1 << 24
+_NO_LABELS = 4
+_MAKE = ("load", "createMultiBody")
 _SEVERAL_BODIES = frozenset({"loadSDF", "loadMJCF"})
 _SAME_SHADE = 12.0
 _NEAR_PLANE_OF_SHADOWS = 0.05
@@ -380,19 +383,43 @@ def shades_as_a_ball(seen: Seen) -> bool:
     changes = [b - a for a, b in zip(theirs, ours, strict=True)]
     if min(changes) < -_SAME_SHADE and max(changes) > _SAME_SHADE:
         return False
-    body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
-    if body is None:
-        return False
+    if seen.call["k"].get("flags", 0) & _NO_LABELS:
+        # Nothing says which body it is.
+        bodies = [call for call in seen.before if call["f"].startswith(_MAKE)]
+    else:
+        body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
+        bodies = [] if body is None else [body]
+    return any(_has_something_long_and_round(seen, body) for body in bodies)
+
+
+def _has_something_long_and_round(seen: Seen, body: Call) -> bool:
+    """Whether the body that a call makes has cylinders or capsules."""
     if body["f"].startswith("load"):
-        return body["a"][0] in LONG_AND_ROUND
+        return body["a"][:1] != [] and body["a"][0] in LONG_AND_ROUND
     return any(map(_is_long_and_round, _made_for(seen, [body["a"], body["k"]])))
+
+
+def draws_given_vertices(seen: Seen) -> bool:
+    """Whether an image shows a body that PyBullet's does not: collision shapes made of vertices."""
+    said = re.match(r"(\d+) of \d+ differ, (\d+) are nearer", str(seen.difference.place.theirs))
+    assert said
+    wrong, nearer = map(int, said.groups())
+    body = _maker_of(seen, seen.difference.place.ours)
+    if nearer <= _SHARE_OF_NEARER * wrong or body is None or body["f"] != "createMultiBody":
+        return False
+    shapes, visuals = (
+        [*body["a"][place : place + 1], *body["k"].get(name, ())]
+        for place, name in ((1, "linkCollisionShapeIndices"), (2, "linkVisualShapeIndices"))
+    )
+    bare = [shape for shape, visual in zip(shapes, visuals, strict=False) if visual == -1]
+    return any("vertices" in call["k"] for call in _made_for(seen, bare))
 
 
 def _maker_of(seen: Seen, label: int) -> Call | None:
     """The call that made the body with a label in images."""
     number = label % _LABELS_OF_A_LINK
     for call in seen.before if label >= 0 else ():
-        if call["f"].startswith(("load", "createMultiBody")):
+        if call["f"].startswith(_MAKE):
             number -= len(FILES.get(call["a"][0], ((),))) if call["f"] in _SEVERAL_BODIES else 1
             if number < 0:
                 return call
@@ -441,6 +468,26 @@ def casts_shadows(seen: Seen) -> bool:
     made = next(call for call in seen.before if call["id"] == projection)
     near = made["a"][4 if made["f"] == "computeProjectionMatrix" else 2]
     return near == 0.0 or near >= _NEAR_PLANE_OF_SHADOWS
+
+
+def comes_near_bare_links(seen: Seen) -> bool:
+    """Whether two bodies that move may be one island by links without shapes, and states hardly differ."""
+    if seen.difference.phase != "free" or seen.difference.place.error > _LEFT_OVER:
+        return False
+    types = _joint_types(seen)
+    bare, moving = False, 0
+    for call in seen.before:
+        name = call["a"][0] if call["f"].startswith("load") and call["a"] else None
+        if isinstance(name, str):
+            bare |= name in BARE
+            bodies = FILES.get(name, ())
+            moving += sum(any(joint.type != FIXED for joint in joints) for joints in bodies)
+        elif call["f"] == "createMultiBody":
+            links = call["k"].get("linkCollisionShapeIndices", ())
+            joints = types.get(call["id"], [])
+            bare |= any(shape == -1 and joint != FIXED for shape, joint in zip(links, joints, strict=False))
+            moving += has_joints(seen, call) or call["a"][:1] > [0]
+    return bare and moving > 1
 
 
 def goes_on_with_masses(seen: Seen) -> bool:

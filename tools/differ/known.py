@@ -19,8 +19,10 @@ from tools.differ.causes import (
     Seen,
     aims_a_ball_joint_by_a_number,
     casts_shadows,
+    comes_near_bare_links,
     counts_hits,
     crosses_capsules,
+    draws_given_vertices,
     error,
     exchanges_points,
     forgets_forces,
@@ -164,6 +166,10 @@ KNOWN: tuple[Known, ...] = (
         ),
     ),
     Known(
+        "Collision shapes made of vertices are drawn",
+        lambda seen: seen.differs("getCameraImage segments") and draws_given_vertices(seen),
+    ),
+    Known(
         "shades cylinders and capsules with the normals of a ball",
         lambda seen: seen.differs("getCameraImage colour") and shades_as_a_ball(seen),
     ),
@@ -224,6 +230,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "PyBullet counts in the order in which it",
         lambda seen: seen.differs("rayTestBatch") and counts_hits(seen),
+    ),
+    Known(
+        "links without shapes have bounds as well",
+        lambda seen: seen.differs("@probe") and comes_near_bare_links(seen),
     ),
     Known(
         "Which way a constraint, or the motor of a spherical joint, turns back",

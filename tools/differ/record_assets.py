@@ -2,7 +2,8 @@
 
 `at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
 `children_first.json` those that list a link before its parent, and `fine.json` those with a hull of very many
-corners, and meshes that make one. `long_and_round.json` are those that show cylinders or capsules, and
+corners, and meshes that make one. `bare.json` are those with a link that has a joint to move and no collision
+shape. `long_and_round.json` are those that show cylinders or capsules, and
 `swept.json` those with capsules that are given by two points, with the least and the greatest radius [m].
 
 Run by the interpreter with PyBullet; it needs nothing else.
@@ -71,6 +72,14 @@ def has_a_fine_hull(name):
     return any(map(is_fine, load(name)))
 
 
+def has_a_bare_link(body):
+    """Whether a link of a body has a joint to move and no collision shape."""
+    return any(
+        p.getJointInfo(body, j)[2] != p.JOINT_FIXED and not p.getCollisionShapeData(body, j)
+        for j in range(p.getNumJoints(body))
+    )
+
+
 def lists_a_child_first(name):
     """Whether a URDF file lists a link before its parent."""
     p.resetSimulation()
@@ -108,7 +117,7 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, limits, children_first, long_and_round = [], [], [], []
+    lines, bare, limits, children_first, long_and_round = [], [], [], [], []
     swept = {}
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
@@ -123,6 +132,8 @@ def main():
             long_and_round.append(name)
         if name.endswith(".xml") and radii_of_swept(name):
             swept[name] = radii_of_swept(name)
+        if any(map(has_a_bare_link, bodies)):
+            bare.append(name)
         if any(map(at_limit, bodies)):
             limits.append(name)
         if holds(has_a_fine_hull, name):
@@ -132,6 +143,7 @@ def main():
             children_first.append(name)
     tables = {
         "at_limits": limits,
+        "bare": bare,
         "children_first": children_first,
         "fine": fine,
         "long_and_round": long_and_round,
