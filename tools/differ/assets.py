@@ -54,4 +54,6 @@ SWEPT: dict[str, tuple[float, float]] = {
         Path(__file__).with_name("swept.json").read_text(encoding="utf-8")
     ).items()
 }
-"""The least and the greatest radius [m] of the capsules that MJCF files give by two points."""
+"""The least radius [m] of capsules that MJCF files give by two points, and the greatest of round shapes."""
+THIN: dict[str, float] = json.loads(Path(__file__).with_name("thin.json").read_text(encoding="utf-8"))
+"""How thin boxes of files are [m], if thinner than 5 cm."""

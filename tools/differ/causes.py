@@ -19,6 +19,7 @@ from tools.differ.assets import (
     PRISMATIC,
     SPHERICAL,
     SWEPT,
+    THIN,
 )
 from tools.differ.compare import Difference
 from tools.differ.programs import Call, all_references, references
@@ -74,8 +75,10 @@ _NO_ROTATION = 1e-6
 _LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
-_OF_SIMPLIFIED_HULLS = 2e-3
-_MARGIN_OF_SWEPT = 0.04
+SEEN_TO_BE_NEARER = 1e-6
+_OF_SIMPLIFIED_HULLS = 4e-3
+_MARGIN, _SAME_FACE, _MARGIN_OF_SWEPT = 1e-3, 1e-6, 0.04
+_SEARCHED_DEPTH = 0.02
 _SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.12, 0.9
 _MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
@@ -240,10 +243,10 @@ def names_another_face(seen: Seen) -> bool:
     return theirs[8] < 0 and abs(theirs[8] - ours[8]) < _AS_NEAR
 
 
-def is_a_little_nearer(seen: Seen) -> bool:
+def is_a_little_nearer(seen: Seen, least: float = 0.0) -> bool:
     """Whether the points are nearer than PyBullet's, by little, and as far from each other as they say."""
     theirs, ours = seen.difference.place[1:3]
-    return 0.0 < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
+    return least < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
 
 
 def _made_for(seen: Seen, argument: Any) -> list[Call]:
@@ -259,14 +262,40 @@ def _made_for(seen: Seen, argument: Any) -> list[Call]:
 
 
 def is_farther_from_a_fine_hull(seen: Seen) -> bool:
-    """Whether points are a little farther than PyBullet's, and one shape is a hull of very many corners."""
+    """Whether points are a little farther or less deep, and one shape is a hull of very many corners."""
     theirs, ours = seen.difference.place[1:3]
     if not 0.0 < ours[8] - theirs[8] < _OF_SIMPLIFIED_HULLS:
         return False
     asked = [*seen.call["a"], *seen.call["k"].values()]
-    return abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED and any(
+    return abs(math.dist(ours[5], ours[6]) - abs(ours[8])) < _ROUNDED and any(
         map(_is_fine, _made_for(seen, asked))
     )
+
+
+def is_thinner_than_its_margins(seen: Seen) -> bool:
+    """Whether a box of a body is thinner than twice its margin, and distances differ by less."""
+    theirs, ours = seen.difference.place[1:3]
+    for body in seen.call["a"][:2]:
+        made = [call for call in _made_for(seen, body) if call["f"] == "loadURDF" and call["a"][0] in THIN]
+        thickness = [THIN[call["a"][0]] * call["k"].get("globalScaling", 1.0) for call in made]
+        margins = [
+            call["k"]["collisionMargin"]
+            for call in seen.before
+            if call["f"] == "changeDynamics" and "collisionMargin" in call["k"] and call["a"][0] == body
+        ]
+        twice = 2.0 * max([_MARGIN, *margins])
+        if thickness and min(thickness) < twice and abs(theirs[8] - ours[8]) < twice:
+            return True
+    return False
+
+
+def is_a_little_before(seen: Seen) -> bool:
+    """Whether a ray ends less than the margin before where it does here, on the same face."""
+    theirs, ours = seen.difference.place[1:3]
+    further = [b - a for a, b in zip(theirs[3], ours[3], strict=True)]
+    apart = abs(sum(part * normal for part, normal in zip(further, ours[4], strict=True)))
+    same = max(abs(a - b) for a, b in zip(theirs[4], ours[4], strict=True)) < _SAME_FACE
+    return theirs[2] < ours[2] and apart < _MARGIN and same
 
 
 def _is_fine(call: Call) -> bool:
@@ -276,16 +305,23 @@ def _is_fine(call: Call) -> bool:
 
 
 def _swept(seen: Seen) -> list[tuple[float, float]]:
-    """The least and the greatest radius of capsules given by two points, of each body that has some."""
+    """Of bodies with capsules given by two points their least radius, and the greatest of round shapes."""
     loaded = [call["a"][0] for body in seen.call["a"][:2] for call in _made_for(seen, body) if call["a"]]
     return [SWEPT[name] for name in loaded if isinstance(name, str) and name in SWEPT]
 
 
 def crosses_capsules(seen: Seen) -> bool:
-    """Whether capsules given by two points are in each other deeper, at most by the sum of their radii."""
+    """Whether round shapes, as capsules given by two points, are deeper, at most by the sum of radii."""
     theirs, ours = seen.difference.place[1:3]
     radii = [greatest for _, greatest in _swept(seen)]
     return len(radii) == 2 and -sum(radii) - _ROUNDED < ours[8] < theirs[8] < 0.0
+
+
+def is_the_shorter_way_out(seen: Seen) -> bool:
+    """Whether bodies are less deep in each other than PyBullet's search says, and one has such capsules."""
+    theirs, ours = seen.difference.place[1:3]
+    apart = abs(math.dist(ours[5], ours[6]) + ours[8])
+    return bool(_swept(seen)) and 0.0 < ours[8] - theirs[8] < _SEARCHED_DEPTH and apart < _ROUNDED
 
 
 def is_as_thick_as_a_margin(seen: Seen) -> bool:
@@ -323,7 +359,7 @@ def forgets_forces(seen: Seen) -> bool:
 
 def counts_hits(seen: Seen) -> bool:
     """Whether hits of rays are asked for by number."""
-    return seen.call["f"] == "rayTestBatch" and seen.call["k"].get("reportHitNumber", -1) >= 0
+    return seen.call["k"].get("reportHitNumber", -1) >= 0
 
 
 def restores_after_a_removal(seen: Seen) -> bool:

@@ -15,6 +15,7 @@ from tools.differ.causes import (
     NO_SUCH_LINK,
     NOT_A_GEAR,
     OTHER_SHAPES_ID,
+    SEEN_TO_BE_NEARER,
     SHAPE_OF_HEIGHTS,
     Seen,
     aims_a_ball_joint_by_a_number,
@@ -30,10 +31,13 @@ from tools.differ.causes import (
     has_joints,
     hits_another_at_the_same_place,
     holds_half_a_turn,
+    is_a_little_before,
     is_a_little_nearer,
     is_as_thick_as_a_margin,
     is_farther_from_a_fine_hull,
     is_the_same_rotation,
+    is_the_shorter_way_out,
+    is_thinner_than_its_margins,
     limits_what_has_none,
     makes,
     moved_since_the_last_step,
@@ -121,15 +125,36 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet's search for the nearest points ends up to 0.2 mm too far away",
-        lambda seen: seen.differs("getClosestPoints distance") and is_a_little_nearer(seen),
+        lambda seen: (
+            (seen.differs("getClosestPoints distance") and is_a_little_nearer(seen))
+            or (seen.differs("getClosestPoints normal") and is_a_little_nearer(seen, SEEN_TO_BE_NEARER))
+        ),
     ),
     Known(
         "Hulls of very fine meshes are simplified",
-        lambda seen: seen.differs("getClosestPoints distance") and is_farther_from_a_fine_hull(seen),
+        lambda seen: (
+            seen.differs("getClosestPoints distance", "getClosestPoints depth")
+            and is_farther_from_a_fine_hull(seen)
+        ),
     ),
     Known(
         "Capsules that MJCF files give by two points",
         lambda seen: seen.differs("getClosestPoints depth") and crosses_capsules(seen),
+    ),
+    Known(
+        "or what PyBullet's search takes for that, up to 2 cm more",
+        lambda seen: seen.differs("getClosestPoints depth") and is_the_shorter_way_out(seen),
+    ),
+    Known(
+        "Boxes thinner than twice their margin",
+        lambda seen: (
+            seen.differs("getClosestPoints distance", "getClosestPoints depth")
+            and is_thinner_than_its_margins(seen)
+        ),
+    ),
+    Known(
+        "PyBullet's end up",
+        lambda seen: seen.differs("rayTest fraction", "rayTestBatch fraction") and is_a_little_before(seen),
     ),
     Known(
         "Those thinner than 4 cm are nearer in PyBullet",
@@ -229,7 +254,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet counts in the order in which it",
-        lambda seen: seen.differs("rayTestBatch") and counts_hits(seen),
+        lambda seen: seen.differs("rayTest") and counts_hits(seen),
     ),
     Known(
         "links without shapes have bounds as well",
