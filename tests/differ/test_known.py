@@ -299,6 +299,17 @@ def test_round_shapes_stand_out_of_polyhedra(said: str, kind: int, expected: boo
     assert is_known(calls, "segments", said, 0) == expected
 
 
+@pytest.mark.parametrize(
+    ("nearer", "kind", "label", "expected"),
+    [(140, 7, 1, True), (139, 7, 1, False), (140, 3, 1, False), (140, 7, 0, False), (140, 7, -1, False)],
+)
+def test_round_shapes_stand_out_further_from_close_by(nearer: int, kind: int, label: int, expected: bool):
+    shapes = [call(1, "createVisualShape", kind), call(2, "createVisualShape", 7)]
+    made = [*shapes, call(3, "createMultiBody", 1, -1, {"$": 1}), call(4, "getCameraImage")]
+    said = f"140 of 768 differ, {nearer} are nearer: -1"
+    assert is_known([BOX, *made], "segments", said, label) == expected
+
+
 def test_joints_are_numbered_with_children_after_their_parent():
     body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0, 4, 2], linkParentIndices=[0, 1, 1, 2])
     aims = [call(1, "setJointMotorControl2", BODY, link, 2, targetPosition=1) for link in range(4)]

@@ -79,7 +79,7 @@ SEEN_TO_BE_NEARER = 1e-6
 _OF_SIMPLIFIED_HULLS = 4e-3
 _MARGIN, _SAME_FACE, _MARGIN_OF_SWEPT = 1e-3, 1e-6, 0.04
 _SEARCHED_DEPTH = 0.02
-_SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.12, 0.9
+_SHARE_OF_ROUND_EDGES, _SHARE_FROM_CLOSE_BY, _SHARE_OF_NEARER = 0.12, 0.2, 0.9
 _MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
@@ -409,7 +409,11 @@ def stands_out_round(seen: Seen) -> bool:
     said = re.match(r"(\d+) of (\d+) differ, (\d+) are nearer", str(seen.difference.place.theirs))
     assert said
     wrong, count, nearer = map(int, said.groups())
-    return wrong < _SHARE_OF_ROUND_EDGES * count and nearer > _SHARE_OF_NEARER * wrong
+    # From close by more of an image is an edge; then nothing else may differ.
+    body = _maker_of(seen, seen.difference.place.ours) if nearer == wrong else None
+    shown = [] if body is None else [body, *_made_for(seen, [body["a"], body["k"]])]
+    share = _SHARE_FROM_CLOSE_BY if any(map(_is_round, shown)) else _SHARE_OF_ROUND_EDGES
+    return wrong < share * count and nearer > _SHARE_OF_NEARER * wrong
 
 
 def shades_as_a_ball(seen: Seen) -> bool:
