@@ -492,3 +492,19 @@ def test_boxes_thinner_than_their_margins_are_anywhere(calls: list[Call], error:
     said = [[0, 0, 1, -1, -1, [0.0] * 3, [0.0] * 3, [1.0, 0.0, 0.0], gap] for gap in (0.3, 0.3 - error)]
     asked = [BOX, *calls, call(9, "getClosestPoints", {"$": 1}, BODY, 1.0)]
     assert is_known(asked, "distance", *said) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "flags", "other", "expected"),
+    [
+        ("quadruped/minitaur_fixed_all.urdf", 8, 1, True),
+        ("quadruped/minitaur_fixed_all.urdf", 0, 1, False),
+        ("quadruped/minitaur_fixed_all.urdf", 8, 0, False),
+        ("quadruped/minitaur.urdf", 8, 1, False),
+    ],
+)
+def test_what_fixed_joints_tie_does_not_touch_itself(file: str, flags: int, other: int, expected: bool):
+    calls = [BOX, call(1, "loadURDF", file, flags=flags), call(2, "getContactPoints")]
+    touching = [((other, -1), (1, 4))]
+    assert is_known(calls, "links", touching, []) == expected
+    assert not is_known(calls, "links", [], touching)

@@ -66,6 +66,7 @@ _ROUND = frozenset({2, 4, 7})
 _LONG_AND_ROUND = frozenset({4, 7})
 _LABELS_OF_A_LINK = 1 << 24
 _NO_LABELS = 4
+_TOUCHES_ITSELF = 8
 _MAKE = ("load", "createMultiBody")
 _SEVERAL_BODIES = frozenset({"loadSDF", "loadMJCF"})
 _SAME_SHADE = 12.0
@@ -528,6 +529,17 @@ def comes_near_bare_links(seen: Seen) -> bool:
             bare |= any(shape == -1 and joint != FIXED for shape, joint in zip(links, joints, strict=False))
             moving += has_joints(seen, call) or call["a"][:1] > [0]
     return bare and moving > 1
+
+
+def touches_itself_rigidly(seen: Seen) -> bool:
+    """Whether the links that touch in PyBullet only are of one body each, that has fixed joints alone."""
+    theirs, ours = seen.difference.place[1:3]
+    return not ours and all(a[0] == b[0] and _is_rigid(seen, _maker_of(seen, a[0])) for a, b in theirs)
+
+
+def _is_rigid(seen: Seen, body: Call | None) -> bool:
+    """Whether the body that a call makes may touch itself, and has no joint that moves."""
+    return body is not None and body["k"].get("flags", 0) & _TOUCHES_ITSELF > 0 and not has_joints(seen, body)
 
 
 def goes_on_with_masses(seen: Seen) -> bool:

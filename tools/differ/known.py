@@ -53,6 +53,7 @@ from tools.differ.causes import (
     stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
+    touches_itself_rigidly,
     turns_by_no_rotation,
 )
 from tools.differ.compare import Difference
@@ -298,6 +299,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "**A number as `targetPosition` of a spherical joint**",
         lambda seen: seen.differs("@probe", "getJointState") and aims_a_ball_joint_by_a_number(seen),
+    ),
+    Known(
+        "Links that fixed joints tie to each other do not touch each other",
+        lambda seen: seen.differs("getContactPoints links") and touches_itself_rigidly(seen),
     ),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",
