@@ -326,3 +326,39 @@ SAVE, RESTORE, REMOVE = call(4, "saveState"), call(6, "restoreState", {"$": 4}),
 )
 def test_states_are_restored_by_order_where_bodies_were_removed(calls: list[Call], expected: bool):
     assert is_known(calls, "base.0.0", 1.0, 2.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("calls", "text", "expected"),
+    [
+        (
+            [BOX, SAVE, REMOVE, BOX, RESTORE],
+            "Couldn't restore state. Body 0 has 1 joints; it had 2 joints.",
+            True,
+        ),
+        ([BOX, SAVE, BOX, RESTORE], "Couldn't restore state. Body 0 has 1 joints; it had 2 joints.", False),
+        ([BOX, SAVE, REMOVE, BOX, RESTORE], "Couldn't restore state. No such state.", False),
+    ],
+)
+def test_states_that_fit_no_body_are_refused(calls: list[Call], text: str, expected: bool):
+    assert is_known(calls, "ok/error", [None], ["error", text]) == expected
+
+
+@pytest.mark.parametrize(
+    ("joint", "target", "expected"),
+    [(0, [1, 0, 0, 0], True), (0, [0.6, 0, 0, 0.8], False), (1, [1, 0, 0, 0], False)],
+)
+def test_motors_of_ball_joints_turn_half_a_turn_either_way(joint: int, target: list[float], expected: bool):
+    arm = call(0, "createMultiBody", 0, linkJointTypes=[2, 0], linkParentIndices=[0, 1])
+    aim = call(1, "setJointMotorControlMultiDof", BODY, joint, 2, targetPosition=target)
+    assert is_known([arm, aim, STEP, PROBE], "velocities.0.2", 149.0, -149.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "ours", "expected"),
+    [("mjcf/reacher.xml", 2e-6, True), ("mjcf/reacher.xml", 2e-3, False), ("mjcf/ant.xml", 2e-6, False)],
+)
+def test_bare_links_at_one_place_share_an_island(file: str, ours: float, expected: bool):
+    calls = [call(0, "loadMJCF", file), STEP, PROBE]
+    difference = Difference(2, "@probe", Place("positions.6.2", 0.0, ours, ours), "free")
+    assert (statement(calls, difference) is not None) == expected

@@ -69,6 +69,8 @@ _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
 _LEFT_OVER = 1e-4
+_MOTORS_OF_ONE_ISLAND = 1e-4
+_BARE_LINKS_AT_ONE_PLACE = frozenset({"mjcf/reacher.xml"})
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
 _OF_SIMPLIFIED_HULLS = 2e-3
@@ -77,6 +79,7 @@ _SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.12, 0.9
 _MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
+NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
@@ -216,6 +219,23 @@ def holds_half_a_turn(seen: Seen) -> bool:
         _half_turned([*call["a"], *call["k"].values()])
         for call in seen.before
         if call["f"].startswith(("create", "load", "resetBase"))
+    )
+
+
+def aims_half_a_turn_away(seen: Seen) -> bool:
+    """Whether the motor of a spherical joint was given half a turn as its target."""
+    return any(
+        call["f"] == "setJointMotorControlMultiDof"
+        and (call["a"][0].get("$"), call["a"][1]) in _balls(seen)
+        and _half_turned(call["k"].get("targetPosition"))
+        for call in seen.before
+    )
+
+
+def has_bare_links_at_one_place(seen: Seen) -> bool:
+    """Whether a file has two robots whose links without shapes are at one place, and joints hardly differ."""
+    return seen.difference.place.error < _MOTORS_OF_ONE_ISLAND and any(
+        call["f"] == "loadMJCF" and call["a"][0] in _BARE_LINKS_AT_ONE_PLACE for call in seen.before
     )
 
 

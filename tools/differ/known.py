@@ -14,10 +14,12 @@ from tools.differ.causes import (
     MASSES,
     NO_SUCH_LINK,
     NOT_A_GEAR,
+    NOT_THE_SAME_BODY,
     OTHER_SHAPES_ID,
     SHAPE_OF_HEIGHTS,
     Seen,
     aims_a_ball_joint_by_a_number,
+    aims_half_a_turn_away,
     casts_shadows,
     counts_hits,
     crosses_capsules,
@@ -25,6 +27,7 @@ from tools.differ.causes import (
     exchanges_points,
     forgets_forces,
     goes_on_with_masses,
+    has_bare_links_at_one_place,
     has_joints,
     hits_another_at_the_same_place,
     holds_half_a_turn,
@@ -215,7 +218,13 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet matches bodies by their order",
-        lambda seen: seen.call["f"] == "restoreState" and pybullet_raises(seen) and seen.has("removeBody"),
+        lambda seen: (
+            seen.call["f"] == "restoreState"
+            and (
+                (pybullet_raises(seen) and seen.has("removeBody"))
+                or (NOT_THE_SAME_BODY.search(error(seen)) is not None and restores_after_a_removal(seen))
+            )
+        ),
     ),
     Known(
         "after a body was removed and",
@@ -227,7 +236,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "Which way a constraint, or the motor of a spherical joint, turns back",
-        lambda seen: seen.differs("@probe") and holds_half_a_turn(seen),
+        lambda seen: seen.differs("@probe") and (holds_half_a_turn(seen) or aims_half_a_turn_away(seen)),
     ),
     Known(
         "`applyExternalForce` and `applyExternalTorque` refuse links that do not exist.",
@@ -259,6 +268,10 @@ KNOWN: tuple[Known, ...] = (
                 if call["f"] in ("loadURDF", "createMultiBody") and has_joints(seen, call)
             )
         ),
+    ),
+    Known(
+        "links without shapes have bounds as well",
+        lambda seen: seen.differs("@probe") and has_bare_links_at_one_place(seen),
     ),
     Known(
         "**A number as `targetPosition` of a spherical joint**",
