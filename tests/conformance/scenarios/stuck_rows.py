@@ -48,7 +48,7 @@ def _arm(p: Any, joints: list[tuple[int, list[float]]], step: float) -> int:
 @scenario(tolerance={"positions": 1e-6, "velocities": 1e-6})
 def rows_along_which_nothing_can_move(p: Any) -> dict[str, Any]:
     """Capsules on sliders and hinges touch the floor; how they move, and how many sweeps that takes."""
-    arms = {
+    arms: dict[str, tuple[list[tuple[int, list[float]]], float]] = {
         "slides over the floor": ([(SLIDE, [0, 0, 1]), (SLIDE, [0, 1, 0])], 0.0),
         "slides and turns over the floor": ([(SLIDE, [0, 0, 1]), (SLIDE, [0, 1, 0]), (TURN, [1, 0, 0])], 0.0),
         "falls in a plane": ([(SLIDE, [1, 0, 0]), (SLIDE, [0, 0, 1]), (TURN, [0, 1, 0])], 0.0),
