@@ -508,3 +508,29 @@ def test_what_fixed_joints_tie_does_not_touch_itself(file: str, flags: int, othe
     touching = [((other, -1), (1, 4))]
     assert is_known(calls, "links", touching, []) == expected
     assert not is_known(calls, "links", [], touching)
+
+
+@pytest.mark.parametrize(
+    ("calls", "text", "expected"),
+    [
+        (
+            [BOX, SAVE, REMOVE, BOX, RESTORE],
+            "Couldn't restore state. Body 0 has 1 joints; it had 2 joints.",
+            True,
+        ),
+        ([BOX, SAVE, BOX, RESTORE], "Couldn't restore state. Body 0 has 1 joints; it had 2 joints.", False),
+        ([BOX, SAVE, REMOVE, BOX, RESTORE], "Couldn't restore state. No such state.", False),
+    ],
+)
+def test_states_that_fit_no_body_are_refused(calls: list[Call], text: str, expected: bool):
+    assert is_known(calls, "ok/error", [None], ["error", text]) == expected
+
+
+@pytest.mark.parametrize(
+    ("joint", "target", "expected"),
+    [(0, [1, 0, 0, 0], True), (0, [0.6, 0, 0, 0.8], False), (1, [1, 0, 0, 0], False)],
+)
+def test_motors_of_ball_joints_turn_half_a_turn_either_way(joint: int, target: list[float], expected: bool):
+    arm = call(0, "createMultiBody", 0, linkJointTypes=[2, 0], linkParentIndices=[0, 1])
+    aim = call(1, "setJointMotorControlMultiDof", BODY, joint, 2, targetPosition=target)
+    assert is_known([arm, aim, STEP, PROBE], "velocities.0.2", 149.0, -149.0) == expected

@@ -84,6 +84,7 @@ _SHARE_OF_ROUND_EDGES, _SHARE_FROM_CLOSE_BY, _SHARE_OF_NEARER = 0.12, 0.2, 0.9
 _MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
+NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
@@ -223,6 +224,16 @@ def holds_half_a_turn(seen: Seen) -> bool:
         _half_turned([*call["a"], *call["k"].values()])
         for call in seen.before
         if call["f"].startswith(("create", "load", "resetBase"))
+    )
+
+
+def aims_half_a_turn_away(seen: Seen) -> bool:
+    """Whether the motor of a spherical joint was given half a turn as its target."""
+    return any(
+        call["f"] == "setJointMotorControlMultiDof"
+        and (call["a"][0].get("$"), call["a"][1]) in _balls(seen)
+        and _half_turned(call["k"].get("targetPosition"))
+        for call in seen.before
     )
 
 

@@ -14,11 +14,13 @@ from tools.differ.causes import (
     MASSES,
     NO_SUCH_LINK,
     NOT_A_GEAR,
+    NOT_THE_SAME_BODY,
     OTHER_SHAPES_ID,
     SEEN_TO_BE_NEARER,
     SHAPE_OF_HEIGHTS,
     Seen,
     aims_a_ball_joint_by_a_number,
+    aims_half_a_turn_away,
     casts_shadows,
     comes_near_bare_links,
     counts_hits,
@@ -247,7 +249,13 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet matches bodies by their order",
-        lambda seen: seen.call["f"] == "restoreState" and pybullet_raises(seen) and seen.has("removeBody"),
+        lambda seen: (
+            seen.call["f"] == "restoreState"
+            and (
+                (pybullet_raises(seen) and seen.has("removeBody"))
+                or (NOT_THE_SAME_BODY.search(error(seen)) is not None and restores_after_a_removal(seen))
+            )
+        ),
     ),
     Known(
         "after a body was removed and",
@@ -263,7 +271,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "Which way a constraint, or the motor of a spherical joint, turns back",
-        lambda seen: seen.differs("@probe") and holds_half_a_turn(seen),
+        lambda seen: seen.differs("@probe") and (holds_half_a_turn(seen) or aims_half_a_turn_away(seen)),
     ),
     Known(
         "`applyExternalForce` and `applyExternalTorque` refuse links that do not exist.",

@@ -14,6 +14,8 @@ namespace {
 
 // Whole numbers at the beginning of a row over one tree; see `RowScratch`.
 enum { CONSTRAINT, ENTRY, DELTA, RESPONSE, BLOCKS, SOFT, PLACE_NUMBERS };
+// Place among the numbers of rows over one tree and over two.
+constexpr int EFFECTIVE_MASS = 1;
 
 // More rows than this, for each of those of the world with the most, cost more than solving each world for itself.
 constexpr int MOST_SLOTS = 2;
@@ -182,6 +184,21 @@ void gather_slot(const LaneMotion& lanes, int slot) {
     gather_responses(lanes, places, is_whole);
 }
 
+// Whether nothing can move along some row of a lane's world. Its change, NaN, hides those of the rows before it until the
+// next row of that world; in a lane, rows that other worlds have would end that.
+bool has_stuck_rows(const LaneMotion& lanes, int lane) {
+    const LaneSweeps& sweeps = lanes.sweeps;
+    const auto is_stuck = [lane](const LaneRows& rows, int row) {
+        return numbers_at(rows.lone[lane], row * rows.row_stride)[EFFECTIVE_MASS] == 0.0;
+    };
+    bool found = false;
+    for (int row = 0; row < lanes.worlds[lane].waiting[WAITING_ROWS]; ++row)
+        found |= is_stuck(sweeps.row, row);
+    for (int row = 0; row < lanes.worlds[lane].waiting[WAITING_PAIR_ROWS]; ++row)
+        found |= is_stuck(sweeps.terms, row);
+    return found;
+}
+
 // Puts all numbers that sweeps read side by side; returns what they change.
 Extent gather_rows(const LaneMotion& lanes, int slots) {
     const LaneSweeps& sweeps = lanes.sweeps;
@@ -222,6 +239,9 @@ bool relax_together(const LaneMotion& lanes) {
         return false;
     for (int lane = 1; lane < LANES; ++lane)
         if (!have_same_pair_rows(lanes.worlds[0], lanes.worlds[lane]))
+            return false;
+    for (int lane = 0; lane < LANES; ++lane)
+        if (has_stuck_rows(lanes, lane))
             return false;
     Merging merging(lanes);
     if (!merging.merge())
