@@ -92,6 +92,13 @@ def test_nearest_points_may_be_a_little_nearer(distance: float, apart: float, ex
     assert is_known(calls, "distance", theirs, ours) == expected
 
 
+@pytest.mark.parametrize(("nearer", "expected"), [(1e-5, True), (1e-7, False), (-1e-5, False), (1e-3, False)])
+def test_what_is_a_little_nearer_may_have_another_normal(nearer: float, expected: bool):
+    theirs = [0, 0, 1, -1, -1, [0.0] * 3, [0.1, 0.0, 0.0], [1.0, 0.0, 0.0], 0.1]
+    ours = [*theirs[:6], [0.0, 0.1 - nearer, 0.0], [0.0, 1.0, 0.0], 0.1 - nearer]
+    assert is_known([call(0, "getClosestPoints", BODY, {"$": 1}, 1.0)], "normal", theirs, ours) == expected
+
+
 @pytest.mark.parametrize(("bound", "expected"), [(0, True), (1.0, False)])
 def test_contacts_are_asked_for_at_a_distance_of_0_only(bound: float, expected: bool):
     assert is_known([call(0, "getClosestPoints", BODY, {"$": 1}, bound)], "pairs", [], [[0]]) == expected
@@ -153,7 +160,8 @@ MESH = {"fileName": "sphere_smooth.obj"}
     [
         (MESH, 0.1005, 5, True),
         (MESH, 0.0995, 5, False),
-        (MESH, 0.103, 5, False),
+        (MESH, 0.1035, 5, True),
+        (MESH, 0.105, 5, False),
         (MESH, 0.1005, 6, False),
         ({"fileName": "cube.obj"}, 0.1005, 5, False),
     ],
@@ -163,6 +171,14 @@ def test_fine_hulls_may_be_a_little_farther(shape: dict[str, str], ours: float, 
     fine = [call(3, "createCollisionShape", 5, **shape), call(5, "createMultiBody", 1, {"$": 3})]
     calls = [BOX, *fine, call(6, "loadURDF", CUBE), call(7, "getClosestPoints", BODY, {"$": other}, 1.0)]
     assert is_known(calls, "distance", *said) == expected
+
+
+@pytest.mark.parametrize(("ours", "expected"), [(-0.0995, True), (-0.1005, False)])
+def test_fine_hulls_may_be_a_little_less_deep(ours: float, expected: bool):
+    said = [[0, 0, 1, -1, -1, [0.0] * 3, [gap, 0.0, 0.0], [1.0, 0.0, 0.0], gap] for gap in (-0.1, ours)]
+    fine = [call(3, "createCollisionShape", 5, **MESH), call(5, "createMultiBody", 1, {"$": 3})]
+    calls = [BOX, *fine, call(7, "getClosestPoints", BODY, {"$": 5}, 1.0)]
+    assert is_known(calls, "depth", *said) == expected
 
 
 @pytest.mark.parametrize(
@@ -180,6 +196,33 @@ def test_crossing_capsules_are_those_of_mjcf(file: str, ours: float, expected: b
     function = "loadMJCF" if file.endswith(".xml") else "loadURDF"
     calls = [call(0, function, file), call(4, "getClosestPoints", BODY, BODY, 1.0)]
     assert is_known(calls, "depth", *said) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "ours", "apart", "expected"),
+    [
+        ("mjcf/reacher.xml", -0.02, 0.02, True),
+        ("mjcf/reacher.xml", -0.02, 0.021, False),
+        ("mjcf/reacher.xml", -0.009, 0.009, False),
+        ("mjcf/reacher.xml", -0.031, 0.031, False),
+        ("mjcf/cylinder.xml", -0.02, 0.02, False),
+    ],
+)
+def test_a_search_for_the_way_out_of_capsules_may_end_deeper(
+    file: str, ours: float, apart: float, expected: bool
+):
+    said = [
+        [0, 0, 1, 1, 2, [0.0] * 3, [way, 0.0, 0.0], [-1.0, 0.0, 0.0], depth]
+        for way, depth in ((0.03, -0.03), (apart, ours))
+    ]
+    calls = [BOX, call(5, "loadMJCF", file), call(7, "getClosestPoints", BODY, {"$": 5, "i": 0}, 1.0)]
+    assert is_known(calls, "depth", *said) == expected
+
+
+def test_balls_of_mjcf_are_round_as_well():
+    said = [[0, 0, 0, 0, -1, [0.0] * 3, [0.0] * 3, [1.0, 0.0, 0.0], depth] for depth in (-0.32, -0.33)]
+    calls = [call(0, "loadMJCF", "mjcf/ant.xml"), call(4, "getClosestPoints", BODY, BODY, 1.0)]
+    assert is_known(calls, "depth", *said)
 
 
 @pytest.mark.parametrize(
@@ -256,6 +299,17 @@ def test_round_shapes_stand_out_of_polyhedra(said: str, kind: int, expected: boo
     assert is_known(calls, "segments", said, 0) == expected
 
 
+@pytest.mark.parametrize(
+    ("nearer", "kind", "label", "expected"),
+    [(140, 7, 1, True), (139, 7, 1, False), (140, 3, 1, False), (140, 7, 0, False), (140, 7, -1, False)],
+)
+def test_round_shapes_stand_out_further_from_close_by(nearer: int, kind: int, label: int, expected: bool):
+    shapes = [call(1, "createVisualShape", kind), call(2, "createVisualShape", 7)]
+    made = [*shapes, call(3, "createMultiBody", 1, -1, {"$": 1}), call(4, "getCameraImage")]
+    said = f"140 of 768 differ, {nearer} are nearer: -1"
+    assert is_known([BOX, *made], "segments", said, label) == expected
+
+
 def test_joints_are_numbered_with_children_after_their_parent():
     body = call(0, "createMultiBody", 1, linkJointTypes=[2, 0, 4, 2], linkParentIndices=[0, 1, 1, 2])
     aims = [call(1, "setJointMotorControl2", BODY, link, 2, targetPosition=1) for link in range(4)]
@@ -305,11 +359,12 @@ def test_files_have_long_round_shapes(file: str, label: int, ours: list[int], ex
     assert is_known(calls, "colour", said, ours) == expected
 
 
+@pytest.mark.parametrize("function", ["rayTest", "rayTestBatch"])
 @pytest.mark.parametrize(
     ("number", "expected"), [({}, False), ({"reportHitNumber": -1}, False), ({"reportHitNumber": 0}, True)]
 )
-def test_hits_of_rays_are_counted_along_the_ray(number: dict[str, int], expected: bool):
-    ray = call(3, "rayTestBatch", [[0, 0, 2]], [[0, 0, -2]], **number)
+def test_hits_of_rays_are_counted_along_the_ray(function: str, number: dict[str, int], expected: bool):
+    ray = call(3, function, [[0, 0, 2]], [[0, 0, -2]], **number)
     assert is_known([BOX, ray], "hit", [0, -1, 0.5], [1, -1, 0.2]) == expected
 
 
@@ -326,3 +381,156 @@ SAVE, RESTORE, REMOVE = call(4, "saveState"), call(6, "restoreState", {"$": 4}),
 )
 def test_states_are_restored_by_order_where_bodies_were_removed(calls: list[Call], expected: bool):
     assert is_known(calls, "base.0.0", 1.0, 2.0) == expected
+
+
+@pytest.mark.parametrize(
+    ("flags", "kind", "expected"), [(4, 4, True), (5, 7, True), (4, 3, False), (1, 4, False)]
+)
+def test_images_without_labels_may_show_any_long_round_shape(flags: int, kind: int, expected: bool):
+    shape, body = call(3, "createCollisionShape", kind), call(4, "createMultiBody", 1, {"$": 3})
+    calls = [call(0, "loadURDF", "plane.urdf"), shape, body, call(5, "getCameraImage", shadow=0, flags=flags)]
+    said = "9 of 16 differ: [90, 90, 90, 255] of 0"
+    assert is_known(calls, "colour", said, [70, 70, 70, 255]) == expected
+    assert not is_known(calls, "colour", said, [70, 120, 70, 255])
+
+
+GIVEN = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
+
+
+@pytest.mark.parametrize(
+    ("shape", "visuals", "nearer", "label", "expected"),
+    [
+        (GIVEN, [-1], 90, 1, True),
+        (GIVEN, [-1], 90, 1 + (1 << 24), True),
+        (GIVEN, [{"$": 2}], 90, 1, False),
+        (GIVEN, [-1], 70, 1, False),
+        (GIVEN, [-1], 90, 0, False),
+        (GIVEN, [-1], 90, -1, False),
+        ({"fileName": "cube.obj"}, [-1], 90, 1, False),
+    ],
+)
+def test_vertices_of_collision_shapes_are_drawn(
+    shape: dict[str, Any], visuals: list[Any], nearer: int, label: int, expected: bool
+):
+    made = [call(1, "createCollisionShape", 5, **shape), call(2, "createVisualShape", 3)]
+    links = {"linkCollisionShapeIndices": [{"$": 1}], "linkVisualShapeIndices": visuals}
+    body = call(3, "createMultiBody", 1, -1, -1, **links)
+    calls = [BOX, *made, body, call(4, "getCameraImage")]
+    assert is_known(calls, "segments", f"90 of 768 differ, {nearer} are nearer: -1", label) == expected
+
+
+def test_vertices_of_a_base_are_drawn():
+    made = [call(1, "createCollisionShape", 5, **GIVEN), call(3, "createMultiBody", 1, {"$": 1}, -1)]
+    calls = [*made, call(4, "getCameraImage")]
+    assert is_known(calls, "segments", "90 of 768 differ, 90 are nearer: -1", 0)
+
+
+REACHER, PENDULUM = call(1, "loadMJCF", "mjcf/reacher.xml"), call(2, "loadMJCF", "mjcf/inverted_pendulum.xml")
+CUBES = [call(3, "createMultiBody", 1), call(4, "createMultiBody", 1)]
+BARE_ARM = call(5, "createMultiBody", 1, linkCollisionShapeIndices=[-1], linkJointTypes=[0])
+
+
+@pytest.mark.parametrize(
+    ("calls", "difference", "expected"),
+    [
+        ([REACHER, STEP, PROBE], 1e-7, True),
+        ([REACHER, STEP, PROBE], 1e-3, False),
+        ([PENDULUM, STEP, PROBE], 1e-7, False),
+        ([PENDULUM, CUBES[0], STEP, PROBE], 1e-7, True),
+        ([*CUBES, STEP, PROBE], 1e-7, False),
+        ([BARE_ARM, CUBES[0], STEP, PROBE], 1e-7, True),
+        ([BARE_ARM, STEP, PROBE], 1e-7, False),
+    ],
+)
+def test_links_without_shapes_make_islands_of_bodies(calls: list[Call], difference: float, expected: bool):
+    place = Place("positions.1.2", [0.0], [difference], difference)
+    found = Difference(len(calls) - 1, "@probe", place, "free")
+    assert bool(statement(calls, found)) == expected
+    later = Difference(len(calls) - 1, "@probe", place, "contact")
+    assert not statement(calls, later)
+
+
+@pytest.mark.parametrize(
+    ("fraction", "x", "normal", "expected"),
+    [
+        (0.503, 0.9, [0.28, -0.96, 0.0], True),
+        (0.497, 0.9, [0.28, -0.96, 0.0], False),
+        (0.503, 1.1, [0.28, -0.96, 0.0], False),
+        (0.503, 0.9, [0.0, -1.0, 0.0], False),
+    ],
+)
+def test_rays_end_within_the_margin_before_a_face(
+    fraction: float, x: float, normal: list[float], expected: bool
+):
+    face = [0.28, -0.96, 0.0]
+    hits = [[0, -1, 0.5, [0.0, 0.0, 0.0], face], [0, -1, fraction, [x * 1e-3 / 0.28, 0.0, 0.0], normal]]
+    assert is_known([BOX, STEP, call(51, "rayTest", [0] * 3, [1] * 3)], "fraction", *hits) == expected
+
+
+SENSOR = call(1, "loadURDF", "a1/a1.urdf")
+
+
+@pytest.mark.parametrize(
+    ("calls", "error", "expected"),
+    [
+        ([SENSOR], 1e-3, True),
+        ([SENSOR], 3e-3, False),
+        ([call(1, "loadURDF", "quadruped/minitaur_v1.urdf")], 1e-3, False),
+        (
+            [
+                call(1, "loadURDF", "quadruped/minitaur_v1.urdf"),
+                call(2, "changeDynamics", {"$": 1}, 7, collisionMargin=0.02),
+            ],
+            1e-2,
+            True,
+        ),
+        ([call(1, "loadURDF", CUBE)], 1e-3, False),
+        ([call(1, "loadURDF", "a1/a1.urdf", globalScaling=3.0)], 1e-3, False),
+    ],
+)
+def test_boxes_thinner_than_their_margins_are_anywhere(calls: list[Call], error: float, expected: bool):
+    said = [[0, 0, 1, -1, -1, [0.0] * 3, [0.0] * 3, [1.0, 0.0, 0.0], gap] for gap in (0.3, 0.3 - error)]
+    asked = [BOX, *calls, call(9, "getClosestPoints", {"$": 1}, BODY, 1.0)]
+    assert is_known(asked, "distance", *said) == expected
+
+
+@pytest.mark.parametrize(
+    ("file", "flags", "other", "expected"),
+    [
+        ("quadruped/minitaur_fixed_all.urdf", 8, 1, True),
+        ("quadruped/minitaur_fixed_all.urdf", 0, 1, False),
+        ("quadruped/minitaur_fixed_all.urdf", 8, 0, False),
+        ("quadruped/minitaur.urdf", 8, 1, False),
+    ],
+)
+def test_what_fixed_joints_tie_does_not_touch_itself(file: str, flags: int, other: int, expected: bool):
+    calls = [BOX, call(1, "loadURDF", file, flags=flags), call(2, "getContactPoints")]
+    touching = [((other, -1), (1, 4))]
+    assert is_known(calls, "links", touching, []) == expected
+    assert not is_known(calls, "links", [], touching)
+
+
+@pytest.mark.parametrize(
+    ("calls", "text", "expected"),
+    [
+        (
+            [BOX, SAVE, REMOVE, BOX, RESTORE],
+            "Couldn't restore state. Body 0 has 1 joints; it had 2 joints.",
+            True,
+        ),
+        ([BOX, SAVE, BOX, RESTORE], "Couldn't restore state. Body 0 has 1 joints; it had 2 joints.", False),
+        ([BOX, SAVE, REMOVE, BOX, RESTORE], "Couldn't restore state. No such state.", False),
+    ],
+)
+def test_states_that_fit_no_body_are_refused(calls: list[Call], text: str, expected: bool):
+    assert is_known(calls, "ok/error", [None], ["error", text]) == expected
+
+
+@pytest.mark.parametrize(
+    ("joint", "target", "expected"),
+    [(0, [1, 0, 0, 0], True), (0, [0.6, 0, 0, 0.8], False), (1, [1, 0, 0, 0], False)],
+)
+def test_motors_of_ball_joints_turn_half_a_turn_either_way(joint: int, target: list[float], expected: bool):
+    arm = call(0, "createMultiBody", 0, linkJointTypes=[2, 0], linkParentIndices=[0, 1])
+    aim = call(1, "setJointMotorControlMultiDof", BODY, joint, 2, targetPosition=target)
+    assert is_known([arm, aim, STEP, PROBE], "velocities.0.2", 149.0, -149.0) == expected

@@ -148,6 +148,17 @@ def test_colours_of_mesh_files_count_only_if_asked_for(world, painted_mesh, flag
     assert only_look(world, world.load(BodySpec("b", base, flags=int(flags)))).rgba == rgba
 
 
+@pytest.mark.parametrize(
+    ("flags", "rgba"),
+    [(LoadFlags.NONE, (0.0, 0.0, 0.0, 1.0)), (LoadFlags.ONLY_MATERIALS_THERE_ARE, WHITE)],
+)
+def test_a_mesh_without_material_is_black_unless_it_keeps_its_colour(world, painted_mesh, flags, rgba):
+    painted_mesh.path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    base = LinkSpec("base", mass=1.0, inertia=(1.0, 1.0, 1.0), visuals=(Visual(painted_mesh),))
+    flags |= LoadFlags.USE_MATERIAL_COLORS_FROM_MTL
+    assert only_look(world, world.load(BodySpec("b", base, flags=int(flags)))).rgba == rgba
+
+
 def test_a_mesh_that_has_gone_is_not_shown(world, painted_mesh, caplog):
     add_shape(world, painted_mesh)
     painted_mesh.path.unlink()

@@ -30,7 +30,7 @@ def robots() -> tuple[World, list[Body]]:
 
 
 def works_of(worlds: Worlds) -> list[LaneWork | None]:
-    return [one._lane_work for one in worlds._engine._steppers if isinstance(one, Interpreter)]
+    return [one.lane_work for one in worlds._engine._steppers if isinstance(one, Interpreter)]
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -149,8 +150,8 @@ def of_images(theirs: Any, ours: Any) -> Place | None:
     wrong = [pixel for pixel in range(count) if a[pixel] != b[pixel]]
     if len(wrong) > _SHARE_OF_SEGMENTS * count:
         nearer = sum(db[pixel] < da[pixel] for pixel in wrong)
-        said = f"{len(wrong)} of {count} differ, {nearer} are nearer: {a[wrong[0]]}"
-        return Place("segments", said, b[wrong[0]])
+        (other, own), _ = Counter((a[pixel], b[pixel]) for pixel in wrong).most_common(1)[0]
+        return Place("segments", f"{len(wrong)} of {count} differ, {nearer} are nearer: {other}", own)
     same = [pixel for pixel in range(count) if a[pixel] == b[pixel]]
     deep = [pixel for pixel in same if abs(da[pixel] - db[pixel]) > _DEPTH]
     if len(deep) > _SHARE_OF_DEPTHS * count:

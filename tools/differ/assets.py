@@ -40,6 +40,8 @@ def _names(table: str) -> frozenset[str]:
 
 AT_LIMITS = _names("at_limits.json")
 """Files with a joint that stands exactly at one of its limits when it is loaded."""
+BARE = _names("bare.json")
+"""Files with a link that has a joint to move and no collision shape."""
 CHILDREN_FIRST = _names("children_first.json")
 """Files that list a link before its parent."""
 FINE = _names("fine.json")
@@ -52,4 +54,6 @@ SWEPT: dict[str, tuple[float, float]] = {
         Path(__file__).with_name("swept.json").read_text(encoding="utf-8")
     ).items()
 }
-"""The least and the greatest radius [m] of the capsules that MJCF files give by two points."""
+"""The least radius [m] of capsules that MJCF files give by two points, and the greatest of round shapes."""
+THIN: dict[str, float] = json.loads(Path(__file__).with_name("thin.json").read_text(encoding="utf-8"))
+"""How thin boxes of files are [m], if thinner than 5 cm."""

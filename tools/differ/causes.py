@@ -10,6 +10,7 @@ from typing import Any
 
 from tools.differ.assets import (
     AT_LIMITS,
+    BARE,
     CHILDREN_FIRST,
     FILES,
     FINE,
@@ -18,6 +19,7 @@ from tools.differ.assets import (
     PRISMATIC,
     SPHERICAL,
     SWEPT,
+    THIN,
 )
 from tools.differ.compare import Difference
 from tools.differ.programs import Call, all_references, references
@@ -63,6 +65,9 @@ _INERTIAL = frozenset({"mass", "localInertiaDiagonal"})
 _ROUND = frozenset({2, 4, 7})
 _LONG_AND_ROUND = frozenset({4, 7})
 _LABELS_OF_A_LINK = 1 << 24
+_NO_LABELS = 4
+_TOUCHES_ITSELF = 8
+_MAKE = ("load", "createMultiBody")
 _SEVERAL_BODIES = frozenset({"loadSDF", "loadMJCF"})
 _SAME_SHADE = 12.0
 _NEAR_PLANE_OF_SHADOWS = 0.05
@@ -71,12 +76,15 @@ _NO_ROTATION = 1e-6
 _LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
-_OF_SIMPLIFIED_HULLS = 2e-3
-_MARGIN_OF_SWEPT = 0.04
-_SHARE_OF_ROUND_EDGES, _SHARE_OF_NEARER = 0.12, 0.9
+SEEN_TO_BE_NEARER = 1e-6
+_OF_SIMPLIFIED_HULLS = 4e-3
+_MARGIN, _SAME_FACE, _MARGIN_OF_SWEPT = 1e-3, 1e-6, 0.04
+_SEARCHED_DEPTH = 0.02
+_SHARE_OF_ROUND_EDGES, _SHARE_FROM_CLOSE_BY, _SHARE_OF_NEARER = 0.12, 0.2, 0.9
 _MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
+NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
@@ -219,6 +227,16 @@ def holds_half_a_turn(seen: Seen) -> bool:
     )
 
 
+def aims_half_a_turn_away(seen: Seen) -> bool:
+    """Whether the motor of a spherical joint was given half a turn as its target."""
+    return any(
+        call["f"] == "setJointMotorControlMultiDof"
+        and (call["a"][0].get("$"), call["a"][1]) in _balls(seen)
+        and _half_turned(call["k"].get("targetPosition"))
+        for call in seen.before
+    )
+
+
 def exchanges_points(seen: Seen) -> bool:
     """Whether the points of two links of one body are exchanged, or others of the same two faces are."""
     theirs, ours = seen.difference.place[1:3]
@@ -237,10 +255,10 @@ def names_another_face(seen: Seen) -> bool:
     return theirs[8] < 0 and abs(theirs[8] - ours[8]) < _AS_NEAR
 
 
-def is_a_little_nearer(seen: Seen) -> bool:
+def is_a_little_nearer(seen: Seen, least: float = 0.0) -> bool:
     """Whether the points are nearer than PyBullet's, by little, and as far from each other as they say."""
     theirs, ours = seen.difference.place[1:3]
-    return 0.0 < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
+    return least < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
 
 
 def _made_for(seen: Seen, argument: Any) -> list[Call]:
@@ -256,14 +274,40 @@ def _made_for(seen: Seen, argument: Any) -> list[Call]:
 
 
 def is_farther_from_a_fine_hull(seen: Seen) -> bool:
-    """Whether points are a little farther than PyBullet's, and one shape is a hull of very many corners."""
+    """Whether points are a little farther or less deep, and one shape is a hull of very many corners."""
     theirs, ours = seen.difference.place[1:3]
     if not 0.0 < ours[8] - theirs[8] < _OF_SIMPLIFIED_HULLS:
         return False
     asked = [*seen.call["a"], *seen.call["k"].values()]
-    return abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED and any(
+    return abs(math.dist(ours[5], ours[6]) - abs(ours[8])) < _ROUNDED and any(
         map(_is_fine, _made_for(seen, asked))
     )
+
+
+def is_thinner_than_its_margins(seen: Seen) -> bool:
+    """Whether a box of a body is thinner than twice its margin, and distances differ by less."""
+    theirs, ours = seen.difference.place[1:3]
+    for body in seen.call["a"][:2]:
+        made = [call for call in _made_for(seen, body) if call["f"] == "loadURDF" and call["a"][0] in THIN]
+        thickness = [THIN[call["a"][0]] * call["k"].get("globalScaling", 1.0) for call in made]
+        margins = [
+            call["k"]["collisionMargin"]
+            for call in seen.before
+            if call["f"] == "changeDynamics" and "collisionMargin" in call["k"] and call["a"][0] == body
+        ]
+        twice = 2.0 * max([_MARGIN, *margins])
+        if thickness and min(thickness) < twice and abs(theirs[8] - ours[8]) < twice:
+            return True
+    return False
+
+
+def is_a_little_before(seen: Seen) -> bool:
+    """Whether a ray ends less than the margin before where it does here, on the same face."""
+    theirs, ours = seen.difference.place[1:3]
+    further = [b - a for a, b in zip(theirs[3], ours[3], strict=True)]
+    apart = abs(sum(part * normal for part, normal in zip(further, ours[4], strict=True)))
+    same = max(abs(a - b) for a, b in zip(theirs[4], ours[4], strict=True)) < _SAME_FACE
+    return theirs[2] < ours[2] and apart < _MARGIN and same
 
 
 def _is_fine(call: Call) -> bool:
@@ -273,16 +317,23 @@ def _is_fine(call: Call) -> bool:
 
 
 def _swept(seen: Seen) -> list[tuple[float, float]]:
-    """The least and the greatest radius of capsules given by two points, of each body that has some."""
+    """Of bodies with capsules given by two points their least radius, and the greatest of round shapes."""
     loaded = [call["a"][0] for body in seen.call["a"][:2] for call in _made_for(seen, body) if call["a"]]
     return [SWEPT[name] for name in loaded if isinstance(name, str) and name in SWEPT]
 
 
 def crosses_capsules(seen: Seen) -> bool:
-    """Whether capsules given by two points are in each other deeper, at most by the sum of their radii."""
+    """Whether round shapes, as capsules given by two points, are deeper, at most by the sum of radii."""
     theirs, ours = seen.difference.place[1:3]
     radii = [greatest for _, greatest in _swept(seen)]
     return len(radii) == 2 and -sum(radii) - _ROUNDED < ours[8] < theirs[8] < 0.0
+
+
+def is_the_shorter_way_out(seen: Seen) -> bool:
+    """Whether bodies are less deep in each other than PyBullet's search says, and one has such capsules."""
+    theirs, ours = seen.difference.place[1:3]
+    apart = abs(math.dist(ours[5], ours[6]) + ours[8])
+    return bool(_swept(seen)) and 0.0 < ours[8] - theirs[8] < _SEARCHED_DEPTH and apart < _ROUNDED
 
 
 def is_as_thick_as_a_margin(seen: Seen) -> bool:
@@ -320,7 +371,7 @@ def forgets_forces(seen: Seen) -> bool:
 
 def counts_hits(seen: Seen) -> bool:
     """Whether hits of rays are asked for by number."""
-    return seen.call["f"] == "rayTestBatch" and seen.call["k"].get("reportHitNumber", -1) >= 0
+    return seen.call["k"].get("reportHitNumber", -1) >= 0
 
 
 def restores_after_a_removal(seen: Seen) -> bool:
@@ -370,7 +421,11 @@ def stands_out_round(seen: Seen) -> bool:
     said = re.match(r"(\d+) of (\d+) differ, (\d+) are nearer", str(seen.difference.place.theirs))
     assert said
     wrong, count, nearer = map(int, said.groups())
-    return wrong < _SHARE_OF_ROUND_EDGES * count and nearer > _SHARE_OF_NEARER * wrong
+    # From close by more of an image is an edge; then nothing else may differ.
+    body = _maker_of(seen, seen.difference.place.ours) if nearer == wrong else None
+    shown = [] if body is None else [body, *_made_for(seen, [body["a"], body["k"]])]
+    share = _SHARE_FROM_CLOSE_BY if any(map(_is_round, shown)) else _SHARE_OF_ROUND_EDGES
+    return wrong < share * count and nearer > _SHARE_OF_NEARER * wrong
 
 
 def shades_as_a_ball(seen: Seen) -> bool:
@@ -380,19 +435,43 @@ def shades_as_a_ball(seen: Seen) -> bool:
     changes = [b - a for a, b in zip(theirs, ours, strict=True)]
     if min(changes) < -_SAME_SHADE and max(changes) > _SAME_SHADE:
         return False
-    body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
-    if body is None:
-        return False
+    if seen.call["k"].get("flags", 0) & _NO_LABELS:
+        # Nothing says which body it is.
+        bodies = [call for call in seen.before if call["f"].startswith(_MAKE)]
+    else:
+        body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
+        bodies = [] if body is None else [body]
+    return any(_has_something_long_and_round(seen, body) for body in bodies)
+
+
+def _has_something_long_and_round(seen: Seen, body: Call) -> bool:
+    """Whether the body that a call makes has cylinders or capsules."""
     if body["f"].startswith("load"):
-        return body["a"][0] in LONG_AND_ROUND
+        return body["a"][:1] != [] and body["a"][0] in LONG_AND_ROUND
     return any(map(_is_long_and_round, _made_for(seen, [body["a"], body["k"]])))
+
+
+def draws_given_vertices(seen: Seen) -> bool:
+    """Whether an image shows a body that PyBullet's does not: collision shapes made of vertices."""
+    said = re.match(r"(\d+) of \d+ differ, (\d+) are nearer", str(seen.difference.place.theirs))
+    assert said
+    wrong, nearer = map(int, said.groups())
+    body = _maker_of(seen, seen.difference.place.ours)
+    if nearer <= _SHARE_OF_NEARER * wrong or body is None or body["f"] != "createMultiBody":
+        return False
+    shapes, visuals = (
+        [*body["a"][place : place + 1], *body["k"].get(name, ())]
+        for place, name in ((1, "linkCollisionShapeIndices"), (2, "linkVisualShapeIndices"))
+    )
+    bare = [shape for shape, visual in zip(shapes, visuals, strict=False) if visual == -1]
+    return any("vertices" in call["k"] for call in _made_for(seen, bare))
 
 
 def _maker_of(seen: Seen, label: int) -> Call | None:
     """The call that made the body with a label in images."""
     number = label % _LABELS_OF_A_LINK
     for call in seen.before if label >= 0 else ():
-        if call["f"].startswith(("load", "createMultiBody")):
+        if call["f"].startswith(_MAKE):
             number -= len(FILES.get(call["a"][0], ((),))) if call["f"] in _SEVERAL_BODIES else 1
             if number < 0:
                 return call
@@ -441,6 +520,37 @@ def casts_shadows(seen: Seen) -> bool:
     made = next(call for call in seen.before if call["id"] == projection)
     near = made["a"][4 if made["f"] == "computeProjectionMatrix" else 2]
     return near == 0.0 or near >= _NEAR_PLANE_OF_SHADOWS
+
+
+def comes_near_bare_links(seen: Seen) -> bool:
+    """Whether two bodies that move may be one island by links without shapes, and states hardly differ."""
+    if seen.difference.phase != "free" or seen.difference.place.error > _LEFT_OVER:
+        return False
+    types = _joint_types(seen)
+    bare, moving = False, 0
+    for call in seen.before:
+        name = call["a"][0] if call["f"].startswith("load") and call["a"] else None
+        if isinstance(name, str):
+            bare |= name in BARE
+            bodies = FILES.get(name, ())
+            moving += sum(any(joint.type != FIXED for joint in joints) for joints in bodies)
+        elif call["f"] == "createMultiBody":
+            links = call["k"].get("linkCollisionShapeIndices", ())
+            joints = types.get(call["id"], [])
+            bare |= any(shape == -1 and joint != FIXED for shape, joint in zip(links, joints, strict=False))
+            moving += has_joints(seen, call) or call["a"][:1] > [0]
+    return bare and moving > 1
+
+
+def touches_itself_rigidly(seen: Seen) -> bool:
+    """Whether the links that touch in PyBullet only are of one body each, that has fixed joints alone."""
+    theirs, ours = seen.difference.place[1:3]
+    return not ours and all(a[0] == b[0] and _is_rigid(seen, _maker_of(seen, a[0])) for a, b in theirs)
+
+
+def _is_rigid(seen: Seen, body: Call | None) -> bool:
+    """Whether the body that a call makes may touch itself, and has no joint that moves."""
+    return body is not None and body["k"].get("flags", 0) & _TOUCHES_ITSELF > 0 and not has_joints(seen, body)
 
 
 def goes_on_with_masses(seen: Seen) -> bool:

@@ -14,13 +14,18 @@ from tools.differ.causes import (
     MASSES,
     NO_SUCH_LINK,
     NOT_A_GEAR,
+    NOT_THE_SAME_BODY,
     OTHER_SHAPES_ID,
+    SEEN_TO_BE_NEARER,
     SHAPE_OF_HEIGHTS,
     Seen,
     aims_a_ball_joint_by_a_number,
+    aims_half_a_turn_away,
     casts_shadows,
+    comes_near_bare_links,
     counts_hits,
     crosses_capsules,
+    draws_given_vertices,
     error,
     exchanges_points,
     forgets_forces,
@@ -28,10 +33,13 @@ from tools.differ.causes import (
     has_joints,
     hits_another_at_the_same_place,
     holds_half_a_turn,
+    is_a_little_before,
     is_a_little_nearer,
     is_as_thick_as_a_margin,
     is_farther_from_a_fine_hull,
     is_the_same_rotation,
+    is_the_shorter_way_out,
+    is_thinner_than_its_margins,
     limits_what_has_none,
     makes,
     moved_since_the_last_step,
@@ -47,6 +55,7 @@ from tools.differ.causes import (
     stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
+    touches_itself_rigidly,
     turns_by_no_rotation,
 )
 from tools.differ.compare import Difference
@@ -119,15 +128,36 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet's search for the nearest points ends up to 0.2 mm too far away",
-        lambda seen: seen.differs("getClosestPoints distance") and is_a_little_nearer(seen),
+        lambda seen: (
+            (seen.differs("getClosestPoints distance") and is_a_little_nearer(seen))
+            or (seen.differs("getClosestPoints normal") and is_a_little_nearer(seen, SEEN_TO_BE_NEARER))
+        ),
     ),
     Known(
         "Hulls of very fine meshes are simplified",
-        lambda seen: seen.differs("getClosestPoints distance") and is_farther_from_a_fine_hull(seen),
+        lambda seen: (
+            seen.differs("getClosestPoints distance", "getClosestPoints depth")
+            and is_farther_from_a_fine_hull(seen)
+        ),
     ),
     Known(
         "Capsules that MJCF files give by two points",
         lambda seen: seen.differs("getClosestPoints depth") and crosses_capsules(seen),
+    ),
+    Known(
+        "or what PyBullet's search takes for that, up to 2 cm more",
+        lambda seen: seen.differs("getClosestPoints depth") and is_the_shorter_way_out(seen),
+    ),
+    Known(
+        "Boxes thinner than twice their margin",
+        lambda seen: (
+            seen.differs("getClosestPoints distance", "getClosestPoints depth")
+            and is_thinner_than_its_margins(seen)
+        ),
+    ),
+    Known(
+        "PyBullet's end up",
+        lambda seen: seen.differs("rayTest fraction", "rayTestBatch fraction") and is_a_little_before(seen),
     ),
     Known(
         "Those thinner than 4 cm are nearer in PyBullet",
@@ -162,6 +192,10 @@ KNOWN: tuple[Known, ...] = (
             (seen.differs("getCameraImage depth") and rounder(seen))
             or (seen.differs("getCameraImage segments") and stands_out_round(seen))
         ),
+    ),
+    Known(
+        "Collision shapes made of vertices are drawn",
+        lambda seen: seen.differs("getCameraImage segments") and draws_given_vertices(seen),
     ),
     Known(
         "shades cylinders and capsules with the normals of a ball",
@@ -215,7 +249,13 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet matches bodies by their order",
-        lambda seen: seen.call["f"] == "restoreState" and pybullet_raises(seen) and seen.has("removeBody"),
+        lambda seen: (
+            seen.call["f"] == "restoreState"
+            and (
+                (pybullet_raises(seen) and seen.has("removeBody"))
+                or (NOT_THE_SAME_BODY.search(error(seen)) is not None and restores_after_a_removal(seen))
+            )
+        ),
     ),
     Known(
         "after a body was removed and",
@@ -223,11 +263,15 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "PyBullet counts in the order in which it",
-        lambda seen: seen.differs("rayTestBatch") and counts_hits(seen),
+        lambda seen: seen.differs("rayTest") and counts_hits(seen),
+    ),
+    Known(
+        "links without shapes have bounds as well",
+        lambda seen: seen.differs("@probe") and comes_near_bare_links(seen),
     ),
     Known(
         "Which way a constraint, or the motor of a spherical joint, turns back",
-        lambda seen: seen.differs("@probe") and holds_half_a_turn(seen),
+        lambda seen: seen.differs("@probe") and (holds_half_a_turn(seen) or aims_half_a_turn_away(seen)),
     ),
     Known(
         "`applyExternalForce` and `applyExternalTorque` refuse links that do not exist.",
@@ -263,6 +307,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "**A number as `targetPosition` of a spherical joint**",
         lambda seen: seen.differs("@probe", "getJointState") and aims_a_ball_joint_by_a_number(seen),
+    ),
+    Known(
+        "Links that fixed joints tie to each other do not touch each other",
+        lambda seen: seen.differs("getContactPoints links") and touches_itself_rigidly(seen),
     ),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",

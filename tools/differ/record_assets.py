@@ -2,8 +2,10 @@
 
 `at_limits.json` are those of them with a joint that stands exactly at one of its limits when it is loaded,
 `children_first.json` those that list a link before its parent, and `fine.json` those with a hull of very many
-corners, and meshes that make one. `long_and_round.json` are those that show cylinders or capsules, and
-`swept.json` those with capsules that are given by two points, with the least and the greatest radius [m].
+corners, and meshes that make one. `bare.json` are those with a link that has a joint to move and no collision
+shape. `long_and_round.json` are those that show cylinders or capsules, and `swept.json` those with capsules
+that are given by two points: the least radius of these, and the greatest of these and of balls [m].
+`thin.json` are those with boxes thinner than 5 cm, and how thin [m].
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -11,6 +13,7 @@ Run by the interpreter with PyBullet; it needs nothing else.
 import glob
 import json
 import os
+import re
 import time
 from xml.etree import ElementTree
 
@@ -27,6 +30,7 @@ MESHES = (
     "cube.obj", "duck_vhacd.obj", "sphere_smooth.obj", "l_finger_tip.stl", "teddy2_VHACD_CHs.obj", "duck.obj",
 )  # fmt: skip
 MANY_CORNERS = 100
+THIN = 0.05
 
 
 def load(name):
@@ -71,6 +75,14 @@ def has_a_fine_hull(name):
     return any(map(is_fine, load(name)))
 
 
+def has_a_bare_link(body):
+    """Whether a link of a body has a joint to move and no collision shape."""
+    return any(
+        p.getJointInfo(body, j)[2] != p.JOINT_FIXED and not p.getCollisionShapeData(body, j)
+        for j in range(p.getNumJoints(body))
+    )
+
+
 def lists_a_child_first(name):
     """Whether a URDF file lists a link before its parent."""
     p.resetSimulation()
@@ -84,7 +96,7 @@ def shows_something_long_and_round(body):
 
 
 def radii_of_swept(name):
-    """The least and the greatest radius of the capsules that an MJCF file gives by two points, or None."""
+    """The least radius of capsules that a file gives by two points, the greatest of round shapes; or None."""
     root = ElementTree.parse(name).getroot()
     default = root.find("default/geom")
     usual = {} if default is None else default.attrib
@@ -92,7 +104,17 @@ def radii_of_swept(name):
     radii = [
         float(geom["size"].split()[0]) for geom in geoms if "fromto" in geom and geom.get("type") == "capsule"
     ]
-    return [min(radii), max(radii)] if radii else None
+    balls = [float(geom["size"].split()[0]) for geom in geoms if geom.get("type") == "sphere"]
+    return [min(radii), max(radii + balls)] if radii else None
+
+
+def thinnest_box(name):
+    """The least extent of a box that collides in a URDF file, if it is below 5 cm, or None."""
+    with open(name) as file:
+        collisions = re.findall("<collision.*?</collision>", file.read(), re.DOTALL)
+    boxes = re.findall("<box\\s+size=[\"']([^\"']*)", " ".join(collisions))
+    sizes = [abs(float(size)) for box in boxes for size in box.split()]
+    return min(sizes) if sizes and min(sizes) < THIN else None
 
 
 def makes_a_fine_hull(name):
@@ -108,8 +130,8 @@ def main():
     names += [f"random_urdfs/{number}/{number}.urdf" for number in ("000", "007", "042")]
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
-    lines, limits, children_first, long_and_round = [], [], [], []
-    swept = {}
+    lines, bare, limits, children_first, long_and_round = [], [], [], [], []
+    swept, thin = {}, {}
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
         if any(word in name for word in LEFT_OUT) or not holds(load, name):
@@ -123,6 +145,10 @@ def main():
             long_and_round.append(name)
         if name.endswith(".xml") and radii_of_swept(name):
             swept[name] = radii_of_swept(name)
+        if name.endswith(".urdf") and thinnest_box(name) is not None:
+            thin[name] = thinnest_box(name)
+        if any(map(has_a_bare_link, bodies)):
+            bare.append(name)
         if any(map(at_limit, bodies)):
             limits.append(name)
         if holds(has_a_fine_hull, name):
@@ -132,10 +158,12 @@ def main():
             children_first.append(name)
     tables = {
         "at_limits": limits,
+        "bare": bare,
         "children_first": children_first,
         "fine": fine,
         "long_and_round": long_and_round,
         "swept": swept,
+        "thin": thin,
     }
     for table, rows in tables.items():
         with open(os.path.join(folder, f"{table}.json"), "w") as file:

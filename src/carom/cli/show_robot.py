@@ -23,7 +23,11 @@ _FULL_TURN = pi
 _SLIDE = 1.0
 # Distance of the camera from the robot, in sizes of the robot.
 _DISTANCE = 1.1
-_LOOKS = LoadFlags.USE_MATERIAL_COLORS_FROM_MTL | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
+_LOOKS = (
+    LoadFlags.USE_MATERIAL_COLORS_FROM_MTL
+    | LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL
+    | LoadFlags.ONLY_MATERIALS_THERE_ARE
+)
 
 
 class RobotView:

@@ -70,6 +70,8 @@ class Engine:
     detection_program: Callable[[KernelStructs], Program] = staticmethod(detection_program)
     # Whether bodies can be absent in some worlds.
     allows_absence = True
+    # Whether it takes steps of several worlds at once where these have robots.
+    moves_together = True
     # Whether workspaces depend on nothing but the lengths of arrays and the numbers of rows in use.
     keeps_structs = True
 
@@ -178,6 +180,9 @@ class Engine:
         """Launches have copies of the settings: update them."""
         for workspace in self._workspaces:
             workspace.structs.changed("settings")
+        for stepper in self._interpreters:
+            if isinstance(stepper, Interpreter) and stepper.lane_work:
+                stepper.lane_work.settings_changed()
 
     def _bind(self) -> list[KernelStructs]:
         """Structs over the current arrays for each thread; the arrays are made longer if necessary."""
@@ -249,11 +254,12 @@ class Engine:
 
         Where worlds have rows of their own in the workspace, its results are read, which lanes do not leave.
         """
-        together = self._make_program is self.step_program and can_move_together(self.arrays, plan)
+        together = self._make_program is self.step_program and plan.coupled and not plan.soft
+        together = together and can_move_together(self.arrays)
         for stepper, workspace in zip(self._steppers, self._workspaces, strict=False):
             if isinstance(stepper, Interpreter):
                 is_able = together and workspace.world_count == 1
-                stepper.move_together(LaneWork(self.arrays, workspace.structs) if is_able else None)
+                stepper.move_together(LaneWork(self.arrays, workspace, plan) if is_able else None)
 
     @property
     def steps_in_lanes(self) -> int:
@@ -288,6 +294,7 @@ class Engine:
         soft = bool(self.contact_arrays.soft.bodies)
         coupled = touching or sleeping or absent or soft
         coupled = coupled or self._watched or self.contact_arrays.user_count > 0
+        coupled = coupled or (self.moves_together and can_move_together(self.arrays))
         self._plan = Plan(touching, sleeping, coupled, soft, absent)
         return self._plan
 

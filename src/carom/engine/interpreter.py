@@ -8,13 +8,13 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable
 from functools import partial
-from itertools import accumulate, chain
 from typing import Protocol
 
 import numpy as np
 
 from carom.engine.lane_work import LaneWork
 from carom.engine.program import Program
+from carom.engine.program_record import write_program
 from carom.layouts.programs import Program as ProgramRecord
 from carom.layouts.programs import Run
 from carom.native.library import library
@@ -52,6 +52,9 @@ class Interpreter(Stepper):
         worlds: Indices of the worlds; changed in place.
         due: Number of substeps of each step; changed in place.
         counter: An array of one number that all threads share; None for a single thread.
+
+    Attributes:
+        lane_work: What steps of several worlds at once need; None if worlds take their steps one at a time.
     """
 
     def __init__(
@@ -61,7 +64,7 @@ class Interpreter(Stepper):
         self.program = Program([], [], [], [], [])
         # The memory that a run points to has to be kept alive.
         self._kept = (status, worlds, due, counter)
-        self._lane_work: LaneWork | None = None
+        self.lane_work: LaneWork | None = None
         self._earlier_in_lanes = 0
         self._asked = Run(
             ctypes.addressof(self._record),
@@ -82,22 +85,19 @@ class Interpreter(Stepper):
         # Launches are updated in place when arrays move, so they usually stay the same.
         if program == self.program:
             return
-        self._record.part_ends[:] = list(accumulate(map(len, program)))
-        for record, launch in zip(self._record.launches, chain.from_iterable(program), strict=False):
-            *call, record.first_world, record.substeps = launch.addresses("first_world", "substeps")
-            record.call.function, record.call.bounds, record.call.arguments = call
+        write_program(self._record, program)
         self.program = program
 
     def move_together(self, work: LaneWork | None) -> None:
-        """Compute the free motion of several worlds at once in all later runs, or of one at a time."""
+        """Take steps of several worlds at once in all later runs, or of one at a time."""
         self._earlier_in_lanes = self.steps_in_lanes
-        self._lane_work = work
+        self.lane_work = work
         self._asked.lanes = None if work is None else ctypes.addressof(work.record)
 
     @property
     def steps_in_lanes(self) -> int:
         """How many steps of several worlds have begun together so far."""
-        return self._earlier_in_lanes + (0 if self._lane_work is None else self._lane_work.steps_begun)
+        return self._earlier_in_lanes + (0 if self.lane_work is None else self.lane_work.steps_begun)
 
     def ask(self, **asked: int) -> None:  # noqa: D102
         for name, value in asked.items():

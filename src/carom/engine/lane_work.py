@@ -1,5 +1,6 @@
-"""Memory for the free motion of several worlds at once.
+"""What steps of several worlds at once need.
 
+Each lane has a workspace of its own, in which a world takes its step (`native/source/perform.cpp`).
 `lane_motion_kernel` sees numbers of several worlds side by side, so it has arrays of its own: those that it
 reads are gathered from the worlds before each step, and what it finds out is handed to the steps of single
 worlds (`native/source/lane_motion.cpp`).
@@ -8,15 +9,19 @@ worlds (`native/source/lane_motion.cpp`).
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from carom.engine.program import Plan
-from carom.layouts.programs import LANES, KernelCall, LaneMotion, LaneRows, WorldCall
+from carom.engine.lane_arrays import NUMBER, Wide, rows_of_lanes, rows_of_worlds, struct_of, widened
+from carom.engine.lane_sweeps import LaneSweepWork
+from carom.engine.program import Plan, lane_program
+from carom.engine.program_record import world_call, write_program
+from carom.engine.workspace import Workspace
+from carom.layouts.programs import LANES, WAITING_SWEEPS, KernelCall, LaneMotion, LaneRows, LaneWorld
 from carom.model.builder import WorldArrays
-from carom.native.kernels import continued_motion_kernel, free_motion_kernel, lane_motion_kernel
+from carom.native.kernels import constraints_kernel, lane_impulses_kernel, lane_motion_kernel
 from carom.native.launch import KernelStructs, Launch
 from carom.native.tables import array_view
 from carom.native.zeros import zeros
@@ -36,26 +41,13 @@ _READ = {
 _OF_WORLD = ("gravity", "fluid")
 # Others that the kernel writes.
 _WRITTEN = {"state": ("link_pose",), "scratch": ("link", "dof", "block_factor", "block_inverse_mass")}
-_NUMBER = np.dtype(np.float64)
 _LINK_NUMBERS = ("joint_rotation", "planar_axis2")
 _MOTION_NUMBERS = ("angular", "inverse_pivot")
 
 
-class _Wide(NamedTuple):
-    """An array of several worlds.
-
-    Attributes:
-        array: (rows, *shape of an entry, LANES), or rows of structs with such fields.
-        axes: Axes that kernels see, of which the first may be that of worlds.
-    """
-
-    array: np.ndarray
-    axes: int
-
-
-def can_move_together(arrays: WorldArrays, plan: Plan) -> bool:
-    """Whether several worlds can move at once, and have trees of several links, which then take less time."""
-    if arrays.world_count < LANES or not plan.coupled or plan.soft:
+def can_move_together(arrays: WorldArrays) -> bool:
+    """Whether there are enough worlds to move at once, and trees of several links, where that saves time."""
+    if arrays.world_count < LANES:
         return False
     return bool((arrays.model.numpy["tree_link_count"][: arrays.used["tree"]] > 1).any())
 
@@ -65,25 +57,39 @@ class LaneWork:
 
     Attributes:
         record: For `Run.lanes`; valid as long as this object exists and no array of the worlds is replaced.
+        sweeps: Sweeps over the rows of several worlds.
+
+    Args:
+        arrays: Those of the worlds.
+        workspace: That of the thread, which is also that of the first lane.
+        plan: The parts of a step.
     """
 
-    def __init__(self, arrays: WorldArrays, structs: KernelStructs) -> None:
+    def __init__(self, arrays: WorldArrays, workspace: Workspace, plan: Plan) -> None:
         self.record = LaneMotion()
+        workspaces = [workspace, *(workspace.another() for _ in range(LANES - 1))]
+        self._structs = [one.structs for one in workspaces]
+        self.sweeps = LaneSweepWork(self._structs)
+        self.record.sweeps = self.sweeps.record
+        self._worlds = [_LaneWorld(structs, plan) for structs in self._structs]
+        self.record.worlds = tuple(world.record for world in self._worlds)
+        self.record.solving = self._worlds[0].solving
+        structs = workspace.structs
         rows = {**dict.fromkeys(_OF_WORLD, 1), **arrays.used}
         lone = {name: structs[name].memory for name in ("model", "state", "scratch")}
-        self._wide: dict[str, dict[str, _Wide]] = {
+        self._wide: dict[str, dict[str, Wide]] = {
             name: {
-                field: _widened(lone[name][field], rows[field.partition("_")[0]])
+                field: widened(lone[name][field], rows[field.partition("_")[0]])
                 for field in (*_READ.get(name, ()), *_WRITTEN.get(name, ()))
             }
             for name in lone
         }
-        self._wide["model"]["link"] = _widened(lone["model"]["link"], rows["link"], axes=1)
-        links = self._wide["model"]["link"].array
+        self._wide["model"]["link"] = widened(lone["model"]["link"], rows["link"], axes=1)
+        links, own = self._wide["model"]["link"].array, lone["model"]["link"]
         for field in links.dtype.names or ():
-            if not _has_numbers(links.dtype[field]):
-                links[field] = lone["model"]["link"][field][: rows["link"]]
-        self._time_steps = zeros((1, 1, LANES), _NUMBER)
+            if links.dtype[field] == own.dtype[field]:
+                links[field] = own[field][: rows["link"]]
+        self._time_steps = zeros((1, 1, LANES), NUMBER)
         self._lone = lone
         self._settings = structs["settings"]
         trees = list(_articulated_trees(arrays))
@@ -101,16 +107,17 @@ class LaneWork:
                 rows["tree"],
             ],
         )
-        self._steps_begun = zeros((1,), np.dtype(np.int64))
+        self._steps_begun, self._steps_apart = (zeros((1,), np.dtype(np.int64)) for _ in range(2))
         self.record.steps_begun = self._steps_begun.ctypes.data
-        self.record.free_motion = free_motion_kernel.address
-        *call, first_world, substeps = structs.launch(continued_motion_kernel, first_world=0).addresses(
-            "first_world", "substeps"
-        )
-        self.record.continued = WorldCall(KernelCall(*call), first_world, substeps)
+        self.record.steps_apart = self._steps_apart.ctypes.data
         self.record.motion = KernelCall(*self._motion.addresses())
         terms = self._wide["model"]["tree_joint_terms"].array
         self.record.joint_terms, self.record.tree_count = terms.ctypes.data, rows["tree"]
+
+    def settings_changed(self) -> None:
+        """Update the launches after the settings of kernels have changed."""
+        for structs in self._structs:
+            structs.changed("settings")
 
     @property
     def steps_begun(self) -> int:
@@ -123,18 +130,12 @@ class LaneWork:
 
     def _struct(self, name: str, lone_struct: Any, lone: Mapping[str, np.ndarray]) -> Any:
         """A struct over the wide arrays, and over the topology that all worlds share."""
-        struct = type(lone_struct)()
         shown = dict(self._wide[name])
         if name == "scratch":
             blocks = shown["block_factor"].array
-            shown["entry_factor"] = _Wide(blocks.reshape(-1, LANES), 2)
-        for field, wide in shown.items():
-            array = wide.array if wide.axes == 1 else wide.array[np.newaxis]
-            setattr(struct, field, array_view(array, wide.axes))
-        if name == "model":
-            for field in ("tree", "dof"):
-                setattr(struct, field, array_view(lone[field]))
-        return struct
+            shown["entry_factor"] = Wide(blocks.reshape(-1, LANES), 2)
+        shared = ("tree", "dof") if name == "model" else ()
+        return struct_of(lone_struct, shown, {field: lone[field] for field in shared})
 
     def _gathered(self, trees: Iterable[Mapping[str, slice]]) -> Iterator[LaneRows]:
         """What is read before the kernel runs: what trees have, and what belongs to the world."""
@@ -143,23 +144,59 @@ class LaneWork:
             for name, fields in _READ.items():
                 for field in fields:
                     if (axis := field.partition("_")[0]) in rows:
-                        yield _rows_of(lone[name][field], wide[name][field].array, rows[axis])
+                        yield rows_of_worlds(lone[name][field], wide[name][field].array, rows[axis])
             links = lone["model"]["link"][np.newaxis]
-            yield _rows_of(links, wide["model"]["link"].array, rows["link"], _LINK_NUMBERS)
+            yield rows_of_worlds(links, wide["model"]["link"].array, rows["link"], _LINK_NUMBERS)
         for field, numbers in wide["model"].items():
             if field.partition("_")[0] in _OF_WORLD:
-                yield _rows_of(lone["model"][field], numbers.array, slice(0, 1))
+                yield rows_of_worlds(lone["model"][field], numbers.array, slice(0, 1))
         time_step = ctypes.addressof(self._settings) + type(self._settings).time_step.offset
-        yield LaneRows(time_step, 0, 0, self._time_steps.ctypes.data, 0, 1, 1)
+        yield LaneRows((time_step,) * LANES, 0, 0, self._time_steps.ctypes.data, 0, 1, 1)
 
     def _scattered(self, trees: Iterable[Mapping[str, slice]]) -> Iterator[LaneRows]:
         """What is written after it."""
-        scratch, wide = self._lone["scratch"], self._wide["scratch"]
+        wide, poses = self._wide["scratch"], self.poses()
         for rows in trees:
-            poses = self._wide["state"]["link_pose"].array
-            yield _rows_of(scratch["link_pose_free"], poses, rows["link"])
-            yield _rows_of(scratch["dof"], wide["dof"].array, rows["active"], _MOTION_NUMBERS)
-            yield _rows_of(scratch["block_inverse_mass"], wide["block_inverse_mass"].array, rows["block"])
+            yield rows_of_lanes(self._scratch("link_pose_free"), poses, rows["link"])
+            yield rows_of_lanes(self._scratch("dof"), wide["dof"].array, rows["active"], _MOTION_NUMBERS)
+            inverse_mass = wide["block_inverse_mass"].array
+            yield rows_of_lanes(self._scratch("block_inverse_mass"), inverse_mass, rows["block"])
+
+    def _scratch(self, field: str) -> Sequence[np.ndarray]:
+        """An array of the workspace of each lane."""
+        return [structs["scratch"].memory[field] for structs in self._structs]
+
+
+class _LaneWorld:
+    """The step of a world in a lane.
+
+    Attributes:
+        record: What native code needs of it.
+        solving: Number of launches before rows are relaxed.
+    """
+
+    def __init__(self, structs: KernelStructs, plan: Plan) -> None:
+        self._waiting = zeros((1, WAITING_SWEEPS + 1), np.dtype(np.int32))
+        self._residuals = zeros((1, 1), NUMBER)
+        structs.update(waiting=array_view(self._waiting, 2), residuals=array_view(self._residuals, 2))
+        program, self.solving = lane_program(structs, plan)
+        kernels = constraints_kernel, lane_impulses_kernel
+        solve, keep = (structs.launch(kernel, first_world=0) for kernel in kernels)
+        # Memory that the record points to.
+        self._launches = program, solve, keep
+        rows = structs["pair_rows"].memory
+        self.record = LaneWorld(
+            solve=world_call(solve),
+            keep=world_call(keep),
+            waiting=self._waiting.ctypes.data,
+            residual=self._residuals.ctypes.data,
+            row_numbers=structs["scratch"].memory["row"].ctypes.data,
+            row_places=rows["row_place"].ctypes.data,
+            row_starts=rows["row_start"].ctypes.data,
+            visits=rows["visit_row"].ctypes.data,
+        )
+        write_program(self.record.program, program)
+        self.record.program.status = structs["state"].memory["status_entry"].ctypes.data
 
 
 def _articulated_trees(arrays: WorldArrays) -> Iterator[dict[str, slice]]:
@@ -182,52 +219,3 @@ def _articulated_trees(arrays: WorldArrays) -> Iterator[dict[str, slice]]:
                 "active": slice(first["dof"], first["dof"] + count["dof"]),
                 "block": slice(first["block"], first["block"] + blocks),
             }
-
-
-def _widened(lone: np.ndarray, count: int, axes: int = 2) -> _Wide:
-    """An array of `count` rows, which has several numbers for each of those in `lone`."""
-    shape = (count, *lone.shape[axes:])
-    if lone.dtype == _NUMBER:
-        return _Wide(zeros((*shape, LANES), _NUMBER), axes)
-    fields: list[Any] = []
-    for field in lone.dtype.names or ():
-        kind = lone.dtype[field]
-        if _has_numbers(kind):
-            fields.append((field, _NUMBER, (kind.itemsize // _NUMBER.itemsize, LANES)))
-        else:
-            fields.append((field, kind))
-    return _Wide(zeros(shape, np.dtype(fields, align=True)), axes)
-
-
-def _has_numbers(kind: np.dtype[Any]) -> bool:
-    """Whether a field of a struct is a number, a vector or a matrix; others are whole numbers."""
-    while kind.subdtype is not None:
-        kind = kind.base
-    return kind == _NUMBER
-
-
-def _rows_of(
-    lone: np.ndarray, wide: np.ndarray, rows: slice, fields: tuple[str, str] | None = None
-) -> LaneRows:
-    """Some rows of an array of worlds and of that of lanes; of structs, the numbers of some fields."""
-    world_stride = lone.strides[0] if len(lone) > 1 else 0
-    lone, wide = lone[0, rows], wide[rows]
-    if fields is None:
-        return LaneRows(lone.ctypes.data, world_stride, 0, wide.ctypes.data, 0, 1, lone.size)
-    first, last = fields
-    begin, end = _place(lone.dtype, first)[0], _place(lone.dtype, last)[1]
-    return LaneRows(
-        lone.ctypes.data + begin,
-        world_stride,
-        lone.strides[0],
-        wide.ctypes.data + _place(wide.dtype, first)[0],
-        wide.strides[0],
-        len(wide),
-        (end - begin) // _NUMBER.itemsize,
-    )
-
-
-def _place(dtype: np.dtype[Any], field: str) -> tuple[int, int]:
-    """Where a field of a struct begins and ends [bytes]."""
-    kind, offset = (dtype.fields or {})[field][:2]
-    return offset, offset + kind.itemsize

@@ -12,6 +12,7 @@ from carom.native.kernels import (
     begin_step_kernel,
     broad_phase_kernel,
     constraints_kernel,
+    continued_motion_kernel,
     end_soft_kernel,
     end_step_kernel,
     follow_nodes_kernel,
@@ -19,6 +20,7 @@ from carom.native.kernels import (
     integration_kernel,
     islands_kernel,
     keep_velocities_kernel,
+    lane_rows_kernel,
     link_poses_kernel,
     narrow_phase_kernel,
     settle_kernel,
@@ -31,6 +33,8 @@ from carom.native.launch import KernelStructs, Launch
 # Stages of a substep, in this order.
 DETECTION = (link_poses_kernel, broad_phase_kernel, narrow_phase_kernel)
 MOTION = (islands_kernel, free_motion_kernel, constraints_kernel, integration_kernel)
+# The same of worlds whose free motion is computed, and whose rows are relaxed, several at once.
+_LANE_MOTION = (islands_kernel, continued_motion_kernel, lane_rows_kernel, integration_kernel)
 # The same with soft bodies.
 SOFT_MOTION = (
     keep_velocities_kernel,
@@ -103,6 +107,20 @@ def step_program(structs: KernelStructs, plan: Plan) -> Program:
         abandon.append(_launch(structs, abandon_soft_kernel))
     detection = _detection(structs) if plan.touching else []
     return Program(begin=begin, detection=detection, motion=motion, end=end, abandon=abandon)
+
+
+def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int]:
+    """The launches of a world that takes its step together with others, without those that solve its rows.
+
+    Returns:
+        The launches; the number of those up to `lane_rows_kernel`.
+    """
+    program = step_program(structs, plan)
+    kernels = [launch.kernel for launch in program.motion]
+    first = kernels.index(islands_kernel)
+    program.motion[first : first + len(_LANE_MOTION)] = [_launch(structs, kernel) for kernel in _LANE_MOTION]
+    before = len(program.begin) + len(program.detection) + first
+    return program, before + _LANE_MOTION.index(lane_rows_kernel) + 1
 
 
 def detection_program(structs: KernelStructs) -> Program:

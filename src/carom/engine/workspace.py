@@ -55,6 +55,14 @@ class Workspace:
         other.structs = KernelStructs()
         return other
 
+    def another(self) -> Workspace:
+        """A workspace of the same size, over the same other arrays."""
+        other = Workspace(self.world_count)
+        for table, own in zip(other.tables, self.tables, strict=True):
+            table.reserve(own.capacity)
+        other.bind(self.structs)
+        return other
+
     @property
     def tables(self) -> tuple[ArrayTable, ...]:
         """All its tables."""

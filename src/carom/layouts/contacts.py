@@ -515,7 +515,7 @@ class PairRows:
     entry_matrix: RealRows
 
     user_first_row: IntRows
-    visit_row: IntRows  # joint rows and, as -1 - row, those of user constraints, in order of relaxation
+    visit_row: IntRows  # joint rows, -1 - row of user constraints, in order of relaxation
 
 
 # Fields that are views of another array's blocks, entry by entry.

@@ -6,7 +6,11 @@ from enum import IntFlag
 
 
 class LoadFlags(IntFlag):
-    """Flags of `loadURDF(flags=...)`. Bits without a name are kept and have no effect."""
+    """Flags of `loadURDF(flags=...)`. Bits without a name are kept and have no effect.
+
+    `ONLY_MATERIALS_THERE_ARE` is Carom's own: with `USE_MATERIAL_COLORS_FROM_MTL` a mesh without material
+    keeps its colour, and is not black as in PyBullet.
+    """
 
     NONE = 0
     USE_INERTIA_FROM_FILE = 2
@@ -29,6 +33,7 @@ class LoadFlags(IntFlag):
     IGNORE_COLLISION_SHAPES = 2097152
     PRINT_URDF_INFO = 4194304
     GOOGLY_UNDEFINED_COLORS = 8388608
+    ONLY_MATERIALS_THERE_ARE = 1 << 29
     COLOURS = USE_MATERIAL_COLORS_FROM_MTL | USE_MATERIAL_TRANSPARENCY_FROM_MTL | GOOGLY_UNDEFINED_COLORS
     ANY_SELF_COLLISION = (
         USE_SELF_COLLISION

@@ -7,6 +7,10 @@ MAX_LAUNCHES = 32
 PROGRAM_PARTS = 5
 # Worlds that move at once.
 LANES = 4
+# Columns of what a world says of the rows that it has written and not relaxed: the root of their island, or
+# -1 if there are none; number of rows over one tree, of those over two and of blocks of these, of visits; and
+# of the sweeps that were made.
+WAITING_ROOT, WAITING_ROWS, WAITING_PAIR_ROWS, WAITING_BLOCKS, WAITING_VISITS, WAITING_SWEEPS = range(6)
 
 
 @c_record()
@@ -53,13 +57,13 @@ class Program:
     launches: WorldCall
 
 
-@c_record()
+@c_record(lone=LANES)
 class LaneRows:
     """Numbers in rows of the arrays of single worlds, and the same of several worlds side by side.
 
     Attributes:
-        lone: The first number of the first world.
-        world_stride: Bytes from one world to the next.
+        lone: For each lane: the first number of the first world that it can have.
+        world_stride: Bytes from one world to the next; 0 in workspaces, of which each lane has its own.
         row_stride: Bytes from one row to the next.
         wide: The first number of all lanes.
         wide_stride: Bytes from one row of these to the next.
@@ -77,20 +81,106 @@ class LaneRows:
 
 
 @c_record()
-class LaneMotion:
-    """Free motion of `LANES` worlds at once.
+class LaneWorld:
+    """The step of a world in a lane, which has a workspace of its own.
 
     Attributes:
-        gathered: What it is computed from.
+        program: Its launches; `continued_motion_kernel` takes what was found out about free motion.
+        solve: What solves the rows if they cannot be relaxed together with those of other worlds.
+        keep: What stores the impulses of rows that were.
+        waiting: What its rows are, in `WAITING_ROOT`...
+        residual: The last residual of its sweeps.
+        row_numbers: The beginnings of its rows over one tree.
+        row_places: The same of places of rows over two trees, four numbers each.
+        row_starts: Where their Jacobians begin.
+        visits: The order of all rows.
+    """
+
+    program: Program
+    solve: WorldCall
+    keep: WorldCall
+    waiting: At[Int32]
+    residual: At[Double]
+    row_numbers: Bytes
+    row_places: Read[Int32]
+    row_starts: Read[Int32]
+    visits: Read[Int32]
+
+
+@c_record()
+class LaneSweeps:
+    """Sweeps over the rows of `LANES` worlds at once.
+
+    Attributes:
+        row: The numbers of rows over one tree, from the requested change on.
+        row_impulse: Their impulses alone.
+        share: See `Scratch.row_share`.
+        softness: See `Scratch.row_softness`.
+        response: Blocks of `Scratch.block_response`.
+        delta: Blocks of `Scratch.delta_velocity`.
+        terms: Rows over two trees.
+        term_impulse: Their impulses alone.
+        jacobian: Blocks of `PairRows.jacobian_row`.
+        jacobian_response: Blocks of `PairRows.jacobian_response`.
+        sweep: One sweep.
+        visits: Its number of visits.
+        number: Its number.
+        residuals: Its residual in each lane.
+        order: The order of all rows in lanes; negative numbers are those of `PairRows.visit_row`.
+        slots: For each row over one tree in lanes: which row it is in each world, -1 for none.
+        slot_count: Number of these for which there is room.
+        row_numbers: The beginnings of rows over one tree in lanes.
+        row_stride: Bytes from one such row to the next.
+        wide_row_stride: The same in lanes.
+        iterations: The greatest number of sweeps.
+        inner_iterations: Sweeps over joint rows in each; more than one are made one world at a time.
+        threshold: The residual that ends the sweeps.
+        begun: How many sweeps have been made.
+    """
+
+    row: LaneRows
+    row_impulse: LaneRows
+    share: LaneRows
+    softness: LaneRows
+    response: LaneRows
+    delta: LaneRows
+    terms: LaneRows
+    term_impulse: LaneRows
+    jacobian: LaneRows
+    jacobian_response: LaneRows
+    sweep: KernelCall
+    visits: At[Int32]
+    number: At[Int32]
+    residuals: Read[Double]
+    order: At[Int32]
+    slots: At[Int32]
+    slot_count: Int64
+    row_numbers: Bytes
+    row_stride: Int64
+    wide_row_stride: Int64
+    iterations: Read[Int32]
+    inner_iterations: Read[Int32]
+    threshold: Read[Double]
+    begun: At[Int64]
+
+
+@c_record(worlds=LANES)
+class LaneMotion:
+    """Steps of `LANES` worlds at once.
+
+    Attributes:
+        gathered: What their free motion is computed from.
         scattered: Its results, which each world takes in its step.
         gathered_count: Number of entries of `gathered`.
         scattered_count: The same of `scattered`.
         joint_terms: For each tree and lane: whether it has joint terms. All lanes have to be alike.
         tree_count: Number of trees.
         steps_begun: How many steps of `LANES` worlds have begun so.
+        steps_apart: How many of these, in a row, had rows that could not be relaxed together.
         motion: The kernel.
-        free_motion: The kernel of single worlds that computes their free motion from the beginning.
-        continued: The launch in its place that continues with the results.
+        worlds: The steps of single worlds.
+        solving: The number of launches of such a step before its rows are relaxed.
+        sweeps: Sweeps over the rows of all.
     """
 
     gathered: Read[LaneRows]
@@ -100,9 +190,11 @@ class LaneMotion:
     joint_terms: Read[Double]
     tree_count: Int64
     steps_begun: At[Int64]
+    steps_apart: At[Int64]
     motion: KernelCall
-    free_motion: KernelFunction
-    continued: WorldCall
+    worlds: LaneWorld
+    solving: Int64
+    sweeps: LaneSweeps
 
 
 @c_record()

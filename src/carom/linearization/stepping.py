@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 class _OwnRows(Engine):
     """An engine whose worlds have rows of their own in the workspace: results of steps are read there."""
 
+    moves_together = False
+
     def _make_workspaces(self, threads: int) -> list[Workspace]:
         first = Workspace(self.arrays.world_count)
         return [first, *(first.with_own_launches() for _ in range(threads - 1))]

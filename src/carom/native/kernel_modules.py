@@ -11,6 +11,8 @@ KERNEL_MODULES = _modules(
         "contact.stages",
         "dynamics.kinematics",
         "dynamics.lane_motion",
+        "dynamics.lane_stages",
+        "dynamics.lane_sweeps",
         "dynamics.step",
         "dynamics.step_ends",
     ),
@@ -22,7 +24,7 @@ KERNEL_MODULES = _modules(
     *("soft.stages", "solver.sleeping", "solver.stages"),
 )
 # Those of several worlds in lanes.
-LANE_MODULES = _modules("dynamics.lane_motion")
+LANE_MODULES = _modules("dynamics.lane_motion", "dynamics.lane_sweeps")
 # Kernels of steps in fine launches, for GPUs; those that take longest to compile come first.
 PARALLEL_MODULES = _modules(
     *("parallel.soft_motion", "parallel.detection", "parallel.contact_rows", "parallel.restless_sweeps"),
@@ -39,8 +41,15 @@ PARALLEL_MODULES = _modules(
 ARRAY_MODULES = _modules("arrays.arithmetic")
 # Kernels that take a world through a whole stage; on GPUs there are others for this.
 _WHOLE_WORLDS = _modules(
-    *("contact.stages", "dynamics.lane_motion", "dynamics.step", "dynamics.step_ends", "soft.stages"),
-    "solver.stages",
+    *(
+        "contact.stages",
+        "dynamics.lane_motion",
+        "dynamics.lane_stages",
+        "dynamics.lane_sweeps",
+        "dynamics.step",
+        "dynamics.step_ends",
+    ),
+    *("soft.stages", "solver.stages"),
     # Each thread has the workspace of one body.
     *("inverse_kinematics.many_searches", "mechanism.many_bodies"),
     *("mechanism.derivatives", "mechanism.link_motion", "mechanism.momentum"),

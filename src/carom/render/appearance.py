@@ -15,6 +15,7 @@ from weakref import WeakKeyDictionary, ref
 from carom.description import Geometry, Heightfield, Material, Mesh, Plane, Pose
 from carom.description.link import Rgba
 from carom.errors import DescriptionError
+from carom.formats.visuals.mtl import BLACK
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
@@ -181,12 +182,23 @@ class Appearance:
         if isinstance(geometry, (Plane, Heightfield)):
             look.texture = self.textures.add(CHECKER)
         elif isinstance(geometry, Mesh):
-            if LoadFlags.USE_MATERIAL_COLORS_FROM_MTL in flags and mesh.material_rgba is not None:
-                opaque = LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL not in flags
-                look.rgba = (*mesh.material_rgba[:3], 1.0) if opaque else mesh.material_rgba
+            look.rgba = _colour_of_mesh(geometry.path, mesh, flags) or rgba
             image = _image_of(mesh.texture_file)
             look.texture = NO_TEXTURE if image is None else self.textures.add(image)
         return look
+
+
+def _colour_of_mesh(file: Path, mesh: RenderMesh, flags: LoadFlags) -> Rgba | None:
+    """The colour that a mesh file gives; None if it gives none, or is not asked for one."""
+    if LoadFlags.USE_MATERIAL_COLORS_FROM_MTL not in flags:
+        return None
+    material = mesh.material_rgba
+    if material is None:
+        # To PyBullet an OBJ file without material is black; files of other kinds have no materials.
+        is_black = file.suffix.lower() == ".obj" and len(mesh.triangles)
+        return BLACK if is_black and LoadFlags.ONLY_MATERIALS_THERE_ARE not in flags else None
+    opaque = LoadFlags.USE_MATERIAL_TRANSPARENCY_FROM_MTL not in flags
+    return (*material[:3], 1.0) if opaque else material
 
 
 def _image_of(file: Path | None) -> Texels | None:

@@ -73,7 +73,7 @@ class JointConstraint:
         other = None if self.user is None else self.user.child
         if self.user is None or other is None or other is self.body:
             return self.body
-        return self.body if moving_links(self.body)[self.user.parent_link + 1] else other
+        return self.body if island_links(self.body)[self.user.parent_link + 1] else other
 
 
 class JointConstraints:
@@ -95,7 +95,7 @@ class JointConstraints:
 
         A body that is read as PyBullet reads it has no friction.
         """
-        self.tags.add(change, body.id, moving_links(body))
+        self.tags.add(change, body.id, island_links(body))
         added: list[JointConstraint] = []
         for joint, (link, code) in enumerate(zip(body.spec.links, body.joint_types, strict=True)):
             if LIMIT_KIND.get(code) == ConstraintKind.SPHERICAL_LIMIT:
@@ -199,7 +199,7 @@ class JointConstraints:
 
     def free_base(self, change: Change, body: Body, *, free: bool) -> None:
         """Renumber the islands with a change that frees or fixes the base of a body."""
-        self.tags.move_base_to_end(change, body.id, moving_links(body, free=free))
+        self.tags.move_base_to_end(change, body.id, island_links(body, free=free))
 
     def write(
         self,
@@ -235,3 +235,21 @@ def moving_links(body: Body, *, free: bool | None = None) -> list[bool]:
     for link, code in zip(body.spec.links, body.joint_types, strict=True):
         moving.append(moving[link.parent + 1] or code != JointCode.FIXED)
     return moving
+
+
+def island_links(body: Body, *, free: bool | None = None) -> list[bool]:
+    """Which links, base first, belong to islands: as `moving_links`, but for some of a fixed base.
+
+    Bullet takes a link on fixed joints for still if they lead to the base or, as its search ends there, to
+    the first link, whether this moves or not. So contacts and constraints of such a link with what cannot
+    move have no effect. Bodies that are read as written do not follow it.
+    """
+    moving = moving_links(body, free=free)
+    if moving[0] or not body.spec.is_held:
+        return moving
+    still = [True]
+    for link, code in zip(body.spec.links[1:], body.joint_types[1:], strict=True):
+        still.append(code == JointCode.FIXED and link.parent >= 0 and still[link.parent])
+    # The first link itself moves if its joint does.
+    still[0] = False
+    return [moving[0], *(moves and not is_still for moves, is_still in zip(moving[1:], still, strict=False))]

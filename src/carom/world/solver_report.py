@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from carom.scene.joint_constraints import moving_links
+from carom.scene.joint_constraints import island_links
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -21,7 +21,7 @@ def solver_report(world: World) -> list[dict[str, float]]:
     return [
         {
             "islandId": root,
-            "numBodies": sum(sum(moving_links(body)) for body in members if not body.is_asleep),
+            "numBodies": sum(sum(island_links(body)) for body in members if not body.is_asleep),
             "numIterationsUsed": int(state["tree_iterations"][0, root]),
             "remainingResidual": float(state["tree_residual"][0, root]),
         }

@@ -1,7 +1,10 @@
-"""Contacts with rows along which nothing can move: robots in a plane, and on rails.
+"""Rows along which nothing can move: contacts of robots in a plane and on rails, motors that move no mass.
 
 PyBullet computes 0/0 for the change of such a row, and forgets what the rows before it have changed. So it
 stops sweeping early where the last rows are at rest, and never where such a row is the last.
+
+It sorts a constraint by the island of its links. A link on fixed joints that lead to a fixed base, or to the
+first link, is in none; a constraint of such ends alone is sorted before all others, and is not solved.
 """
 
 from __future__ import annotations
@@ -11,6 +14,7 @@ from typing import Any
 from ..scenario import scenario, simulate, under
 
 SLIDE, TURN = 1, 0
+FIXED = 4
 
 
 def _arm(p: Any, joints: list[tuple[int, list[float]]], step: float) -> int:
@@ -44,7 +48,7 @@ def _arm(p: Any, joints: list[tuple[int, list[float]]], step: float) -> int:
 @scenario(tolerance={"positions": 1e-6, "velocities": 1e-6})
 def rows_along_which_nothing_can_move(p: Any) -> dict[str, Any]:
     """Capsules on sliders and hinges touch the floor; how they move, and how many sweeps that takes."""
-    arms = {
+    arms: dict[str, tuple[list[tuple[int, list[float]]], float]] = {
         "slides over the floor": ([(SLIDE, [0, 0, 1]), (SLIDE, [0, 1, 0])], 0.0),
         "slides and turns over the floor": ([(SLIDE, [0, 0, 1]), (SLIDE, [0, 1, 0]), (TURN, [1, 0, 0])], 0.0),
         "falls in a plane": ([(SLIDE, [1, 0, 0]), (SLIDE, [0, 0, 1]), (TURN, [0, 1, 0])], 0.0),
@@ -69,4 +73,105 @@ def rows_along_which_nothing_can_move(p: Any) -> dict[str, Any]:
         first = p.stepSimulation()
         results |= under(name, {"sweeps": [island["numIterationsUsed"] for island in first]})
         results |= under(name, simulate(p, 0.2, joints_of, stride=4))
+    return results
+
+
+def _robot(p: Any, base_mass: float, joints: list[tuple[int, int]]) -> int:
+    """Boxes on joints of these types and parents, without motors that hold."""
+    count = len(joints)
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.05, 0.04, 0.1])
+    body = p.createMultiBody(
+        base_mass,
+        box,
+        -1,
+        [0, 0, 2],
+        linkMasses=[1.0] * count,
+        linkCollisionShapeIndices=[box] * count,
+        linkVisualShapeIndices=[-1] * count,
+        linkPositions=[[0.3, 0.1 * place, 0.1] for place in range(count)],
+        linkOrientations=[[0, 0, 0, 1]] * count,
+        linkInertialFramePositions=[[0.02, 0, 0]] * count,
+        linkInertialFrameOrientations=[[0, 0, 0, 1]] * count,
+        linkParentIndices=[parent for _, parent in joints],
+        linkJointTypes=[kind for kind, _ in joints],
+        linkJointAxis=[[0, 0.6, 0.8]] * count,
+    )
+    for joint, (kind, _) in enumerate(joints):
+        if kind == TURN:
+            p.setJointMotorControl2(body, joint, p.VELOCITY_CONTROL, targetVelocity=0.2, force=2.0)
+    return body
+
+
+def _start(p: Any) -> None:
+    p.resetSimulation()
+    p.setGravity(0.5, -1.0, -9.8)
+    p.setPhysicsEngineParameter(reportSolverAnalytics=1)
+
+
+def _result(p: Any, body: int) -> dict[str, Any]:
+    """The sweeps of the first step, and what the joints do."""
+    first = p.stepSimulation()
+
+    def joints() -> dict[str, Any]:
+        states = p.getJointStates(body, [j for j in range(p.getNumJoints(body)) if _turns(p, body, j)])
+        return {"positions": [state[0] for state in states], "velocities": [state[1] for state in states]}
+
+    sweeps = [island["numIterationsUsed"] for island in first]
+    return {"sweeps": sweeps} | simulate(p, 0.1, joints, stride=4)
+
+
+def _turns(p: Any, body: int, joint: int) -> bool:
+    return p.getJointInfo(body, joint)[2] == TURN
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def constraints_of_still_links(p: Any) -> dict[str, Any]:
+    """A constraint that ties two still ends has no effect but on the order of the motors."""
+    chain = [(TURN, 0), (TURN, 1), (TURN, 2), (TURN, 3)]
+    on_first = [(TURN, 0), (FIXED, 1), (FIXED, 2), (TURN, 3), (FIXED, 4)]
+    cases = {
+        "fixed base": (chain, -1),
+        "link fixed to the first": (on_first, 1),
+        "link fixed to that": (on_first, 2),
+        "link fixed to a later one": (on_first, 4),
+    }
+    results: dict[str, Any] = {}
+    for name, (joints, link) in cases.items():
+        _start(p)
+        body = _robot(p, 0.0, joints)
+        p.createConstraint(body, link, -1, -1, p.JOINT_POINT2POINT, [0, 0, 1], [0, 0.1, 0], [0.2, 0.1, 1.8])
+        results |= under(name, _result(p, body))
+    return results
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def constraints_of_fixed_bases_with_a_velocity(p: Any) -> dict[str, Any]:
+    """A constraint holds a link to the velocity that a fixed base was given, as if it moved."""
+    results: dict[str, Any] = {}
+    for kind in (p.JOINT_POINT2POINT, p.JOINT_FIXED, p.JOINT_PRISMATIC):
+        _start(p)
+        body = _robot(p, 0.0, [(TURN, 0), (TURN, 1), (TURN, 2)])
+        p.resetBaseVelocity(body, [0.3, -0.2, 0.1], [0.7, -0.8, 0.2])
+        other = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), -1, [0.4, 0, 4])
+        p.createConstraint(body, 1, other, -1, kind, [0, 0, 1], [0.1, 0.1, 0], [-0.2, 0.2, -0.1])
+        results |= under(str(kind), _result(p, body))
+    return results
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def motors_that_move_no_mass(p: Any) -> dict[str, Any]:
+    """Motors of joints whose links have lost their mass: their rows change by 0/0, and nothing else."""
+    results: dict[str, Any] = {}
+    for name, (link, force) in {
+        "last": (3, 2.0),
+        "first": (0, 2.0),
+        "middle": (1, 2.0),
+        "last with a negative force": (3, -2.0),
+    }.items():
+        _start(p)
+        body = _robot(p, 0.0, [(TURN, 0), (TURN, 1), (TURN, 1), (TURN, 0)])
+        for lost in (link,) if link != 0 else (0, 1, 2):
+            p.changeDynamics(body, lost, mass=0)
+        p.setJointMotorControl2(body, link, p.VELOCITY_CONTROL, targetVelocity=0.2, force=force)
+        results |= under(name, _result(p, body))
     return results

@@ -104,6 +104,16 @@ def test_the_first_material_with_a_texture_serves_the_whole_mesh(read, tmp_path)
     assert mesh.material_rgba == (0.5, 0.25, 1.0, 0.5)
 
 
+@pytest.mark.parametrize(("between", "texture"), [("", None), ("o b\n", "wood.png"), ("g b\n", "wood.png")])
+def test_a_group_has_the_material_at_its_end(read, tmp_path, between, texture):
+    (tmp_path / "some.mtl").write_text("newmtl plain\nKd 1 0 0\nnewmtl wood\nmap_Kd wood.png\n")
+    mesh = read(
+        f"mtllib some.mtl\n{SQUARE}usemtl wood\nf 1 2 3\n{between}usemtl plain\nf 1 3 4",
+        f"mesh{len(between)}.obj",
+    )
+    assert mesh.texture_file == (tmp_path / texture if texture else None)
+
+
 def test_without_textures_the_last_material_gives_the_colour(read, tmp_path):
     (tmp_path / "some.mtl").write_text("newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\nTr 0.25\n")
     mesh = read("mtllib some.mtl\n" + SQUARE + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4")
@@ -122,7 +132,7 @@ def test_broken_lines_of_a_material_file_are_skipped(tmp_path, caplog):
     path = tmp_path / "broken.mtl"
     path.write_text("newmtl a\nKd red\nd\nmap_Kd my wood.png\n")
     material = read_materials(path)["a"]
-    assert material.rgba == (1.0, 1.0, 1.0, 1.0)
+    assert material.rgba == (0.0, 0.0, 0.0, 1.0)
     assert material.texture == tmp_path / "my wood.png"
     assert "broken.mtl:2" in caplog.text
 

@@ -93,3 +93,41 @@ def test_links_without_a_colour_get_those_of_the_window_where_they_were_asked_fo
     p.loadURDF(CUBE, flags=p.URDF_GOOGLEY_UNDEFINED_COLORS)
     box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.1, 0.1])
     assert p.getVisualShapeData(p.createMultiBody(1, box))[0][7] == (0.234375, 0.7265625, 0.328125, 1.0)
+
+
+CORNERS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+FRONT, BACK = "f 1 3 2\nf 1 2 4\n", "f 2 3 4\nf 3 1 4\n"
+PAINTS = "newmtl red\nKd 1 0.5 0.25\nnewmtl blue\nKd 0 0 1\nnewmtl shiny\nKs 1 1 1\n"
+RED, BLUE, BLACK = (1.0, 0.5, 0.25, 1.0), (0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("lines", "expected"),
+    [
+        (FRONT, BLACK),
+        (f"usemtl red\n{FRONT}", RED),
+        (f"usemtl red or so\n{FRONT}", RED),
+        (f"usemtl shiny\n{FRONT}", BLACK),
+        (f"usemtl green\n{FRONT}", BLACK),
+        (f"usemtl red\n{FRONT}usemtl blue\n{BACK}usemtl red\n{FRONT}", RED),
+        (f"usemtl red\n{FRONT}usemtl blue\n", BLUE),
+        (f"usemtl red\n{FRONT}o b\nusemtl blue\n", RED),
+        (f"usemtl red\n{FRONT}o b\n{BACK}", RED),
+        (f"usemtl red\n{FRONT}g b\nusemtl green\n{BACK}", BLACK),
+        (f"{FRONT}o b\nusemtl blue\n{BACK}", BLUE),
+    ],
+)
+def test_a_mesh_has_the_material_of_its_last_group_and_is_black_without_one(
+    glass: Path, lines: str, expected: tuple[float, ...]
+) -> None:
+    (glass / "paints.mtl").write_text(PAINTS)
+    (glass / "glass.obj").write_text(f"mtllib paints.mtl\n{CORNERS}{lines}")
+    p.loadURDF(CUBE, flags=COLOURS)
+    assert colour() == expected
+
+
+def test_a_material_counts_only_after_its_file_was_named(glass: Path) -> None:
+    (glass / "paints.mtl").write_text(PAINTS)
+    (glass / "glass.obj").write_text(f"{CORNERS}usemtl red\nmtllib paints.mtl\n{FRONT}")
+    p.loadURDF(CUBE, flags=COLOURS)
+    assert colour() == BLACK

@@ -16,17 +16,20 @@ _log = Logger("carom")
 MAX_FILE_BYTES = 16 << 20
 """Largest material file that is read."""
 
+BLACK: Rgba = (0.0, 0.0, 0.0, 1.0)
+"""Colour of materials that have none, and of meshes without material that are asked for its colour."""
+
 
 @dataclass(slots=True)
 class ObjMaterial:
     """One material of a material file.
 
     Attributes:
-        rgba: Diffuse colour and opacity.
+        rgba: Diffuse colour and opacity; black, as in PyBullet, where the file gives no colour.
         texture: Image of the diffuse colour; it may be missing or broken.
     """
 
-    rgba: Rgba = (1.0, 1.0, 1.0, 1.0)
+    rgba: Rgba = BLACK
     texture: Path | None = None
 
 
@@ -44,7 +47,7 @@ def read_materials(path: Path) -> dict[str, ObjMaterial]:
         rest = rest.strip()
         try:
             if keyword == "newmtl":
-                material = materials.setdefault(rest, ObjMaterial())
+                material = materials.setdefault(first_word(rest), ObjMaterial())
             elif keyword == "Kd":
                 red, green, blue = map(_finite, rest.split())
                 material.rgba = (red, green, blue, material.rgba[3])
@@ -57,6 +60,11 @@ def read_materials(path: Path) -> dict[str, ObjMaterial]:
         except ValueError:
             _log.warning("%s:%d: %s has invalid numbers %r; ignored", path, number, keyword, rest)
     return materials
+
+
+def first_word(words: str) -> str:
+    """The name of a material: what follows a space is no part of it."""
+    return next(iter(words.split()), "")
 
 
 def _finite(word: str) -> float:

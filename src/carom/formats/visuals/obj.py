@@ -14,7 +14,7 @@ from carom.errors import DescriptionError
 from carom.formats.files import read_bounded
 from carom.formats.mesh.part import cut_into_fans
 from carom.formats.mesh.reader import MAX_FILE_BYTES
-from carom.formats.visuals.mtl import ObjMaterial, read_materials
+from carom.formats.visuals.mtl import ObjMaterial, first_word, read_materials
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, face_normals, unit_vectors
 
 _VERTEX, _UV, _NORMAL = 0, 1, 2
@@ -36,7 +36,8 @@ class _Lines:
         face_lines: Line number of each face.
         known: How many positions, texture coordinates and normals were known at each face.
         libraries: Names of the material files, once each.
-        materials: Names of the materials that have faces, once each, in the order of use.
+        materials: Of each group that has faces the material in use at its end, and how many material files
+            had been named where its use began.
     """
 
     values: tuple[list[tuple[int, bytes]], ...] = field(default_factory=lambda: ([], [], []))
@@ -44,14 +45,15 @@ class _Lines:
     face_lines: list[int] = field(default_factory=list)
     known: list[tuple[int, int, int]] = field(default_factory=list)
     libraries: dict[str, None] = field(default_factory=dict)
-    materials: dict[str, None] = field(default_factory=dict)
+    materials: list[tuple[str, int]] = field(default_factory=list)
 
 
 def read_obj_visual(file: Path) -> RenderMesh:
     """Reads an OBJ file for drawing.
 
-    As in PyBullet the whole mesh has one material: the first one in use that has a texture, otherwise the
-    last one in use. Faces without normals are flat.
+    As in PyBullet a group (`g` or `o`) has the material that is in use at its end, and the whole mesh that of
+    the first group whose material has a texture, otherwise that of the last group. Faces without normals are
+    flat.
 
     Raises:
         DescriptionError: A number is missing or broken, or a face names something that does not exist.
@@ -69,7 +71,7 @@ def read_obj_visual(file: Path) -> RenderMesh:
 def _take_apart(data: bytes) -> _Lines:
     lines = _Lines()
     vertices, uvs, normals = lines.values
-    material = ""
+    material, has_faces = ("", 0), False
     for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
         keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
         if keyword in _KINDS:
@@ -78,11 +80,15 @@ def _take_apart(data: bytes) -> _Lines:
             lines.faces.append(rest)
             lines.face_lines.append(number)
             lines.known.append((len(vertices), len(uvs), len(normals)))
-            lines.materials.setdefault(material)
+            has_faces = True
+        elif keyword in (b"g", b"o"):
+            lines.materials += [material] * has_faces
+            has_faces = False
         elif keyword == b"usemtl":
-            material = rest.strip().decode("utf-8", errors="surrogateescape")
+            material = (first_word(rest.decode("utf-8", errors="surrogateescape")), len(lines.libraries))
         elif keyword == b"mtllib":
             lines.libraries.setdefault(rest.strip().decode("utf-8", errors="surrogateescape"))
+    lines.materials += [material] * has_faces
     return lines
 
 
@@ -165,11 +171,12 @@ def _bad_face(lines: _Lines) -> int | None:
 
 
 def _material(lines: _Lines, file: Path) -> ObjMaterial | None:
-    known: dict[str, ObjMaterial] = {}
+    """The material of the whole mesh; None if that of its last group is unknown."""
+    known: list[dict[str, ObjMaterial]] = [{}]
     for name in islice(lines.libraries, _MAX_LIBRARIES):
-        known.update(read_materials(file.parent / name))
-    used = [known[name] for name in lines.materials if name in known]
-    with_texture = [material for material in used if material.texture is not None]
+        known.append(known[-1] | read_materials(file.parent / name))
+    used = [known[min(count, len(known) - 1)].get(name) for name, count in lines.materials]
+    with_texture = [material for material in used if material is not None and material.texture is not None]
     return with_texture[0] if with_texture else used[-1] if used else None
 
 

@@ -30,6 +30,27 @@ def is_there(state: State, world: Int32, tree: Int32) -> Int32:
 
 
 @func
+def add_only_row(
+    state: State,
+    users: UserConstraints,
+    space: StepSpace,
+    steps: StepBatch,
+    place: Int32,
+    world: Int32,
+    user: Int32,
+    kind: Int32,
+):
+    """Add the row of a constraint that has one, without its entries; returns it and its status."""
+    impulse = state.user_impulse[world, user][0]
+    bound = users.user_max_impulse[user]
+    status = status_of(impulse, -bound, bound)
+    holds = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
+    row = add_row(space, steps, place, kind, status, user, holds, 1.0 - holds)
+    steps.row_impulse[row] = impulse
+    return row, status
+
+
+@func
 def add_gear(
     model: Model,
     settings: Settings,
@@ -43,12 +64,7 @@ def add_gear(
 ):
     """Add the row of a gear."""
     n = space.dofs
-    impulse = state.user_impulse[world, user][0]
-    bound = users.user_max_impulse[user]
-    status = status_of(impulse, -bound, bound)
-    holds = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
-    row = add_row(space, steps, place, GEAR_ROW, status, user, holds, 1.0 - holds)
-    steps.row_impulse[row] = impulse
+    row, status = add_only_row(state, users, space, steps, place, world, user, GEAR_ROW)
     link_b = users.user_link_b[user]
     ratio = users.user_gear_ratio[user]
     follower = space.row_dof[model.link[users.user_link_a[user]].first_dof]
@@ -89,12 +105,7 @@ def add_coupling(
 ):
     """Add the row of a coupling."""
     n = space.dofs
-    impulse = state.user_impulse[world, user][0]
-    bound = users.user_max_impulse[user]
-    status = status_of(impulse, -bound, bound)
-    holds = wp.where(status == ROW_HOLDS, real(1.0), real(0.0))
-    row = add_row(space, steps, place, COUPLING_ROW, status, user, holds, 1.0 - holds)
-    steps.row_impulse[row] = impulse
+    row, status = add_only_row(state, users, space, steps, place, world, user, COUPLING_ROW)
     first = row * n
     follower = space.row_dof[model.link[users.user_link_a[user]].first_dof]
     steps.jacobian[first + follower] += 1.0
@@ -110,7 +121,7 @@ def add_coupling(
         bent = -(2.0 * c[1] + x * (6.0 * c[2] + x * 12.0 * c[3]))
         # The Jacobian changes with the position of the leader.
         force = ((2 * place + 1) * n + leader) * space.columns + leader
-        steps.force[force] += impulse / settings.time_step * bent
+        steps.force[force] += steps.row_impulse[row] / settings.time_step * bent
     if status == ROW_HOLDS:
         law = rigid_law(users.user_erp[user] * settings.joint_erp / settings.time_step)
         stated = users.user_impedance[user][3]

@@ -2,7 +2,7 @@
 
 from carom.kernels.structs import Model, Shapes, State, UserConstraints
 from carom.kernels.types import Index4, Int32, func, real
-from carom.layouts.codes import ABSENT, ASLEEP, WOKEN
+from carom.layouts.codes import ABSENT, ASLEEP, USER, USER_TENDON, WOKEN
 
 
 @func
@@ -20,14 +20,20 @@ def link_moves(model: Model, link: Int32) -> bool:
 
 
 @func
+def counts_as_moving(model: Model, link: Int32) -> bool:
+    """Whether a link belongs to an island: Bullet takes some that a dof moves for still (`island_links`)."""
+    return model.link[link].number >= 0
+
+
+@func
 def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
-    """Tree of the first of two links in contact that some dof moves; -1 if neither is moved.
+    """Tree of the first of two links in contact that counts as moving; -1 if neither does.
 
     `pair` has both shapes, then both links.
     """
-    if link_moves(model, pair[2]):
+    if counts_as_moving(model, pair[2]):
         return shapes.shape_tree[pair[0]]
-    return shapes.shape_tree[pair[1]] if link_moves(model, pair[3]) else -1
+    return shapes.shape_tree[pair[1]] if counts_as_moving(model, pair[3]) else -1
 
 
 @func
@@ -59,6 +65,24 @@ def is_in_force(state: State, users: UserConstraints, world: Int32, user: Int32)
     if a >= 0 and is_absent(state, world, a):
         return False
     return b < 0 or not is_absent(state, world, b)
+
+
+@func
+def ties_still_links(model: Model, users: UserConstraints, constraint: Int32) -> bool:
+    """Whether a constraint is a user's, and each of its ends the world or a link that counts as still.
+
+    As in Bullet it belongs to no island then, whatever else of its bodies can move.
+    """
+    if model.constraint[constraint].kind != USER:
+        return False
+    user = model.constraint[constraint].link
+    if users.user_kind[user] >= USER_TENDON:
+        return False
+    a = users.user_link_a[user]
+    b = users.user_link_b[user]
+    if a >= 0 and counts_as_moving(model, a):
+        return False
+    return b < 0 or not counts_as_moving(model, b)
 
 
 @func

@@ -10,7 +10,13 @@ All this depends on the overlaps and user constraints only; it is kept until the
 import warp as wp
 
 from carom.kernels.maths.union_find import find_root
-from carom.kernels.solver.activity import is_absent, is_in_force, is_left_out, link_moves
+from carom.kernels.solver.activity import (
+    counts_as_moving,
+    is_absent,
+    is_in_force,
+    is_left_out,
+    ties_still_links,
+)
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func
 from carom.layouts.contacts import OVERLAPS
@@ -21,7 +27,7 @@ NONE = wp.constant(-1)
 @func
 def join(model: Model, pair_rows: PairRows, world: Int32, a: Int32, b: Int32):
     """Join the islands of two links, if both can move; as in Bullet, b's root stays a root."""
-    if a >= 0 and b >= 0 and link_moves(model, a) and link_moves(model, b):
+    if a >= 0 and b >= 0 and counts_as_moving(model, a) and counts_as_moving(model, b):
         root = find_root(pair_rows.link_root, world, a)
         pair_rows.link_root[world, root] = find_root(pair_rows.link_root, world, b)
 
@@ -56,7 +62,7 @@ def join_links(
         before = Int32(NONE)
         first = model.tree[tree].first_link
         for link in range(first, first + model.tree[tree].link_count):
-            if link_moves(model, link):
+            if counts_as_moving(model, link):
                 join(model, pair_rows, world, before, link)
                 before = link
     for user in range(settings.user_count):
@@ -74,7 +80,7 @@ def number_islands(settings: Settings, model: Model, state: State, pair_rows: Pa
         if is_absent(state, world, tree):
             link = first - 1
         while link >= first:
-            if link_moves(model, link):
+            if counts_as_moving(model, link):
                 number = model.link[find_root(pair_rows.link_root, world, link)].number
                 link = first
             link -= 1
@@ -83,7 +89,13 @@ def number_islands(settings: Settings, model: Model, state: State, pair_rows: Pa
 
 @func
 def count_rows(
-    settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32, manifolds: Int32
+    settings: Settings,
+    model: Model,
+    state: State,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+    manifolds: Int32,
 ):
     """Count manifolds and constraints of each island that is awake in `number_size`; -1 for other numbers."""
     for number in range(settings.link_count):
@@ -96,20 +108,28 @@ def count_rows(
         pair_rows.number_size[world, pair_rows.order_island[world, place]] += 1
     for constraint in range(settings.constraint_count):
         number = pair_rows.tree_number[world, model.constraint[constraint].tree]
+        if ties_still_links(model, users, constraint):
+            number = Int32(NONE)
         if number >= 0 and pair_rows.number_size[world, number] >= 0:
             pair_rows.number_size[world, number] += 1
 
 
 @func
 def batch_islands(
-    settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32, manifolds: Int32
+    settings: Settings,
+    model: Model,
+    state: State,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+    manifolds: Int32,
 ):
     """Find which islands are solved together, and write the first tree of each batch to `batch_tree`.
 
     In order of their numbers, islands are added to a batch until it has more manifolds and constraints than
     the minimum. The manifolds, sorted by island, are the first of `order_row`.
     """
-    count_rows(settings, model, state, pair_rows, world, manifolds)
+    count_rows(settings, model, state, users, pair_rows, world, manifolds)
     batch = Int32(0)
     size = Int32(0)
     for number in range(settings.link_count):

@@ -157,8 +157,8 @@ def parting_from_forces(
 
 @func
 def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, point: Vector3) -> Vector3:
-    """Velocity of a point that moves with a fixed base, which no impulse changes; 0 for free bases."""
-    if model.tree[tree].fixed == 0:
+    """Velocity of a point that moves with a fixed base, which no impulse changes; 0 for others and -1."""
+    if tree < 0 or model.tree[tree].fixed == 0:
         return Vector3(0.0, 0.0, 0.0)
     reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
     turning = wp.cross(base_omega(model, state, world, tree), point - reference)
@@ -167,8 +167,10 @@ def carried_velocity(model: Model, state: State, world: Int32, tree: Int32, poin
 
 @func
 def carried_spin(model: Model, state: State, world: Int32, tree: Int32) -> Vector3:
-    """Angular velocity of a fixed base; 0 for free bases."""
-    return Vector3(0.0, 0.0, 0.0) if model.tree[tree].fixed == 0 else base_omega(model, state, world, tree)
+    """Angular velocity of a fixed base; 0 for other bases and -1."""
+    if tree < 0 or model.tree[tree].fixed == 0:
+        return Vector3(0.0, 0.0, 0.0)
+    return base_omega(model, state, world, tree)
 
 
 @func

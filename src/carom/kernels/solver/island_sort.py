@@ -6,8 +6,8 @@ Before each step Bullet sorts its lists of constraints (motors, limits, user con
 
 import warp as wp
 
-from carom.kernels.solver.activity import is_absent
-from carom.kernels.structs import Model, PairRows, Settings, State
+from carom.kernels.solver.activity import is_absent, ties_still_links
+from carom.kernels.structs import Model, PairRows, Settings, State, UserConstraints
 from carom.kernels.types import Int32, func
 
 # Stack of ranges that are still to be sorted, as pairs of bounds. As the longer range is pushed each time, it
@@ -63,7 +63,14 @@ def sort_by_island(pair_rows: PairRows, world: Int32, count: Int32):
 
 
 @func
-def sort_constraints(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
+def sort_constraints(
+    settings: Settings,
+    model: Model,
+    state: State,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+):
     """Write the constraints to `batch_constraint` in the order of relaxation, those of absent trees last."""
     for constraint in range(settings.constraint_count):
         pair_rows.order_row[world, model.constraint[constraint].place] = constraint
@@ -78,7 +85,10 @@ def sort_constraints(settings: Settings, model: Model, state: State, pair_rows: 
             state.batch_constraint[world, last] = constraint
         else:
             pair_rows.order_row[world, count] = constraint
-            pair_rows.order_island[world, count] = pair_rows.tree_number[world, tree]
+            number = pair_rows.tree_number[world, tree]
+            if ties_still_links(model, users, constraint):
+                number = Int32(-1)
+            pair_rows.order_island[world, count] = number
             count += 1
     sort_by_island(pair_rows, world, count)
     for place in range(count):

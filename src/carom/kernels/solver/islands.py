@@ -7,7 +7,14 @@ constraints and contacts, in the order in which they are relaxed.
 import warp as wp
 
 from carom.kernels.maths.union_find import find_root
-from carom.kernels.solver.activity import can_move, is_asleep, is_in_force, is_left_out, link_moves
+from carom.kernels.solver.activity import (
+    can_move,
+    is_asleep,
+    is_in_force,
+    is_left_out,
+    link_moves,
+    ties_still_links,
+)
 from carom.kernels.solver.bullet_islands import batch_islands, join_links, number_islands
 from carom.kernels.solver.contact_order import list_contacts, sort_manifolds
 from carom.kernels.solver.island_sort import sort_constraints
@@ -93,9 +100,9 @@ def sort_rows(
         return
     join_links(settings, model, state, shapes, contacts, users, pair_rows, world)
     number_islands(settings, model, state, pair_rows, world)
-    sort_constraints(settings, model, state, pair_rows, world)
+    sort_constraints(settings, model, state, users, pair_rows, world)
     manifolds = sort_manifolds(model, state, shapes, contacts, pair_rows, world)
-    batch_islands(settings, model, state, pair_rows, world, manifolds)
+    batch_islands(settings, model, state, users, pair_rows, world, manifolds)
     contacts.count_contacts[world, SORTED] = wp.where(lasts == 1, manifolds + 1, -1 - manifolds)
 
 
@@ -115,7 +122,14 @@ def merge_moving(settings: Settings, state: State, pair_rows: PairRows, world: I
 
 
 @func
-def list_constraints(settings: Settings, model: Model, state: State, pair_rows: PairRows, world: Int32):
+def list_constraints(
+    settings: Settings,
+    model: Model,
+    state: State,
+    users: UserConstraints,
+    pair_rows: PairRows,
+    world: Int32,
+):
     """Make the linked list of constraints of each island; those of what cannot move are in none."""
     for tree in range(settings.tree_count):
         pair_rows.tree_first_constraint[world, tree] = _NONE
@@ -124,7 +138,8 @@ def list_constraints(settings: Settings, model: Model, state: State, pair_rows: 
         place -= 1
         constraint = state.batch_constraint[world, place]
         tree = model.constraint[constraint].tree
-        if model.tree[tree].dof_count > 0 and not is_left_out(state, world, tree):
+        moves = model.tree[tree].dof_count > 0 and not ties_still_links(model, users, constraint)
+        if moves and not is_left_out(state, world, tree):
             root = state.tree_island[world, tree]
             pair_rows.constraint_next[world, constraint] = pair_rows.tree_first_constraint[world, root]
             pair_rows.tree_first_constraint[world, root] = constraint
@@ -157,7 +172,7 @@ def build_islands(
     sort_rows(settings, model, state, shapes, contacts, users, pair_rows, world)
     find_resting_islands(settings, model, state, pair_rows, world)
     merge_moving(settings, state, pair_rows, world)
-    list_constraints(settings, model, state, pair_rows, world)
+    list_constraints(settings, model, state, users, pair_rows, world)
     list_contacts(settings, model, state, shapes, contacts, pair_rows, world)
 
 

@@ -2,6 +2,7 @@
 
 The rows are visited last to first in even sweeps and first to last in odd ones. Sweeps end when the maximum
 squared change of a row's velocity is at most the residual threshold, or after the maximum number of sweeps.
+As in Bullet, a row along which nothing can move changes by 0/0, and hides the changes of the rows before it.
 """
 
 import warp as wp
@@ -94,11 +95,21 @@ def joint_constraint_rows(
         i += stride;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {
+            // In a lane of several, whether this holds there. For one world nothing has to be chosen.
+            const auto is_out = after < own.lower || after > own.upper;
             // A negative greatest force exchanges the bounds: as in Bullet, the lower comes first.
-            after = after < own.lower ? own.lower : own.upper;
-            change = (after - before) / own.effective_mass;
-            after = before + change * own.effective_mass;
+            const auto bounded = wp::where(after < own.lower, own.lower, own.upper);
+            const auto moves = own.effective_mass != 0.0;
+            const auto bounded_change = wp::where(moves, (bounded - before) / own.effective_mass, 0.0);
+            change = wp::where(is_out, bounded_change, change);
+            after = wp::where(is_out, wp::where(moves, before + change * own.effective_mass, bounded), after);
         }
+        // As in Bullet, a row along which nothing can move changes by 0/0, or infinity where it is clamped.
+        auto shown = change;
+        if (own.effective_mass == 0.0)
+            shown = wp::where(own.effective_mass == 0.0, (after - before) / 0.0, change);
+        const auto square = shown * shown;
+        residual = wp::where(residual > square, residual, square);
         own.impulse = after;
         const auto* x = responses + own.response;
         auto* y = delta + own.delta;
@@ -112,8 +123,6 @@ def joint_constraint_rows(
         #pragma clang loop vectorize(disable)
         for (int block = 0; block < own.blocks; ++block)
             y[block] = wp::add(y[block], wp::mul(change, x[block]));
-        const auto square = change * change;
-        residual = square > residual ? square : residual;
     }
     return residual;
 """)
@@ -134,7 +143,8 @@ def relax_rows(
     so that the next row need not wait for the vectors; and clamping is a branch that is seldom taken.
 
     Returns:
-        The maximum change of a row's velocity, squared.
+        The maximum change of a row's velocity, squared; NaN after a row along which nothing can move, which
+        also hides what the rows before it have changed (`later_maximum`).
     """
     ...
 
@@ -155,10 +165,20 @@ def row_sweep(settings: Settings, scratch: Scratch, world: Int32, count: Int32, 
             scratch.block_response, world, first, count, stride,
         )  # fmt: skip
         inner += 1
-        if residual == 0.0:
+        if residual == 0.0 and count_stuck_rows(scratch, world, count) == 0:
             # No row has changed, so further inner sweeps would not change any.
             inner = settings.inner_iterations
     return residual
+
+
+@func
+def count_stuck_rows(scratch: Scratch, world: Int32, count: Int32) -> Int32:
+    """Along how many of the first `count` rows nothing can move, which hides changes of those before."""
+    stuck = Int32(0)
+    for row in range(count):
+        if scratch.row[world, row].effective_mass == 0.0:
+            stuck += 1
+    return stuck
 
 
 @func
@@ -178,7 +198,8 @@ def solve_joints(model: Model, settings: Settings, state: State, scratch: Scratc
     while searching:
         residual = row_sweep(settings, scratch, world, count, sweep)
         sweep += 1
-        searching = residual > settings.residual_threshold and sweep < settings.iterations
+        # NaN, after rows along which nothing can move, is not below the threshold.
+        searching = not residual <= settings.residual_threshold and sweep < settings.iterations
     keep_row_results(model, settings, state, scratch, world, root, count, sweep, residual)
 
 

@@ -21,6 +21,47 @@ from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
 
 
 @func
+def sweep_over_visits(
+    scratch: Scratch, pair_rows: PairRows, world: Int32, visits: Int32, sweep: Int32
+) -> real:
+    """Relax the rows in `visit_row` once; returns as `visit_sweep`.
+
+    Rows of motors and limits that follow each other are relaxed in one go.
+    """
+    residual = real(0.0)
+    place = Int32(0)
+    stride = Int32(1)
+    if sweep % 2 == 0:
+        place = visits - 1
+        stride = Int32(-1)
+    while place >= 0 and place < visits:
+        row = pair_rows.visit_row[world, place]
+        place += stride
+        if row >= 0:
+            count = Int32(1)
+            following = row + stride
+            # Before row 0 is none: -1 stands for a row of a user constraint.
+            while (
+                following >= 0
+                and place >= 0
+                and place < visits
+                and pair_rows.visit_row[world, place] == following
+            ):
+                count += 1
+                following += stride
+                place += stride
+            square = relax_rows(
+                scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
+                scratch.block_response, world, row, count, stride,
+            )  # fmt: skip
+            residual = later_maximum(residual, square)
+        else:
+            change = relax_pair_row(scratch, pair_rows, world, -1 - row)
+            residual = later_maximum(residual, change * change)
+    return residual
+
+
+@func
 def visit_sweep(
     settings: Settings,
     scratch: Scratch,
@@ -44,24 +85,7 @@ def visit_sweep(
     inner = Int32(0)
     while inner < settings.inner_iterations:
         inner += 1
-        residual = real(0.0)
-        place = Int32(0)
-        stride = Int32(1)
-        if sweep % 2 == 0:
-            place = visits - 1
-            stride = Int32(-1)
-        while place >= 0 and place < visits:
-            row = pair_rows.visit_row[world, place]
-            place += stride
-            if row >= 0:
-                square = relax_rows(
-                    scratch.row, scratch.row_share, scratch.row_softness, scratch.delta_velocity,
-                    scratch.block_response, world, row, 1, stride,
-                )  # fmt: skip
-                residual = later_maximum(residual, square)
-            else:
-                change = relax_pair_row(scratch, pair_rows, world, -1 - row)
-                residual = later_maximum(residual, change * change)
+        residual = sweep_over_visits(scratch, pair_rows, world, visits, sweep)
         if residual == 0.0:
             # No row has changed, so further inner sweeps would not change any.
             inner = settings.inner_iterations

@@ -6,6 +6,7 @@ from carom.kernels.dynamics.motors import euler_xyz
 from carom.kernels.maths.blocks import add_multiple, dot_product, fill_zero, write_multiple
 from carom.kernels.maths.rotation import column, rotation_matrix
 from carom.kernels.solver.activity import is_in_force
+from carom.kernels.solver.contact_terms import carried_spin, carried_velocity
 from carom.kernels.solver.pair_rows import place_row, tree_blocks, write_pair_jacobian, write_row
 from carom.kernels.structs import Model, PairRows, Scratch, Settings, State, UserConstraints
 from carom.kernels.tendons.compliance import inverse_mass_of, write_compliant_row, write_holding_row
@@ -150,6 +151,10 @@ def add_user_rows(
     turned = euler_xyz(rotation_matrix(wp.quat_inverse(frame_b) * frame_a))
     directions = held_directions(state, users, world, user, axes)
 
+    carried = carried_velocity(model, state, world, ends[0], point_a) - carried_velocity(
+        model, state, world, ends[2], point_b
+    )
+    spin = carried_spin(model, state, world, ends[0]) - carried_spin(model, state, world, ends[2])
     size = error_size(users.user_kind[user], apart, turned)
     for i in range(user_row_count(users.user_kind[user])):
         linear, angular, axis = pose_row(users.user_kind[user], directions, axes, i)
@@ -157,6 +162,7 @@ def add_user_rows(
         inverse_mass, velocity, block = write_pair_jacobian(
             model, state, scratch, pair_rows, world, row, block, ends, point_a, point_b, linear, angular
         )
+        velocity += wp.dot(carried, linear) + wp.dot(spin, angular)
         if is_friction:
             bound = settings.time_step * users.user_range[user][2]
             write_compliant_row(

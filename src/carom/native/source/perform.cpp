@@ -7,22 +7,23 @@
 #include "perform.h"
 
 #include "lane_motion.h"
+#include "lane_sweeps.h"
 
 namespace {
 
 // The parts of a program.
 enum { BEGINNING, DETECTION, MOTION, END, ABANDONED };
 
-// With `lanes`, free motion continues with the results that these handed over.
-bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status,
-             const LaneMotion* lanes = nullptr) {
+void perform(const WorldCall& launch, int world, int substeps) {
+    *launch.first_world = world;
+    if (launch.substeps)
+        *launch.substeps = substeps;
+    run(launch.call);
+}
+
+bool perform(const Program& program, int64_t from, int64_t to, int world, int substeps, const int32_t* status) {
     for (int64_t i = from; i < to; ++i) {
-        const bool is_continued = lanes && program.launches[i].call.function == lanes->free_motion;
-        const WorldCall& launch = is_continued ? lanes->continued : program.launches[i];
-        *launch.first_world = world;
-        if (launch.substeps)
-            *launch.substeps = substeps;
-        run(launch.call);
+        perform(program.launches[i], world, substeps);
         if (status && status[status::STATUS])
             return false;
     }
@@ -33,7 +34,20 @@ int32_t* status_of(const Run& run, int world) {
     return reinterpret_cast<int32_t*>(run.program->status + world * run.program->status_stride);
 }
 
-bool take_step(const Run& run, int world, int step, const LaneMotion* lanes = nullptr) {
+// Ends a step: returns whether it went well; if it did not, it is undone.
+bool end_step(const Run& run, const Program& program, int world, int step, int substeps, bool well) {
+    int32_t* status = status_of(run, world);
+    if (well) {
+        status[status::STEPS_DONE] = step + 1;
+        return true;
+    }
+    if (run.repeatable)
+        status[status::STATUS] = status::OVERFLOW;
+    perform(program, program.part_ends[END], program.part_ends[ABANDONED], world, substeps, nullptr);
+    return false;
+}
+
+bool take_step(const Run& run, int world, int step) {
     const Program& program = *run.program;
     const int64_t* ends = program.part_ends;
     int32_t* status = status_of(run, world);
@@ -41,17 +55,10 @@ bool take_step(const Run& run, int world, int step, const LaneMotion* lanes = nu
     const int64_t round_end = substeps > 0 ? ends[MOTION] : ends[DETECTION];
     bool well = run.first_substep > 0 || perform(program, 0, ends[BEGINNING], world, substeps, status);
     for (int k = run.first_substep; well && k < run.end_substep && k < rounds; ++k)
-        well = perform(program, ends[BEGINNING], round_end, world, substeps, status, lanes);
+        well = perform(program, ends[BEGINNING], round_end, world, substeps, status);
     if (well && run.end_substep >= rounds)
         well = perform(program, ends[MOTION], ends[END], world, substeps, status);
-    if (!well) {
-        if (run.repeatable)
-            status[status::STATUS] = status::OVERFLOW;
-        perform(program, ends[END], ends[ABANDONED], world, substeps, nullptr);
-        return false;
-    }
-    status[status::STEPS_DONE] = step + 1;
-    return true;
+    return end_step(run, program, world, step, substeps, well);
 }
 
 void take_through_steps(const Run& run, int world) {
@@ -71,7 +78,50 @@ bool move_at_once(const Run& run, int from, int end) {
     return true;
 }
 
-// Takes worlds through their steps together: for steps of a single substep, the free motion of all is computed first.
+// Takes the rest of a step of one substep, from the rows on: `solve` solves them, or keeps what they were solved to.
+bool finish_step(const Run& run, const LaneWorld& lane, const WorldCall& solve, int world, int step) {
+    const int32_t* status = status_of(run, world);
+    perform(solve, world, 1);
+    const bool well = !status[status::STATUS]
+        && perform(lane.program, run.lanes->solving, lane.program.part_ends[END], world, 1, status);
+    return end_step(run, lane.program, world, step, 1, well);
+}
+
+// After this many steps in a row with rows that could not be relaxed together, lanes share a workspace, which stays in the
+// processor's caches; every so often they try it again.
+constexpr int64_t PATIENCE = 16, PAUSE = 64;
+
+// Takes a step of one substep of the worlds from `first` on that are going. Those whose rows can be relaxed together
+// wait for each other, unless one of them cannot.
+void take_step_together(const Run& run, int first, int step, bool (&is_going)[LANES]) {
+    const LaneMotion& lanes = *run.lanes;
+    const bool is_shared = *lanes.steps_apart >= PATIENCE && *lanes.steps_apart % PAUSE != 0;
+    bool is_waiting[LANES], all_wait = !is_shared;
+    for (int i = 0; i < LANES; ++i) {
+        is_waiting[i] = false;
+        if (is_going[i]) {
+            const int own = is_shared ? 0 : i;
+            const LaneWorld& lane = lanes.worlds[own];
+            hand_over_motion(lanes, i, own);
+            if (!perform(lane.program, 0, lanes.solving, first + i, 1, status_of(run, first + i)))
+                is_going[i] = end_step(run, lane.program, first + i, step, 1, false);
+            else if (all_wait && lane.waiting[WAITING_ROOT] >= 0)
+                is_waiting[i] = true;
+            else
+                is_going[i] = finish_step(run, lane, lane.solve, first + i, step);
+        }
+        all_wait &= is_waiting[i];
+    }
+    const bool together = all_wait && relax_together(lanes);
+    *lanes.steps_apart = together ? 0 : *lanes.steps_apart + 1;
+    for (int i = 0; i < LANES; ++i) {
+        const LaneWorld& lane = lanes.worlds[i];
+        if (is_waiting[i])
+            is_going[i] = finish_step(run, lane, together ? lane.keep : lane.solve, first + i, step);
+    }
+}
+
+// Takes worlds through their steps together; steps of several substeps one world at a time.
 void take_through_steps_together(const Run& run, int first) {
     bool is_going[LANES];
     for (int lane = 0; lane < LANES; ++lane) {
@@ -79,14 +129,12 @@ void take_through_steps_together(const Run& run, int first) {
         status_of(run, first + lane)[status::STEPS_DONE] = 0;
     }
     for (int step = 0; step < run.step_count; ++step) {
-        const LaneMotion* lanes = run.due[step] == 1 && prepare_motion(*run.lanes, first) ? run.lanes : nullptr;
-        for (int lane = 0; lane < LANES; ++lane) {
-            if (!is_going[lane])
-                continue;
-            if (lanes)
-                hand_over_motion(*lanes, lane);
-            is_going[lane] = take_step(run, first + lane, step, lanes);
+        if (run.due[step] == 1 && prepare_motion(*run.lanes, first)) {
+            take_step_together(run, first, step, is_going);
+            continue;
         }
+        for (int lane = 0; lane < LANES; ++lane)
+            is_going[lane] = is_going[lane] && take_step(run, first + lane, step);
     }
 }
 
