@@ -253,25 +253,31 @@ class JointConstraints:
 
 def moving_links(body: Body) -> list[bool]:
     """Which links, base first, are not rigidly connected to a fixed base."""
-    moving = [not body.fixed_base]
+    return _moving_links(body, fixed_base=body.fixed_base)
+
+
+def _moving_links(body: Body, *, fixed_base: bool) -> list[bool]:
+    moving = [not fixed_base]
     for link, code in zip(body.spec.links, body.joint_types, strict=True):
         moving.append(moving[link.parent + 1] or code != JointCode.FIXED)
     return moving
 
 
 def island_links(body: Body) -> list[bool]:
-    """Which links, base first, belong to islands: `moving_links`, but for some of a fixed base.
+    """Which links, base first, belong to islands: `moving_links`, but for some of fixed bases.
 
     Bullet takes a link on fixed joints for still if they lead to the base or, as its search ends there, to
-    the first link, whether this moves or not. So contacts and constraints of such a link with what cannot
-    move have no effect. Bodies that are read as written do not follow it.
+    the first link, whether this moves or not. It does so when the body is loaded, so such a link stays
+    still when the base is freed. Contacts and constraints of such a link with what cannot move have no
+    effect. Bodies that are read as written do not follow it.
     """
-    moving = moving_links(body)
-    if not body.fixed_base or not body.spec.is_held:
-        return moving
+    if not body.spec.fixed_base or not body.spec.is_held:
+        return moving_links(body)
+    moving = _moving_links(body, fixed_base=True)
     still = [True]
     for link, code in zip(body.spec.links[1:], body.joint_types[1:], strict=True):
         still.append(code == JointCode.FIXED and link.parent >= 0 and still[link.parent])
     # The first link itself moves if its joint does.
     still[0] = False
-    return [moving[0], *(moves and not is_still for moves, is_still in zip(moving[1:], still, strict=False))]
+    links = [moves and not is_still for moves, is_still in zip(moving[1:], still, strict=False)]
+    return [not body.fixed_base, *links]

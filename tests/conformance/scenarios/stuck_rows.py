@@ -175,3 +175,29 @@ def motors_that_move_no_mass(p: Any) -> dict[str, Any]:
         p.setJointMotorControl2(body, link, p.VELOCITY_CONTROL, targetVelocity=0.2, force=force)
         results |= under(name, _result(p, body))
     return results
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def bodies_without_a_moment_of_inertia(p: Any) -> dict[str, Any]:
+    """Nothing turns a single body one of whose moments of inertia is 0, neither a torque nor a constraint."""
+    results: dict[str, Any] = {}
+    for moments in ([3, 3, 0], [0, 0.1, 0.2], [0.1, 0, 0], [0.1, 0.2, 0.3]):
+        p.resetSimulation()
+        p.setGravity(0.5, -1.0, -9.8)
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.05, 0.04, 0.1])
+        body = p.createMultiBody(0.5, box, -1, [0, 0, 1])
+        p.changeDynamics(body, -1, localInertiaDiagonal=moments)
+        p.resetBaseVelocity(body, [0.1, 0.2, 0.3], [1.0, -2.0, 0.5])
+        p.createConstraint(
+            body, -1, -1, -1, p.JOINT_POINT2POINT, [0, 0, 1], [-0.1, 0.2, -0.3], [-0.2, 0.1, 0.6]
+        )
+
+        def motion(body: int = body) -> dict[str, Any]:
+            p.applyExternalTorque(body, -1, [0.1, 0.2, 0.3], p.WORLD_FRAME)
+            return {
+                "positions": sum(p.getBasePositionAndOrientation(body), ()),
+                "velocities": sum(p.getBaseVelocity(body), ()),
+            }
+
+        results |= under(str(moments), simulate(p, 0.1, motion, stride=4))
+    return results

@@ -93,10 +93,10 @@ def has_woken(state: State, world: Int32, tree: Int32) -> bool:
 
 @func
 def squared_motion(model: Model, state: State, world: Int32, tree: Int32) -> real:
-    """Sum of the squared velocities of a tree."""
+    """Sum of the squared velocities of a tree, also of one that a fixed base was given."""
     motion = real(0.0)
-    dof = model.tree[tree].first_dof
-    end = dof + model.tree[tree].dof_count
+    dof = model.tree[tree].first_velocity
+    end = model.tree[tree].first_dof + model.tree[tree].dof_count
     while dof < end:
         motion += state.dof_velocity[world, dof] * state.dof_velocity[world, dof]
         dof += 1
@@ -108,4 +108,12 @@ def stop(model: Model, state: State, world: Int32, tree: Int32):
     """Set the velocities of a tree's dofs to zero."""
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
+        state.dof_velocity[world, dof] = 0.0
+
+
+@func
+def stop_with_base(model: Model, state: State, world: Int32, tree: Int32):
+    """As `stop`, also the velocity that a fixed base was given."""
+    first = model.tree[tree].first_velocity
+    for dof in range(first, model.tree[tree].first_dof + model.tree[tree].dof_count):
         state.dof_velocity[world, dof] = 0.0
