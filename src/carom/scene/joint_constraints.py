@@ -264,15 +264,18 @@ def _moving_links(body: Body, *, fixed_base: bool) -> list[bool]:
 
 
 def island_links(body: Body) -> list[bool]:
-    """Which links, base first, belong to islands: `moving_links`, but for some of fixed bases.
+    """Which links, base first, belong to islands.
 
-    Bullet takes a link on fixed joints for still if they lead to the base or, as its search ends there, to
-    the first link, whether this moves or not. It does so when the body is loaded, so such a link stays
-    still when the base is freed. Contacts and constraints of such a link with what cannot move have no
-    effect. Bodies that are read as written do not follow it.
+    For bodies that are read as written these are `moving_links`. Bullet decides when it loads a body which
+    links are still, and freeing or fixing the base later changes that for the base alone: none if the base
+    was free, else those on fixed joints that lead to the base or, as its search ends there, to the first
+    link, whether this moves or not. Contacts and constraints of links that count as still with what cannot
+    move have no effect.
     """
-    if not body.spec.fixed_base or not body.spec.is_held:
+    if not body.spec.is_held:
         return moving_links(body)
+    if not body.spec.fixed_base:
+        return [not body.fixed_base, *[True] * body.joint_count]
     moving = _moving_links(body, fixed_base=True)
     still = [True]
     for link, code in zip(body.spec.links[1:], body.joint_types[1:], strict=True):
