@@ -201,3 +201,48 @@ def bodies_without_a_moment_of_inertia(p: Any) -> dict[str, Any]:
 
         results |= under(str(moments), simulate(p, 0.1, motion, stride=4))
     return results
+
+
+def _motion(p: Any, body: int) -> dict[str, Any]:
+    """Base and joints of a robot."""
+    position, orientation = p.getBasePositionAndOrientation(body)
+    linear, angular = p.getBaseVelocity(body)
+    joints = [p.getJointState(body, joint) for joint in range(p.getNumJoints(body))]
+    return {
+        "positions": [*position, *(state[0] for state in joints)],
+        "orientation": orientation,
+        "velocities": [*linear, *angular, *(state[1] for state in joints)],
+    }
+
+
+@scenario(tolerance={"positions": 1e-8, "orientation": 1e-8, "velocities": 1e-6})
+def constraints_of_freed_bodies(p: Any) -> dict[str, Any]:
+    """Links that were still when their body was loaded stay so for constraints; no others become so."""
+    results: dict[str, Any] = {}
+    chains = {
+        "fixed first": [(FIXED, 0), (TURN, 1), (FIXED, 2)],
+        "fixed last": [(TURN, 0), (FIXED, 1), (FIXED, 2)],
+    }
+    for name, joints in chains.items():
+        for loaded, *masses in (
+            [0.0, 1.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0, 1.0],
+            [1.0, 0.0],
+            [1.0, 0.0, 1.0],
+        ):
+            for link in (-1, 0, 1, 2):
+                _start(p)
+                body = _robot(p, loaded, joints)
+                for mass in masses:
+                    p.changeDynamics(body, -1, mass=mass)
+                p.createConstraint(
+                    body, link, -1, -1, p.JOINT_POINT2POINT, [0, 0, 1], [0, 0.1, 0], [0.2, 0.1, 1.8]
+                )
+                first = p.stepSimulation()
+                case = {
+                    "sweeps": [island["numIterationsUsed"] for island in first],
+                    "bodies": [island["numBodies"] for island in first],
+                } | simulate(p, 0.03, lambda body=body: _motion(p, body))
+                results |= under(f"{name}, link {link}, masses {[loaded, *masses]}", case)
+    return results
