@@ -88,6 +88,7 @@ NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
+_MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 
 
 def error(seen: Seen) -> str:
@@ -143,11 +144,15 @@ def aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
     """Whether position control of one number drives a spherical joint."""
     joints = balls(seen)
     return any(
-        call["f"] == "setJointMotorControl2"
+        call["f"] in _MOTORS
         and call["a"][2] == _POSITION_CONTROL
-        and (call["a"][0]["$"], call["a"][1]) in joints
+        and any((call["a"][0]["$"], joint) in joints for joint in _listed(call["a"][1]))
         for call in seen.before
     )
+
+
+def _listed(joints: int | list[int]) -> list[int]:
+    return joints if isinstance(joints, list) else [joints]
 
 
 def starts_with_a_ball_joint(seen: Seen) -> bool:
