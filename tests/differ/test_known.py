@@ -315,6 +315,9 @@ def test_joints_are_numbered_with_children_after_their_parent():
     aims = [call(1, "setJointMotorControl2", BODY, link, 2, targetPosition=1) for link in range(4)]
     known = [is_known([body, aim, PROBE], "positions.0.0", 0.0, 0.1) for aim in aims]
     assert known == [True, False, True, False]
+    several = [call(1, "setJointMotorControlArray", BODY, links, 2) for links in ([1, 2], [1, 3])]
+    known = [is_known([body, aim, PROBE], "positions.0.0", 0.0, 0.1) for aim in several]
+    assert known == [True, False]
 
 
 @pytest.mark.parametrize(

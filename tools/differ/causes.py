@@ -66,14 +66,14 @@ _ROUND = frozenset({2, 4, 7})
 _LONG_AND_ROUND = frozenset({4, 7})
 _LABELS_OF_A_LINK = 1 << 24
 _NO_LABELS = 4
-_TOUCHES_ITSELF = 8
-_MAKE = ("load", "createMultiBody")
+TOUCHES_ITSELF = 8
+MAKE = ("load", "createMultiBody")
 _SEVERAL_BODIES = frozenset({"loadSDF", "loadMJCF"})
 _SAME_SHADE = 12.0
 _NEAR_PLANE_OF_SHADOWS = 0.05
 _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
-_LEFT_OVER = 1e-4
+LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
 SEEN_TO_BE_NEARER = 1e-6
@@ -88,6 +88,7 @@ NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
 NOT_A_GEAR, NO_SUCH_LINK = "of a gear has to be", "has no link"
 GLOBAL_VELOCITIES = 256
 _POSITION_CONTROL = 2
+_MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 
 
 def error(seen: Seen) -> str:
@@ -100,7 +101,7 @@ def pybullet_raises(seen: Seen) -> bool:
     return seen.difference.place.field == "error/ok"
 
 
-def _joint_types(seen: Seen) -> dict[int, list[int]]:
+def joint_types(seen: Seen) -> dict[int, list[int]]:
     """The types of the joints of bodies, by the call that made the body."""
     types = {call["id"]: _types_in_order(call) for call in seen.before}
     for call in seen.before:
@@ -126,14 +127,14 @@ def _types_in_order(call: Call) -> list[int]:
 
 def has_joints(seen: Seen, call: Call) -> bool:
     """Whether the body that a call makes has joints that move."""
-    return any(kind != FIXED for kind in _joint_types(seen).get(call["id"], ()))
+    return any(kind != FIXED for kind in joint_types(seen).get(call["id"], ()))
 
 
-def _balls(seen: Seen) -> set[tuple[int, int]]:
+def balls(seen: Seen) -> set[tuple[int, int]]:
     """The spherical joints of bodies: the call that made the body, and the joint."""
     return {
         (body, joint)
-        for body, joints in _joint_types(seen).items()
+        for body, joints in joint_types(seen).items()
         for joint, kind in enumerate(joints)
         if kind == SPHERICAL
     }
@@ -141,19 +142,23 @@ def _balls(seen: Seen) -> set[tuple[int, int]]:
 
 def aims_a_ball_joint_by_a_number(seen: Seen) -> bool:
     """Whether position control of one number drives a spherical joint."""
-    balls = _balls(seen)
+    joints = balls(seen)
     return any(
-        call["f"] == "setJointMotorControl2"
+        call["f"] in _MOTORS
         and call["a"][2] == _POSITION_CONTROL
-        and (call["a"][0]["$"], call["a"][1]) in balls
+        and any((call["a"][0]["$"], joint) in joints for joint in _listed(call["a"][1]))
         for call in seen.before
     )
+
+
+def _listed(joints: int | list[int]) -> list[int]:
+    return joints if isinstance(joints, list) else [joints]
 
 
 def starts_with_a_ball_joint(seen: Seen) -> bool:
     """Whether inverse kinematics of a body with a spherical joint is given `currentPositions`."""
     asks = seen.call["f"].startswith("calculateInverseKinematics") and "currentPositions" in seen.call["k"]
-    return asks and any(body == seen.call["a"][0].get("$") for body, _ in _balls(seen))
+    return asks and any(body == seen.call["a"][0].get("$") for body, _ in balls(seen))
 
 
 def _poses(seen: Seen) -> Iterator[Call]:
@@ -165,7 +170,7 @@ def _poses(seen: Seen) -> Iterator[Call]:
 
 def limits_what_has_none(seen: Seen) -> bool:
     """Whether `changeDynamics` gave limits to a fixed or spherical joint."""
-    types = _joint_types(seen)
+    types = joint_types(seen)
     return any(
         call["f"] == "changeDynamics"
         and {"jointLowerLimit", "jointUpperLimit"} <= call["k"].keys()
@@ -183,7 +188,7 @@ def _type_of(types: dict[int, list[int]], arguments: list[Any]) -> int | None:
 
 def starts_at_a_limit(seen: Seen) -> bool:
     """Whether a body has a joint that was loaded exactly at its limit, and states hardly differ."""
-    return seen.difference.place.error < _LEFT_OVER and any(
+    return seen.difference.place.error < LEFT_OVER and any(
         call["f"].startswith("load") and str(call["a"][0]) in AT_LIMITS for call in seen.before if call["a"]
     )
 
@@ -215,7 +220,7 @@ def holds_half_a_turn(seen: Seen) -> bool:
     """Whether a constraint of poses, or the motor of a spherical joint, turns back exactly 180 degrees."""
     if any(
         call["f"] == "resetJointStateMultiDof"
-        and (call["a"][0].get("$"), call["a"][1]) in _balls(seen)
+        and (call["a"][0].get("$"), call["a"][1]) in balls(seen)
         and _half_turned(call["a"][2])
         for call in seen.before
     ):
@@ -231,7 +236,7 @@ def aims_half_a_turn_away(seen: Seen) -> bool:
     """Whether the motor of a spherical joint was given half a turn as its target."""
     return any(
         call["f"] == "setJointMotorControlMultiDof"
-        and (call["a"][0].get("$"), call["a"][1]) in _balls(seen)
+        and (call["a"][0].get("$"), call["a"][1]) in balls(seen)
         and _half_turned(call["k"].get("targetPosition"))
         for call in seen.before
     )
@@ -437,7 +442,7 @@ def shades_as_a_ball(seen: Seen) -> bool:
         return False
     if seen.call["k"].get("flags", 0) & _NO_LABELS:
         # Nothing says which body it is.
-        bodies = [call for call in seen.before if call["f"].startswith(_MAKE)]
+        bodies = [call for call in seen.before if call["f"].startswith(MAKE)]
     else:
         body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
         bodies = [] if body is None else [body]
@@ -471,7 +476,7 @@ def _maker_of(seen: Seen, label: int) -> Call | None:
     """The call that made the body with a label in images."""
     number = label % _LABELS_OF_A_LINK
     for call in seen.before if label >= 0 else ():
-        if call["f"].startswith(_MAKE):
+        if call["f"].startswith(MAKE):
             number -= len(FILES.get(call["a"][0], ((),))) if call["f"] in _SEVERAL_BODIES else 1
             if number < 0:
                 return call
@@ -524,9 +529,9 @@ def casts_shadows(seen: Seen) -> bool:
 
 def comes_near_bare_links(seen: Seen) -> bool:
     """Whether two bodies that move may be one island by links without shapes, and states hardly differ."""
-    if seen.difference.phase != "free" or seen.difference.place.error > _LEFT_OVER:
+    if seen.difference.phase != "free" or seen.difference.place.error > LEFT_OVER:
         return False
-    types = _joint_types(seen)
+    types = joint_types(seen)
     bare, moving = False, 0
     for call in seen.before:
         name = call["a"][0] if call["f"].startswith("load") and call["a"] else None
@@ -550,7 +555,7 @@ def touches_itself_rigidly(seen: Seen) -> bool:
 
 def _is_rigid(seen: Seen, body: Call | None) -> bool:
     """Whether the body that a call makes may touch itself, and has no joint that moves."""
-    return body is not None and body["k"].get("flags", 0) & _TOUCHES_ITSELF > 0 and not has_joints(seen, body)
+    return body is not None and body["k"].get("flags", 0) & TOUCHES_ITSELF > 0 and not has_joints(seen, body)
 
 
 def goes_on_with_masses(seen: Seen) -> bool:

@@ -21,6 +21,7 @@ from tools.differ.causes import (
     Seen,
     aims_a_ball_joint_by_a_number,
     aims_half_a_turn_away,
+    balls,
     casts_shadows,
     comes_near_bare_links,
     counts_hits,
@@ -60,6 +61,12 @@ from tools.differ.causes import (
 )
 from tools.differ.compare import Difference
 from tools.differ.programs import Call
+from tools.differ.row_causes import (
+    fixes_what_touches_itself,
+    renumbers_islands,
+    shares_with_a_limit,
+    ties_a_link_taken_for_still,
+)
 
 
 @dataclass(frozen=True)
@@ -224,13 +231,31 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "the same rotation with the other sign",
-        lambda seen: seen.differs("getLinkState") and is_the_same_rotation(seen),
+        lambda seen: seen.differs("getLinkState", "getJointInfo .15") and is_the_same_rotation(seen),
     ),
     Known(
-        "constraints to hold them there",
+        "constraints, and the motors of spherical joints, to hold them there",
         lambda seen: (
-            seen.differs("@probe") and seen.has("createConstraint") and turns_by_no_rotation(seen, 1)
+            seen.differs("@probe")
+            and (seen.has("createConstraint") or bool(balls(seen)))
+            and turns_by_no_rotation(seen, 1)
         ),
+    ),
+    Known(
+        "the limit takes a part of what the motor holds",
+        lambda seen: seen.differs("@probe") and shares_with_a_limit(seen),
+    ),
+    Known(
+        "PyBullet also unites links of one robot that may not touch each other",
+        lambda seen: seen.differs("@probe") and renumbers_islands(seen),
+    ),
+    Known(
+        "relaxes such a constraint to the end, and then the motors",
+        lambda seen: seen.differs("@probe") and ties_a_link_taken_for_still(seen),
+    ),
+    Known(
+        "and whose base `changeDynamics` has fixed",
+        lambda seen: seen.differs("@probe") and fixes_what_touches_itself(seen),
     ),
     Known(
         "In PyBullet motors keep the targets they have",

@@ -238,18 +238,24 @@ def moving_links(body: Body, *, free: bool | None = None) -> list[bool]:
 
 
 def island_links(body: Body, *, free: bool | None = None) -> list[bool]:
-    """Which links, base first, belong to islands: as `moving_links`, but for some of a fixed base.
+    """Which links, base first, belong to islands; `free` is as for `moving_links`.
 
-    Bullet takes a link on fixed joints for still if they lead to the base or, as its search ends there, to
-    the first link, whether this moves or not. So contacts and constraints of such a link with what cannot
-    move have no effect. Bodies that are read as written do not follow it.
+    For bodies that are read as written these are `moving_links`. Bullet decides when it loads a body which
+    links are still, and freeing or fixing the base later changes that for the base alone: none if the base
+    was free, else those on fixed joints that lead to the base or, as its search ends there, to the first
+    link, whether this moves or not. Contacts and constraints of links that count as still with what cannot
+    move have no effect.
     """
-    moving = moving_links(body, free=free)
-    if moving[0] or not body.spec.is_held:
-        return moving
+    if not body.spec.is_held:
+        return moving_links(body, free=free)
+    base_moves = not body.fixed_base if free is None else free
+    if not body.spec.fixed_base:
+        return [base_moves, *[True] * body.joint_count]
+    moving = moving_links(body, free=False)
     still = [True]
     for link, code in zip(body.spec.links[1:], body.joint_types[1:], strict=True):
         still.append(code == JointCode.FIXED and link.parent >= 0 and still[link.parent])
     # The first link itself moves if its joint does.
     still[0] = False
-    return [moving[0], *(moves and not is_still for moves, is_still in zip(moving[1:], still, strict=False))]
+    links = [moves and not is_still for moves, is_still in zip(moving[1:], still, strict=False)]
+    return [base_moves, *links]

@@ -191,3 +191,62 @@ def robots_fall_asleep(p: Any) -> dict[str, Any]:
 
         series |= under(name, simulate(p, 3.0, observe, act))
     return series
+
+
+def _slider(p: Any, base_mass: float) -> int:
+    """A box with another on a rail, which no motor holds."""
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.05, 0.04, 0.1])
+    body = p.createMultiBody(
+        base_mass,
+        box,
+        -1,
+        [0, 0, 2],
+        linkMasses=[1.0],
+        linkCollisionShapeIndices=[box],
+        linkVisualShapeIndices=[-1],
+        linkPositions=[[0.3, 0, 0.1]],
+        linkOrientations=[[0, 0, 0, 1]],
+        linkInertialFramePositions=[[0.02, 0, 0]],
+        linkInertialFrameOrientations=[[0, 0, 0, 1]],
+        linkParentIndices=[0],
+        linkJointTypes=[p.JOINT_PRISMATIC],
+        linkJointAxis=[[0, 0.6, 0.8]],
+    )
+    p.setJointMotorControl2(body, 0, p.VELOCITY_CONTROL, force=0)
+    return body
+
+
+def _fall_asleep(p: Any, body: int, also: int = 0) -> None:
+    _let_sleep(p, body, also=also)
+    p.changeDynamics(body, -1, activationState=p.ACTIVATION_STATE_SLEEP)
+
+
+def _whole_motion(p: Any, body: int) -> dict[str, Any]:
+    return {
+        "pose": sum(p.getBasePositionAndOrientation(body), ()),
+        "velocity": sum(p.getBaseVelocity(body), ()),
+        "joint": p.getJointState(body, 0)[:2],
+    }
+
+
+@scenario(tolerance=1e-9)
+def fixed_bases_with_a_velocity_sleep(p: Any) -> dict[str, Any]:
+    """The velocity of a fixed base wakes the body if it is fast, and is lost in sleep if it is slow."""
+    series: dict[str, Any] = {}
+    for name, speed in (("slow", 0.05), ("fast", 2.0)):
+        for wakes in (p.ACTIVATION_STATE_ENABLE_WAKEUP, p.ACTIVATION_STATE_DISABLE_WAKEUP):
+            p.resetSimulation()
+            body = _slider(p, 0.0)
+            _fall_asleep(p, body, also=wakes)
+            p.resetBaseVelocity(body, [0, 0, speed], [0, speed, 0])
+            motion = simulate(p, 0.05, lambda body=body: _whole_motion(p, body))
+            series |= under(f"{name}, wakes {wakes}", motion)
+    for mass in (1.0, 0.0):
+        p.resetSimulation()
+        p.setGravity(0, 0, -9.8)
+        body = _slider(p, 1.0)
+        p.stepSimulation()
+        p.changeDynamics(body, -1, mass=mass)
+        _fall_asleep(p, body)
+        series |= under(f"falls, mass {mass}", simulate(p, 0.05, lambda body=body: _whole_motion(p, body)))
+    return series

@@ -175,3 +175,74 @@ def motors_that_move_no_mass(p: Any) -> dict[str, Any]:
         p.setJointMotorControl2(body, link, p.VELOCITY_CONTROL, targetVelocity=0.2, force=force)
         results |= under(name, _result(p, body))
     return results
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def bodies_without_a_moment_of_inertia(p: Any) -> dict[str, Any]:
+    """Nothing turns a single body one of whose moments of inertia is 0, neither a torque nor a constraint."""
+    results: dict[str, Any] = {}
+    for moments in ([3, 3, 0], [0, 0.1, 0.2], [0.1, 0, 0], [0.1, 0.2, 0.3]):
+        p.resetSimulation()
+        p.setGravity(0.5, -1.0, -9.8)
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.05, 0.04, 0.1])
+        body = p.createMultiBody(0.5, box, -1, [0, 0, 1])
+        p.changeDynamics(body, -1, localInertiaDiagonal=moments)
+        p.resetBaseVelocity(body, [0.1, 0.2, 0.3], [1.0, -2.0, 0.5])
+        p.createConstraint(
+            body, -1, -1, -1, p.JOINT_POINT2POINT, [0, 0, 1], [-0.1, 0.2, -0.3], [-0.2, 0.1, 0.6]
+        )
+
+        def motion(body: int = body) -> dict[str, Any]:
+            p.applyExternalTorque(body, -1, [0.1, 0.2, 0.3], p.WORLD_FRAME)
+            return {
+                "positions": sum(p.getBasePositionAndOrientation(body), ()),
+                "velocities": sum(p.getBaseVelocity(body), ()),
+            }
+
+        results |= under(str(moments), simulate(p, 0.1, motion, stride=4))
+    return results
+
+
+def _motion(p: Any, body: int) -> dict[str, Any]:
+    """Base and joints of a robot."""
+    position, orientation = p.getBasePositionAndOrientation(body)
+    linear, angular = p.getBaseVelocity(body)
+    joints = [p.getJointState(body, joint) for joint in range(p.getNumJoints(body))]
+    return {
+        "positions": [*position, *(state[0] for state in joints)],
+        "orientation": orientation,
+        "velocities": [*linear, *angular, *(state[1] for state in joints)],
+    }
+
+
+@scenario(tolerance={"positions": 1e-8, "orientation": 1e-8, "velocities": 1e-6})
+def constraints_of_freed_bodies(p: Any) -> dict[str, Any]:
+    """Links that were still when their body was loaded stay so for constraints; no others become so."""
+    results: dict[str, Any] = {}
+    chains = {
+        "fixed first": [(FIXED, 0), (TURN, 1), (FIXED, 2)],
+        "fixed last": [(TURN, 0), (FIXED, 1), (FIXED, 2)],
+    }
+    for name, joints in chains.items():
+        for loaded, *masses in (
+            [0.0, 1.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0, 1.0],
+            [1.0, 0.0],
+            [1.0, 0.0, 1.0],
+        ):
+            for link in (-1, 0, 1, 2):
+                _start(p)
+                body = _robot(p, loaded, joints)
+                for mass in masses:
+                    p.changeDynamics(body, -1, mass=mass)
+                p.createConstraint(
+                    body, link, -1, -1, p.JOINT_POINT2POINT, [0, 0, 1], [0, 0.1, 0], [0.2, 0.1, 1.8]
+                )
+                first = p.stepSimulation()
+                case = {
+                    "sweeps": [island["numIterationsUsed"] for island in first],
+                    "bodies": [island["numBodies"] for island in first],
+                } | simulate(p, 0.03, lambda body=body: _motion(p, body))
+                results |= under(f"{name}, link {link}, masses {[loaded, *masses]}", case)
+    return results

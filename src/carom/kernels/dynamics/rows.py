@@ -77,12 +77,20 @@ def inverse_or_off(inverse_mass: real) -> real:
 
 @func
 def inverses_or_off(inverse_masses: Vector3) -> Vector3:
-    """As `inverse_or_off`, for three rows or moments of inertia."""
+    """As `inverse_or_off`, for three rows."""
     return Vector3(
         inverse_or_off(inverse_masses[0]),
         inverse_or_off(inverse_masses[1]),
         inverse_or_off(inverse_masses[2]),
     )
+
+
+@func
+def inverse_moments_or_off(moments: Vector3) -> Vector3:
+    """Inverses of a body's moments of inertia; 0 if one is too small, as then nothing turns it in Bullet."""
+    if wp.min(wp.min(moments[0], moments[1]), moments[2]) > MIN_INVERSE_MASS:
+        return Vector3(1.0 / moments[0], 1.0 / moments[1], 1.0 / moments[2])
+    return Vector3(0.0, 0.0, 0.0)
 
 
 @func

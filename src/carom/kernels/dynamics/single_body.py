@@ -22,7 +22,7 @@ from carom.kernels.dynamics.kinematics import (
     three_numbers,
 )
 from carom.kernels.dynamics.quarantine import report_fault
-from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
+from carom.kernels.dynamics.rows import inverse_moments_or_off, inverse_or_off
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.structs import Model, Scratch, Settings, State
 from carom.kernels.types import Int32, Matrix3, Vector3, Vector4, func, real
@@ -64,7 +64,7 @@ def move_single_body(
     mass = model.link_mass[world, link]
     inverse_mass = inverse_or_off(mass)
     rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
-    inverse_inertia = turned_inertia(rotation, inverses_or_off(moments))
+    inverse_inertia = turned_inertia(rotation, inverse_moments_or_off(moments))
 
     omega = base_omega(model, state, world, tree)
     velocity = base_velocity(model, state, world, tree)

@@ -16,7 +16,7 @@ from carom.kernels.dynamics.mass_matrix import invert
 from carom.kernels.dynamics.motors import explicit_pd
 from carom.kernels.dynamics.single_body import is_single_body, move_single_body
 from carom.kernels.dynamics.step_ends import begin_step, end_step
-from carom.kernels.solver.activity import has_woken, is_absent, is_left_out, stop
+from carom.kernels.solver.activity import has_woken, is_absent, is_left_out, stop, stop_with_base
 from carom.kernels.solver.joint_solver import (
     apply_delta_velocities,
     clear_delta_velocities,
@@ -89,7 +89,7 @@ def move_or_stop(settings: Settings, model: Model, state: State, scratch: Scratc
     """As `constrained_motion`, for one tree."""
     if is_left_out(state, world, tree):
         if not is_absent(state, world, tree):
-            stop(model, state, world, tree)
+            stop_with_base(model, state, world, tree)
         return
     if model.tree[tree].sensor_count > 0:
         constraint_feedback(model, settings, state, scratch, world, tree)

@@ -11,7 +11,7 @@ import warp as wp
 from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.kinematics import base_subspace
 from carom.kernels.dynamics.mass_matrix import invert
-from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
+from carom.kernels.dynamics.rows import inverse_moments_or_off, inverse_or_off
 from carom.kernels.dynamics.single_body import is_single_body, write_inverse_mass
 from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.solver.activity import is_left_out
@@ -67,7 +67,7 @@ def make_ready(
         if not may_be_pushed(model, pair_rows, world, tree):
             if is_single_body(model, tree):
                 link = model.tree[tree].first_link
-                inverse = inverses_or_off(model.link_inertia[world, link])
+                inverse = inverse_moments_or_off(model.link_inertia[world, link])
                 rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
                 base_subspace(model, scratch, world, tree)
                 write_inverse_mass(

@@ -21,19 +21,26 @@ def link_moves(model: Model, link: Int32) -> bool:
 
 @func
 def counts_as_moving(model: Model, link: Int32) -> bool:
-    """Whether a link belongs to an island: Bullet takes some that a dof moves for still (`island_links`)."""
+    """Whether a link belongs to an island.
+
+    Bullet takes some that a dof moves for still, and some that none moves for moving (`island_links`).
+    """
     return model.link[link].number >= 0
 
 
 @func
 def pushed_tree(shapes: Shapes, model: Model, pair: Index4) -> Int32:
-    """Tree of the first of two links in contact that counts as moving; -1 if neither does.
+    """Tree of the first of two links in contact that moves and counts as moving, or else that moves.
 
-    `pair` has both shapes, then both links.
+    -1 if neither counts as moving, or neither moves. `pair` has both shapes, then both links.
     """
-    if counts_as_moving(model, pair[2]):
+    moves_a = link_moves(model, pair[2])
+    moves_b = link_moves(model, pair[3])
+    counts_a = counts_as_moving(model, pair[2])
+    counts_b = counts_as_moving(model, pair[3])
+    if moves_a and (counts_a or (counts_b and not moves_b)):
         return shapes.shape_tree[pair[0]]
-    return shapes.shape_tree[pair[1]] if counts_as_moving(model, pair[3]) else -1
+    return shapes.shape_tree[pair[1]] if moves_b and (counts_a or counts_b) else -1
 
 
 @func
@@ -93,10 +100,10 @@ def has_woken(state: State, world: Int32, tree: Int32) -> bool:
 
 @func
 def squared_motion(model: Model, state: State, world: Int32, tree: Int32) -> real:
-    """Sum of the squared velocities of a tree."""
+    """Sum of the squared velocities of a tree, also of one that a fixed base was given."""
     motion = real(0.0)
-    dof = model.tree[tree].first_dof
-    end = dof + model.tree[tree].dof_count
+    dof = model.tree[tree].first_velocity
+    end = model.tree[tree].first_dof + model.tree[tree].dof_count
     while dof < end:
         motion += state.dof_velocity[world, dof] * state.dof_velocity[world, dof]
         dof += 1
@@ -108,4 +115,12 @@ def stop(model: Model, state: State, world: Int32, tree: Int32):
     """Set the velocities of a tree's dofs to zero."""
     first = model.tree[tree].first_dof
     for dof in range(first, first + model.tree[tree].dof_count):
+        state.dof_velocity[world, dof] = 0.0
+
+
+@func
+def stop_with_base(model: Model, state: State, world: Int32, tree: Int32):
+    """As `stop`, also the velocity that a fixed base was given."""
+    first = model.tree[tree].first_velocity
+    for dof in range(first, model.tree[tree].first_dof + model.tree[tree].dof_count):
         state.dof_velocity[world, dof] = 0.0

@@ -11,6 +11,7 @@ import warp as wp
 
 from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.activity import (
+    can_move,
     counts_as_moving,
     is_absent,
     is_in_force,
@@ -77,7 +78,7 @@ def number_islands(settings: Settings, model: Model, state: State, pair_rows: Pa
         number = Int32(NONE)
         first = model.tree[tree].first_link
         link = first + model.tree[tree].link_count - 1
-        if is_absent(state, world, tree):
+        if is_absent(state, world, tree) or not can_move(model, tree):
             link = first - 1
         while link >= first:
             if counts_as_moving(model, link):

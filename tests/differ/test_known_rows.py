@@ -1,0 +1,119 @@
+"""Which differences in the rows of the solver the fuzzer takes for known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from tests.differ.test_known import PROBE, STEP, is_known
+from tests.differ.test_programs import call
+from tools.differ.compare import Difference
+from tools.differ.known import statement
+from tools.differ.programs import Call
+from tools.differ.values import Place
+
+ARM, OTHER = (
+    call(number, "createMultiBody", 0, linkJointTypes=[0, 0], linkParentIndices=[0, 1]) for number in (0, 1)
+)
+FIX = call(4, "changeDynamics", {"$": 0}, 1, mass=0, activationState=32)
+BOX, GRIPPER = call(2, "createMultiBody", 1), call(3, "loadURDF", "pr2_gripper.urdf")
+REMOVE = call(4, "removeBody", {"$": 2})
+
+
+def is_stated(calls: list[Call], field: str, error: float, phase: str = "free") -> bool:
+    """Whether a difference so large, and in this phase, is one that docs/differences states."""
+    calls = [*calls, STEP, PROBE]
+    place = Place(field, 0.0, error, error)
+    return statement(calls, Difference(len(calls) - 1, "@probe", place, phase)) is not None
+
+
+@pytest.mark.parametrize(
+    ("calls", "field", "expected"),
+    [
+        ([GRIPPER], "reactions.0.2.1", True),
+        ([GRIPPER], "velocities.0.2", False),
+        ([ARM], "reactions.0.2.1", False),
+    ],
+)
+def test_limits_share_with_motors(calls: list[Call], field: str, expected: bool):
+    assert is_stated(calls, field, 1e-2) == expected
+
+
+@pytest.mark.parametrize(
+    ("calls", "error", "phase", "expected"),
+    [
+        ([ARM, OTHER, BOX, REMOVE], 1e-8, "free", True),
+        ([ARM, OTHER, BOX, REMOVE], 1e-3, "free", False),
+        ([ARM, OTHER, BOX, REMOVE], 1e-8, "contact", False),
+        ([ARM, BOX, REMOVE], 1e-8, "free", False),
+        ([ARM, OTHER], 1e-8, "free", False),
+        ([ARM, OTHER, call(4, "changeDynamics", {"$": 0}, -1, mass=1)], 1e-8, "free", True),
+        ([ARM, OTHER, FIX], 1e-8, "free", True),
+        ([ARM, OTHER, call(4, "changeDynamics", {"$": 0}, 1, mass=0)], 1e-8, "free", False),
+        ([ARM, OTHER, call(4, "changeDynamics", {"$": 0}, -1, restitution=0)], 1e-8, "free", False),
+    ],
+)
+def test_islands_of_robots_are_renumbered(calls: list[Call], error: float, phase: str, expected: bool):
+    assert is_stated(calls, "positions.0.1", error, phase) == expected
+
+
+@pytest.mark.parametrize(
+    ("mass", "types", "link", "other", "expected"),
+    [
+        (0, [2, 4, 4], 2, {"$": 2}, True),
+        (0, [2, 4, 4], 1, {"$": 2}, True),
+        (0, [2, 4, 4], 0, {"$": 2}, False),
+        (0, [2, 4, 0], 2, {"$": 2}, False),
+        (0, [4, 4, 4], 2, {"$": 2}, False),
+        (1, [2, 4, 4], 2, {"$": 2}, False),
+        (0, [2, 4, 4], 2, -1, False),
+        (0, [2, 4, 4], 2, {"$": 0}, False),
+    ],
+)
+def test_links_taken_for_still_are_tied(mass: float, types: list[int], link: int, other: Any, expected: bool):
+    arm = call(0, "createMultiBody", mass, linkJointTypes=types, linkParentIndices=[0, 1, 2])
+    for ends in ([{"$": 0}, link, other, -1], [other, -1, {"$": 0}, link]):
+        tie = call(4, "createConstraint", *ends, 5, [0, 0, 1], [0, 0, 0], [0, 0, 0])
+        assert is_stated([arm, BOX, tie], "base.1.0", 1e-2) == expected
+
+
+@pytest.mark.parametrize(
+    ("flags", "mass", "phase", "expected"),
+    [(8200, 0, "contact", True), (0, 0, "contact", False), (8, 1, "contact", False), (8, 0, "free", False)],
+)
+def test_fixed_robots_that_touch_themselves(flags: int, mass: float, phase: str, expected: bool):
+    robot = call(0, "loadURDF", "quadruped/minitaur.urdf", flags=flags)
+    fix = call(1, "changeDynamics", {"$": 0}, 1, mass=mass, maxJointVelocity=13.0)
+    assert is_stated([robot, fix], "positions.0.1", 1e-2, phase) == expected
+
+
+@pytest.mark.parametrize(
+    ("types", "turn", "expected"),
+    [
+        ([2], [0.33, -0.22, -0.9, -0.18], True),
+        ([2], [0, 0, 0, 1], False),
+        ([0], [0.33, -0.22, -0.9, 0], False),
+    ],
+)
+def test_ball_joints_are_held_where_a_long_rotation_puts_them(
+    types: list[int], turn: list[float], expected: bool
+):
+    arm = call(0, "createMultiBody", 0, linkJointTypes=types, linkParentIndices=[0])
+    place = call(1, "resetBasePositionAndOrientation", {"$": 0}, [0, 0, 0], turn)
+    assert is_stated([arm, place], "positions.0.0", 1e-2) == expected
+
+
+@pytest.mark.parametrize(
+    ("function", "field", "ours", "expected"),
+    [
+        ("getJointInfo", ".15", [-0.5, 0.5, 0.5, 0.5], True),
+        ("getJointInfo", ".15", [0.5, 0.5, 0.5, 0.5], False),
+        ("getJointInfo", ".14", [-0.5, 0.5, 0.5, 0.5], False),
+        ("getLinkState", ".1", [-0.5, 0.5, 0.5, 0.5], True),
+    ],
+)
+def test_rotations_may_have_the_other_sign(function: str, field: str, ours: list[float], expected: bool):
+    calls = [ARM, call(1, function, {"$": 0}, 0)]
+    assert (
+        is_known(calls, field if field[0] == "." else f".{field}", [0.5, -0.5, -0.5, -0.5], ours) == expected
+    )

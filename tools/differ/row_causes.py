@@ -1,0 +1,73 @@
+"""What may cause a difference in the rows of the solver: in which islands they are, and what they share."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tools.differ.assets import AT_LIMITS, FIXED
+from tools.differ.causes import LEFT_OVER, MAKE, TOUCHES_ITSELF, Seen, has_joints, joint_types
+from tools.differ.programs import Call
+
+_ROBOTS = 2
+
+
+def shares_with_a_limit(seen: Seen) -> bool:
+    """Whether only what motors do differs, and a body has a joint that was loaded exactly at its limit."""
+    return seen.difference.place.field.startswith("reactions") and any(
+        call["f"].startswith("load") and str(call["a"][0]) in AT_LIMITS for call in seen.before if call["a"]
+    )
+
+
+def renumbers_islands(seen: Seen) -> bool:
+    """Whether a body was removed, or a base freed or fixed, beside robots, and states hardly differ."""
+    if seen.difference.phase != "free" or seen.difference.place.error > LEFT_OVER:
+        return False
+    robots = sum(call["f"].startswith(MAKE) and has_joints(seen, call) for call in seen.before)
+    return robots >= _ROBOTS and any(
+        call["f"] == "removeBody" or _may_free_or_fix(call) for call in seen.before
+    )
+
+
+def _may_free_or_fix(call: Call) -> bool:
+    """Whether a call may free or fix a base, as also those do that name a link and change the whole body."""
+    changes = call["f"] == "changeDynamics" and "mass" in call["k"]
+    return changes and (call["a"][1] < 0 or len(call["k"]) > 1)
+
+
+def ties_a_link_taken_for_still(seen: Seen) -> bool:
+    """Whether another body is tied to a link that fixed joints tie to the first one, on a fixed base."""
+    made = {call["id"]: call for call in seen.before if call["f"] == "createMultiBody"}
+    types = joint_types(seen)
+    for call in seen.before:
+        if call["f"] != "createConstraint":
+            continue
+        ends = ((call["a"][0], call["a"][1]), (call["a"][2], call["a"][3]))
+        if all(isinstance(body, dict) for body, _ in ends) and ends[0][0] != ends[1][0]:
+            for body, link in ends:
+                if body["$"] in made and _counts_as_still(made[body["$"]], types[body["$"]], link):
+                    return True
+    return False
+
+
+def _counts_as_still(made: Call, types: list[int], link: int) -> bool:
+    """Whether a link of a body with a fixed base moves, but with the first link alone."""
+    parents: Any = made["k"].get("linkParentIndices", ())
+    if not made["a"] or made["a"][0] != 0 or not 0 < link < len(types) or types[0] == FIXED:
+        return False
+    while link > 0 and types[link] == FIXED:
+        # 0 is the base, and 1 the first link.
+        link = parents[link] - 1
+    return link == 0
+
+
+def fixes_what_touches_itself(seen: Seen) -> bool:
+    """Whether the base of a robot that touches itself was fixed."""
+    touching = {
+        call["id"]
+        for call in seen.before
+        if call["f"].startswith(MAKE) and call["k"].get("flags", 0) & TOUCHES_ITSELF
+    }
+    return seen.difference.phase == "contact" and any(
+        call["f"] == "changeDynamics" and call["k"].get("mass") == 0 and call["a"][0].get("$") in touching
+        for call in seen.before
+    )
