@@ -158,6 +158,8 @@ class SavedAnchor:
     body: int
     link: int
     pivot: Vector3
+    damped: bool = True
+    late_force: float = 0.0
 
 
 @dataclass(slots=True)
@@ -313,7 +315,16 @@ def _saved(world: World) -> SavedWorld:
         ],
         user_data=[datum for body in bodies for datum in world.user_data.of_body(body.id)],
         anchors=[
-            SavedAnchor(anchor.id, body.id, anchor.node, _holder(world, anchor), anchor.link, anchor.pivot)
+            SavedAnchor(
+                anchor.id,
+                body.id,
+                anchor.node,
+                _holder(world, anchor),
+                anchor.link,
+                anchor.pivot,
+                anchor.damped,
+                anchor.late_force,
+            )
             for body in bodies
             if isinstance(body, SoftBody)
             for anchor in body.anchors
@@ -496,8 +507,9 @@ def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alon
             raise ValueError(f"the number {number} of an anchor is used twice or out of range")
         rows = None if body is None else body.rows
         world.contact_arrays.soft.anchors[number] = Anchor(
-            number, soft.soft_rows, record.node, rows, record.link, record.pivot
-        )
+            number, soft.soft_rows, record.node, rows, record.link, record.pivot,
+            record.damped, record.late_force,
+        )  # fmt: skip
 
 
 def _order_constraints(

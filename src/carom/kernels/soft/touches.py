@@ -4,9 +4,12 @@ import warp as wp
 
 from carom.kernels.contact.bounds import local_extents
 from carom.kernels.contact.filters import links_may_collide
+from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity, three_numbers
+from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.min_max import lower_corner, upper_corner
+from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.soft.feedback import wake_touched
 from carom.kernels.soft.nearest import nearest_on_shape
 from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
@@ -57,17 +60,28 @@ def held_velocity(
     tree: Int32,
     link: Int32,
     point: Vector3,
+    late: real,
 ) -> Vector3:
     """Velocity of a point of a link that can be pushed and to which a node is anchored [m/s].
 
-    No motor holds a single body, so it is assumed to move on under the forces on it. Links of other trees are
-    assumed to keep their velocity, as if touched.
+    No motor holds a single body, so it is assumed to move on under the forces on it, but for the change of
+    velocity by external forces in a time `late` [s]. Links of other trees are assumed to keep their velocity,
+    as if touched.
     """
     if is_single_body(model, tree):
         first = model.tree[tree].first_velocity
         arm = point - wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         omega = three_numbers(work.dof_start, world, first)
-        return three_numbers(work.dof_start, world, first + 3) + wp.cross(omega, arm)
+        velocity = three_numbers(work.dof_start, world, first + 3)
+        if late > 0.0:
+            wrench = state.link_wrench[world, link]
+            rotation = rotation_matrix(wp.transform_get_rotation(state.link_pose[world, link]))
+            inverse = turned_inertia(rotation, inverses_or_off(model.link_inertia[world, link]))
+            omega -= inverse * Vector3(wrench[3], wrench[4], wrench[5]) * late
+            velocity -= Vector3(wrench[0], wrench[1], wrench[2]) * (
+                late * inverse_or_off(model.link_mass[world, link])
+            )
+        return velocity + wp.cross(omega, arm)
     return point_velocity(model, state, scratch, world, tree, link, point)
 
 
@@ -254,6 +268,7 @@ def write_touches(
 
 @func
 def write_anchors(
+    settings: Settings,
     model: Model,
     state: State,
     scratch: Scratch,
@@ -264,18 +279,23 @@ def write_anchors(
     row: Int32,
     block: Int32,
 ):
-    """Write the anchors, with rows over the trees that they push, from `row` and `block` on."""
+    """Write the anchors, with rows over the trees that they push, from `row` and `block` on.
+
+    Nodes are put where their links have moved.
+    """
     for anchor in range(soft.count_soft[ANCHORS]):
         tree = soft.anchor[anchor].tree
         link = soft.anchor[anchor].link
         point = wp.transform_point(state.link_pose[world, link], soft.anchor[anchor].pivot)
+        state.node_position[world, soft.anchor[anchor].node] = point
         work.anchor_point[world, anchor] = point
         work.anchor_velocity[world, anchor] = Vector3(0.0, 0.0, 0.0)
         work.anchor_impulse[world, anchor] = Vector3(0.0, 0.0, 0.0)
         work.anchor_row[world, anchor] = Int32(-1)
         if can_be_pushed(model, state, world, tree, link):
             make_ready(model, state, scratch, pair_rows, work, world, tree)
-            velocity = held_velocity(model, state, scratch, work, world, tree, link, point)
+            late = settings.time_step * soft.anchor[anchor].late_force
+            velocity = held_velocity(model, state, scratch, work, world, tree, link, point, late)
             work.anchor_velocity[world, anchor] = velocity
             work.anchor_row[world, anchor] = row
             row, block = add_push_rows(
