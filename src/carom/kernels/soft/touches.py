@@ -54,7 +54,7 @@ def point_velocity(
 def forced_velocity(
     model: Model, state: State, world: Int32, tree: Int32, link: Int32, point: Vector3, time: real
 ) -> Vector3:
-    """How much external forces change the velocity of a point of a single body in a time [s]; else 0 [m/s]."""
+    """Change of the velocity of a point of a single body by external forces in a time [s]; else 0 [m/s]."""
     change = Vector3(0.0, 0.0, 0.0)
     if is_single_body(model, tree):
         wrench = state.link_wrench[world, link]
@@ -117,8 +117,8 @@ def held_velocity(
 ) -> Vector3:
     """Velocity of a point of a link that can be pushed and to which a node is anchored [m/s].
 
-    No motor holds a single body, so it is assumed to move on under the forces on it, as far as they act before
-    soft bodies move. Links of other trees are assumed to keep their velocity, as if touched.
+    No motor holds a single body, so it is assumed to move on under the forces on it, as far as they act
+    before soft bodies move. Links of other trees are assumed to keep their velocity, as if touched.
     """
     if is_single_body(model, tree):
         first = model.tree[tree].first_velocity
