@@ -127,12 +127,13 @@ should be; the difference is that from there.
 _TASKS = """
 ## The tasks of dedo
 
-Sum of rewards of the preset motions of [dedo](https://github.com/contactrika/dedo), with anchors as the robot, seed 0
-and episodes of 200 steps, and the number of steps until the episode ends, on 27 November 2026. On the right the same
-with anchors that collide with nothing: as they are, each overlaps the cloth that it holds, and
-[contact there](../differences/soft-bodies.md) throws off their speed controller, which is at the limit of its
-stability; episodes end early where an anchor leaves the workspace. About half to nine tenths of the sum is the last
-reward, from where the cloth is 500 time steps after the motion has ended; -: not measured.
+Sum of rewards of the preset motions of [dedo](https://github.com/contactrika/dedo), with anchors as the
+robot, seed 0 and episodes of 200 steps, and the number of steps until the episode ends, on 27 November
+2026. On the right the same with anchors that collide with nothing: as they are, each overlaps the cloth
+that it holds, and [contact there](../differences/soft-bodies.md) throws off their speed controller,
+which is at the limit of its stability; episodes end early where an anchor leaves the workspace. About
+half to nine tenths of the sum is the last reward, from where the cloth is 500 time steps after the
+motion has ended; -: not measured.
 
 | task | PyBullet | Carom | PyBullet, no collisions | Carom, no collisions |
 |---|---:|---:|---:|---:|
