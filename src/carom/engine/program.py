@@ -11,11 +11,11 @@ from carom.native.kernels import (
     begin_soft_kernel,
     begin_step_kernel,
     broad_phase_kernel,
+    carry_nodes_kernel,
     constraints_kernel,
     continued_motion_kernel,
     end_soft_kernel,
     end_step_kernel,
-    follow_nodes_kernel,
     free_motion_kernel,
     integration_kernel,
     islands_kernel,
@@ -44,7 +44,7 @@ SOFT_MOTION = (
     constraints_kernel,
     integration_kernel,
     # After integration, which also moves fixed bases by their velocities.
-    follow_nodes_kernel,
+    carry_nodes_kernel,
 )
 
 

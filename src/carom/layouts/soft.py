@@ -24,6 +24,8 @@ from carom.layouts.types import (
     struct,
 )
 
+# Values of `SoftModel.node_anchored`: free; anchored to a link; the same, without damping of the link.
+FREE, HELD, HELD_UNDAMPED = 0, 1, 2
 # Columns of `SoftModel.count_soft`.
 BODIES, ANCHORS = 0, 1
 # Maximum number of shapes in contact with one node: the nearest ones are kept.
@@ -92,6 +94,7 @@ class AnchorModel:
     tree: Int32
     link: Int32
     pivot: Vector3  # in the inertial frame of the link
+    late_force: real  # share of the external force on the link that acts after the node has followed it
 
 
 @struct
@@ -103,7 +106,7 @@ class SoftModel:
     tetra: Array[TetraModel]
     anchor: Array[AnchorModel]
     node_inverse_mass: Reals  # 0: fixed in the world
-    node_anchored: Ints  # 1: fixed to a link; it has no contacts with any shapes
+    node_anchored: Ints  # `FREE`, `HELD` or `HELD_UNDAMPED`; held ones have no contacts with any shapes
     node_rest: Vectors3  # position as loaded, from its body's centre of mass [m]
     face_nodes: Array[Index4]  # three nodes, counter-clockwise from outside
     count_soft: Ints  # columns: BODIES, ANCHORS

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from carom.description.pose import Vector3
-from carom.layouts.soft import ANCHORS, BODIES, SoftModel
+from carom.layouts.soft import ANCHORS, BODIES, FREE, HELD, HELD_UNDAMPED, SoftModel
 from carom.model.builder import TreeRows
 from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
 from carom.native.change import Change
@@ -58,6 +58,9 @@ class Anchor:
         body: Rows of the body it is attached to; None for the world.
         link: Link of that body; -1 is the base.
         pivot: Point of attachment in the inertial frame of the link [m].
+        damped: Whether damping within the soft body acts on the link, too.
+        late_force: Share of the external force on a body without joints that acts after the node has
+            followed it.
     """
 
     id: int
@@ -66,6 +69,8 @@ class Anchor:
     body: TreeRows | None
     link: int
     pivot: Vector3
+    damped: bool = True
+    late_force: float = 0.0
 
 
 class SoftArrays:
@@ -124,7 +129,7 @@ class SoftArrays:
         numpy["soft_frequency"][row] = frequencies.max(initial=0.0)
         rows = {axis: slice(first[axis], first[axis] + soft.count[axis]) for axis in _AXES}
         numpy["node_inverse_mass"][rows["node"]] = 1.0 / spec.masses
-        numpy["node_anchored"][rows["node"]] = 0
+        numpy["node_anchored"][rows["node"]] = FREE
         numpy["node_rest"][rows["node"]] = spec.nodes - np.average(spec.nodes, axis=0, weights=spec.masses)
         ends = spec.springs + first["node"]
         numpy["spring_a"][rows["spring"]], numpy["spring_b"][rows["spring"]] = ends[:, 0], ends[:, 1]
@@ -148,7 +153,7 @@ class SoftArrays:
         for soft in self.bodies:
             nodes = slice(soft.first["node"], soft.first["node"] + soft.count["node"])
             numpy["node_inverse_mass"][nodes] = 1.0 / soft.spec.masses
-            numpy["node_anchored"][nodes] = 0
+            numpy["node_anchored"][nodes] = FREE
         held = [anchor for anchor in self.anchors.values() if anchor.body is not None]
         self.table.reserve({"anchor": len(held)})
         numpy = self.table.numpy
@@ -156,11 +161,12 @@ class SoftArrays:
         for row, anchor in enumerate(held):
             node = anchor.soft.first["node"] + anchor.node
             assert anchor.body is not None
-            numpy["node_anchored"][node] = 1
+            numpy["node_anchored"][node] = HELD if anchor.damped else HELD_UNDAMPED
             numpy["anchor_node"][row] = node
             numpy["anchor_tree"][row] = anchor.body.tree
             numpy["anchor_link"][row] = anchor.body.first["link"] + 1 + anchor.link
             numpy["anchor_pivot"][row] = anchor.pivot
+            numpy["anchor_late_force"][row] = anchor.late_force
         for anchor in self.anchors.values():
             if anchor.body is None:
                 numpy["node_inverse_mass"][anchor.soft.first["node"] + anchor.node] = 0.0

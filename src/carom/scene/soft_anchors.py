@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 
-def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Anchor:
+def add_anchor(
+    soft: SoftBody, node: int, body: Body | None, link: int, damped: bool, late_force: float
+) -> Anchor:
     """Anchor a node; see `SoftBody.anchor`."""
     world = soft.world
     if not 0 <= node < len(soft.nodes):
@@ -36,7 +38,7 @@ def add_anchor(soft: SoftBody, node: int, body: Body | None, link: int) -> Ancho
         change = Change()
         number = world.user_constraints.take_id(change)
         rows = None if body is None else body.rows
-        anchor = Anchor(number, soft.soft_rows, node, rows, link, pivot)
+        anchor = Anchor(number, soft.soft_rows, node, rows, link, pivot, damped, late_force)
         change.put(world.contact_arrays.soft.anchors, number, anchor)
         if body is None:
             change.write(soft.node_velocities[node], 0.0)

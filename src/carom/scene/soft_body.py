@@ -147,24 +147,39 @@ class SoftBody(Body):
         margin = self.soft_spec.margin
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
 
-    def anchor(self, node: int, body: Body | None = None, link: int = -1) -> Anchor:
+    def anchor(
+        self,
+        node: int,
+        body: Body | None = None,
+        link: int = -1,
+        *,
+        damped: bool = True,
+        late_force: float = 0.0,
+    ) -> Anchor:
         """Anchor a node at its present position to the world, or to a link, on which the force then acts.
 
         Args:
             node: The node, from 0.
             body: The body that holds it; None for the world.
             link: Its link; -1 is the base.
+            damped: Damping within the soft body acts on the link, too. Without, as in PyBullet, the nodes
+                around follow the anchored one, and the link feels nothing of it.
+            late_force: Share of the external force on a body without joints, 0 to 1, that acts in each step
+                only after the node has followed it. In PyBullet external forces act twice on bodies with
+                maximal coordinates, the second time after that: half of the force.
 
         Returns:
             The anchor, for `release`.
 
         Raises:
             IndexError: There is no such node or link.
-            ValueError: The other body is soft.
+            ValueError: The other body is soft, or `late_force` is not between 0 and 1.
         """
         from carom.scene.soft_anchors import add_anchor
 
-        return add_anchor(self, node, body, link)
+        if not 0.0 <= late_force <= 1.0:
+            raise ValueError(f"late_force is {late_force}; it has to be between 0 and 1")
+        return add_anchor(self, node, body, link, damped, late_force)
 
     def release(self, anchor: Anchor) -> None:
         """Remove an anchor."""

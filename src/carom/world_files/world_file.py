@@ -167,6 +167,8 @@ class SavedAnchor:
     body: int
     link: int
     pivot: Vector3
+    damped: bool = True
+    late_force: float = 0.0
 
 
 @dataclass(slots=True)
@@ -334,7 +336,16 @@ def _saved(world: World) -> SavedWorld:
         ],
         user_data=[datum for body in bodies for datum in world.user_data.of_body(body.id)],
         anchors=[
-            SavedAnchor(anchor.id, body.id, anchor.node, _holder(world, anchor), anchor.link, anchor.pivot)
+            SavedAnchor(
+                anchor.id,
+                body.id,
+                anchor.node,
+                _holder(world, anchor),
+                anchor.link,
+                anchor.pivot,
+                anchor.damped,
+                anchor.late_force,
+            )
             for body in bodies
             if isinstance(body, SoftBody)
             for anchor in body.anchors
@@ -514,7 +525,10 @@ def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alon
         if number in world.contact_arrays.soft.anchors or number < 1:
             raise ValueError(f"the number {number} of an anchor is used twice or out of range")
         rows = None if body is None else body.rows
-        anchor = Anchor(number, soft.soft_rows, record.node, rows, record.link, record.pivot)
+        anchor = Anchor(
+            number, soft.soft_rows, record.node, rows, record.link, record.pivot,
+            record.damped, record.late_force,
+        )  # fmt: skip
         change.put(world.contact_arrays.soft.anchors, number, anchor)
         change.commit()
 

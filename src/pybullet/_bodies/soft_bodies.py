@@ -66,7 +66,15 @@ def createSoftBodyAnchor(
             fail(problem, no_body(number))
     try:
         with client.lock:
-            return soft.anchor(node, holder, BASE if holder is None else link).id
+            # As in PyBullet, see `Client.maximal`.
+            twice = client.deformable and number in client.maximal
+            return soft.anchor(
+                node,
+                holder,
+                BASE if holder is None else link,
+                damped=False,
+                late_force=0.5 if twice else 0.0,
+            ).id
     except (IndexError, ValueError) as reason:
         fail(problem, f"{reason}.")
 

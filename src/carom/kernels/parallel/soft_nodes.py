@@ -3,7 +3,7 @@
 import warp as wp
 
 from carom.kernels.parallel.workspace import is_called_off, went_wrong
-from carom.kernels.soft.frames import follow_nodes
+from carom.kernels.soft.frames import carry_nodes, follow_nodes
 from carom.kernels.soft.pushes import keep_velocities
 from carom.kernels.soft.stages import clear_node_forces, keep_nodes, return_nodes
 from carom.kernels.structs import Model, SoftModel, SoftWork, State
@@ -28,9 +28,10 @@ def tree_velocities_kernel(model: Model, state: State, soft_work: SoftWork):
 
 @kernel
 def soft_poses_kernel(model: Model, state: State, soft: SoftModel):
-    """Update the base pose and velocity of each body from its nodes."""
+    """Put anchored nodes where single bodies have moved; update the base pose and velocity of each body."""
     body, world = wp.tid()
     if not is_called_off(state, world):
+        carry_nodes(model, state, soft, world, body)
         follow_nodes(model, state, soft, world, body)
 
 

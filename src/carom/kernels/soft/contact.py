@@ -2,7 +2,7 @@
 
 import warp as wp
 
-from carom.kernels.maths.min_max import minimum
+from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.maths.rotation import column
 from carom.kernels.soft.pushes import push_along, row_mass, row_velocity
 from carom.kernels.soft.tangents import tangents
@@ -13,6 +13,9 @@ from carom.layouts.soft import ANCHORS, TOUCHES_PER_NODE
 # Rate at which a position error from before the small step is removed [1/s]: as with an error reduction of
 # 0.2 in each of 240 steps per second.
 RECOVERY = real(48.0)
+# Greatest speed at which it is removed from a node [m/s]: in PyBullet each of the faces at the node, six of
+# them inside of a mesh, adds 0.1 m/s.
+_RECOVERY_SPEED = real(0.6)
 # The same for a node between two shapes. The motors and contacts that press the shapes together react to
 # pushes only after the substep of the soft bodies. So the share of the error that is removed within a
 # substep determines how hard the shapes can press without meeting.
@@ -75,6 +78,18 @@ def push_touch(
 
 
 @func
+def outwards(before: real, lack: real, speed: real, h: real) -> real:
+    """How far what overlaps a shape is put outwards in a small step, besides its motion [m].
+
+    That is the share of the overlap to be removed, at most as fast as `speed` [m/s], less what its motion
+    relative to the shape removes. `before` is the distance before the small step, negative for an overlap,
+    and `lack` the loss of distance by motion [m].
+    """
+    wanted = minimum(-minimum(before, 0.0) * minimum(RECOVERY * h, 1.0), speed * h)
+    return maximum(wanted + minimum(lack, 0.0), 0.0)
+
+
+@func
 def relax_touch(
     scratch: Scratch,
     pair_rows: PairRows,
@@ -86,11 +101,20 @@ def relax_touch(
     touch: Int32,
     h: real,
 ):
-    """Keep a node outside of a shape by the impulse that makes `lacking` zero."""
+    """Keep a node outside of a shape: the impulse that makes `lacking` zero stops what drives them together.
+
+    An overlap from before is removed without giving the node a velocity.
+    """
     mass = soft.node_inverse_mass[node]
     weight = mass + row_mass(pair_rows, world, work.touch_row[world, touch])
-    lack = lacking(scratch, pair_rows, state, work, world, node, touch, RECOVERY, h)
+    lack = lacking(scratch, pair_rows, state, work, world, node, touch, real(0.0), h)
+    normal = work.touch_normal[world, touch]
+    before = wp.dot(normal, work.node_before[world, node] - work.touch_point[world, touch])
+    before -= work.touch_offset[world, touch]
+    away = normal * outwards(before, lack, _RECOVERY_SPEED, h)
     push_touch(scratch, pair_rows, state, work, world, node, touch, mass, lack / (h * weight), h)
+    state.node_position[world, node] += away
+    work.node_before[world, node] += away
 
 
 @func

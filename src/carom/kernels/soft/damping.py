@@ -2,6 +2,8 @@
 
 A force -D v acts for a small step of length h. It is scaled by a / (a + h b), where a is the dissipated power
 v D v, and b the sum of squared forces divided by masses. So it never reverses motion, however large D is.
+
+Nodes whose anchor is undamped move others by damping, but are not moved themselves, nor are their links.
 """
 
 import warp as wp
@@ -10,8 +12,17 @@ from carom.kernels.maths.rotation import column
 from carom.kernels.soft.elasticity import edges
 from carom.kernels.structs import SoftModel, State
 from carom.kernels.types import Int32, func, real
+from carom.layouts.soft import HELD_UNDAMPED
 
 _SHORTEST = real(1.0e-12)
+
+
+@func
+def mobility(soft: SoftModel, node: Int32) -> real:
+    """Inverse mass of a node as damping sees it [1/kg]."""
+    if soft.node_anchored[node] == HELD_UNDAMPED:
+        return 0.0
+    return soft.node_inverse_mass[node]
 
 
 @func
@@ -23,8 +34,8 @@ def damp_springs(soft: SoftModel, state: State, world: Int32, body: Int32, h: re
         if damping > 0.0:
             a = soft.spring[spring].a
             b = soft.spring[spring].b
-            inverse_a = soft.node_inverse_mass[a]
-            inverse_b = soft.node_inverse_mass[b]
+            inverse_a = mobility(soft, a)
+            inverse_b = mobility(soft, b)
             closing = state.node_velocity[world, b] - state.node_velocity[world, a]
             push = closing * (damping * h / (1.0 + damping * h * (inverse_a + inverse_b)))
             if soft.spring[spring].all_directions == 0:
@@ -57,14 +68,14 @@ def damp_tetras(soft: SoftModel, state: State, world: Int32, body: Int32, h: rea
             force = (f * stress * wp.transpose(inverse)) * (-volume)
             force_first = -(column(force, 0) + column(force, 1) + column(force, 2))
             power = volume * wp.ddot(strain, stress)
-            response = soft.node_inverse_mass[four[0]] * wp.dot(force_first, force_first)
+            response = mobility(soft, four[0]) * wp.dot(force_first, force_first)
             for i in range(3):
                 along = column(force, i)
-                response += soft.node_inverse_mass[four[i + 1]] * wp.dot(along, along)
+                response += mobility(soft, four[i + 1]) * wp.dot(along, along)
             if power > 0.0:
                 scale = h * power / (power + h * response)
-                state.node_velocity[world, four[0]] += force_first * (scale * soft.node_inverse_mass[four[0]])
+                state.node_velocity[world, four[0]] += force_first * (scale * mobility(soft, four[0]))
                 for i in range(3):
                     state.node_velocity[world, four[i + 1]] += column(force, i) * (
-                        scale * soft.node_inverse_mass[four[i + 1]]
+                        scale * mobility(soft, four[i + 1])
                     )

@@ -12,12 +12,16 @@ from carom.kernels.soft.contact import (
     joint_pushes,
     moved_on,
     other_row,
+    outwards,
 )
 from carom.kernels.soft.face_touches import at_weights, first_face_touch
 from carom.kernels.soft.pushes import push_along, row_mass, row_velocity
 from carom.kernels.soft.tangents import tangents
 from carom.kernels.structs import PairRows, Scratch, SoftModel, SoftWork, State
 from carom.kernels.types import Index4, Int32, Vector3, func, real
+
+# Greatest speed at which an overlap from before a small step is removed [m/s], as in PyBullet.
+_RECOVERY_SPEED = real(0.1)
 
 
 @func
@@ -37,6 +41,18 @@ def move_face(
     for i in range(3):
         node = nodes[i]
         state.node_position[world, node] += impulse * (weights[i] * soft.node_inverse_mass[node] * h)
+
+
+@func
+def put_outwards(
+    soft: SoftModel, state: State, work: SoftWork, world: Int32, nodes: Index4, weights: Vector3, far: Vector3
+):
+    """Move the nodes of a face without changing their velocities; `far` is per inverse mass [m kg]."""
+    for i in range(3):
+        node = nodes[i]
+        away = far * (weights[i] * soft.node_inverse_mass[node])
+        state.node_position[world, node] += away
+        work.node_before[world, node] += away
 
 
 @func
@@ -114,12 +130,23 @@ def relax_face(
     scratch: Scratch, pair_rows: PairRows, soft: SoftModel, state: State, work: SoftWork, world: Int32,
     nodes: Index4, touch: Int32, h: real,
 ):  # fmt: skip
-    """Keep a face outside of a shape by the impulse that makes `face_lacking` zero."""
+    """Keep a face outside of a shape; see `relax_touch`."""
     weights = work.touch_weights[world, touch]
     mass = shared_mass(soft, nodes, weights, weights)
     weight = mass + row_mass(pair_rows, world, work.touch_row[world, touch])
     if weight > 0.0:
-        lack = face_lacking(scratch, pair_rows, state, work, world, nodes, touch, RECOVERY, h)
+        lack = face_lacking(scratch, pair_rows, state, work, world, nodes, touch, real(0.0), h)
+        if mass > 0.0:
+            normal = work.touch_normal[world, touch]
+            gap = wp.dot(
+                normal,
+                at_weights(work.node_before, world, nodes, weights) - work.touch_point[world, touch],
+            )
+            far = outwards(gap - work.touch_offset[world, touch], lack, _RECOVERY_SPEED, h)
+            put_outwards(soft, state, work, world, nodes, weights, normal * (far / mass))
+        else:
+            # No node can be put outwards, so the link has to go.
+            lack = face_lacking(scratch, pair_rows, state, work, world, nodes, touch, RECOVERY, h)
         push_face(scratch, pair_rows, soft, state, work, world, nodes, touch, mass, lack / (h * weight), h)
 
 

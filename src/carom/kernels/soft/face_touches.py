@@ -27,7 +27,7 @@ from carom.kernels.soft.nearest import away_from, face_normal, on_triangle
 from carom.kernels.soft.neighbours import face_frame, weights_at
 from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
 from carom.kernels.soft.tangents import tangents
-from carom.kernels.soft.touches import AHEAD, body_bounds, keep_nearest, point_velocity, shape_speed
+from carom.kernels.soft.touches import AHEAD, body_bounds, keep_nearest, shape_speed, touched_velocity
 from carom.kernels.structs import (
     Model,
     PairRows,
@@ -313,7 +313,9 @@ def write_face_touches(
             work.touch_offset[world, touch] = soft.soft[body].margin
             if can_be_pushed(model, state, world, tree, link):
                 make_ready(model, state, scratch, pair_rows, work, world, tree)
-                velocity = point_velocity(model, state, scratch, world, tree, link, point)
+                velocity = touched_velocity(
+                    model, state, scratch, soft, world, tree, link, point, settings.time_step
+                )
                 work.touch_velocity[world, touch] = velocity
                 work.touch_row[world, touch] = row
                 row, block = add_push_rows(

@@ -2,11 +2,13 @@
 
 import warp as wp
 
-from carom.kernels.dynamics.kinematics import load_quaternion
+from carom.kernels.dynamics.kinematics import load_quaternion, three_numbers
 from carom.kernels.dynamics.quarantine import report_fault
+from carom.kernels.dynamics.single_body import is_single_body
 from carom.kernels.maths.rotation import column
 from carom.kernels.structs import Model, SoftModel, State
 from carom.kernels.types import Int32, Matrix3, Quaternion, Transform, Vector3, func, real
+from carom.layouts.soft import ANCHORS
 
 # Rotations are found by iteration from the last one: most iterations, and the angle that ends them [rad].
 _MAX_TURNS = 20
@@ -55,6 +57,21 @@ def report_nodes(state: State, soft: SoftModel, world: Int32, body: Int32):
     for node in range(first, first + soft.soft[body].node_count):
         total += state.node_position[world, node] + state.node_velocity[world, node]
     report_fault(state, world, soft.soft[body].tree, total[0] + total[1] + total[2])
+
+
+@func
+def carry_nodes(model: Model, state: State, soft: SoftModel, world: Int32, body: Int32):
+    """Put the nodes of a body that are anchored to single bodies at their points, after integration."""
+    first = soft.soft[body].first_node
+    last = first + soft.soft[body].node_count
+    for anchor in range(soft.count_soft[ANCHORS]):
+        node = soft.anchor[anchor].node
+        tree = soft.anchor[anchor].tree
+        if node >= first and node < last and is_single_body(model, tree):
+            place = model.tree[tree].first_position
+            turn = load_quaternion(state, world, place + 3)
+            arm = wp.quat_rotate(turn, soft.anchor[anchor].pivot)
+            state.node_position[world, node] = three_numbers(state.position, world, place) + arm
 
 
 @func

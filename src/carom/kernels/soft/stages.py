@@ -10,7 +10,7 @@ from carom.kernels.soft.elasticity import relax_springs, relax_tetras
 from carom.kernels.soft.face_contact import move_face_touches, relax_face_touches
 from carom.kernels.soft.face_touches import find_face_touches, write_face_touches
 from carom.kernels.soft.feedback import report_pushes, wake_held
-from carom.kernels.soft.frames import follow_nodes, report_nodes
+from carom.kernels.soft.frames import carry_nodes, follow_nodes, report_nodes
 from carom.kernels.soft.neighbours import find_neighbours, relax_neighbours
 from carom.kernels.soft.pushes import exchange_velocities, keep_velocities, take_over_pushes
 from carom.kernels.soft.touches import find_touches, write_anchors, write_touches
@@ -190,7 +190,7 @@ def write_rows(
         row, block = write_face_touches(
             settings, shapes, model, state, scratch, pair_rows, soft, soft_work, world, body, row, block
         )
-    write_anchors(model, state, scratch, pair_rows, soft, soft_work, world, row, block)
+    write_anchors(settings, model, state, scratch, pair_rows, soft, soft_work, world, row, block)
     wake_held(model, state, soft, world)
 
 
@@ -294,6 +294,15 @@ def abandon_soft_kernel(soft: SoftModel, state: State, soft_work: SoftWork, firs
     world = first_world + wp.tid()
     for body in range(soft.count_soft[BODIES]):
         return_nodes(soft, state, soft_work, world, body)
+
+
+@kernel
+def carry_nodes_kernel(model: Model, state: State, soft: SoftModel, first_world: Int32):
+    """Put anchored nodes where single bodies have moved; update the base pose and velocity of soft bodies."""
+    world = first_world + wp.tid()
+    for body in range(soft.count_soft[BODIES]):
+        carry_nodes(model, state, soft, world, body)
+        follow_nodes(model, state, soft, world, body)
 
 
 @kernel

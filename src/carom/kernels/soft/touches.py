@@ -4,9 +4,12 @@ import warp as wp
 
 from carom.kernels.contact.bounds import local_extents
 from carom.kernels.contact.filters import links_may_collide
+from carom.kernels.dynamics.dynamics import turned_inertia
 from carom.kernels.dynamics.kinematics import base_omega, base_velocity, three_numbers
+from carom.kernels.dynamics.rows import inverse_or_off, inverses_or_off
 from carom.kernels.dynamics.single_body import is_single_body
-from carom.kernels.maths.min_max import lower_corner, upper_corner
+from carom.kernels.maths.min_max import lower_corner, maximum, upper_corner
+from carom.kernels.maths.rotation import rotation_matrix
 from carom.kernels.soft.feedback import wake_touched
 from carom.kernels.soft.nearest import nearest_on_shape
 from carom.kernels.soft.pushes import add_push_rows, can_be_pushed, make_ready
@@ -48,26 +51,82 @@ def point_velocity(
 
 
 @func
+def forced_velocity(
+    model: Model, state: State, world: Int32, tree: Int32, link: Int32, point: Vector3, time: real
+) -> Vector3:
+    """Change of the velocity of a point of a single body by external forces in a time [s]; else 0 [m/s]."""
+    change = Vector3(0.0, 0.0, 0.0)
+    if is_single_body(model, tree):
+        wrench = state.link_wrench[world, link]
+        force = Vector3(wrench[0], wrench[1], wrench[2])
+        torque = Vector3(wrench[3], wrench[4], wrench[5])
+        change += force * (time * inverse_or_off(model.link_mass[world, link]))
+        if wp.dot(torque, torque) > 0.0:
+            pose = state.link_pose[world, link]
+            rotation = rotation_matrix(wp.transform_get_rotation(pose))
+            inverse = turned_inertia(rotation, inverses_or_off(model.link_inertia[world, link]))
+            change += wp.cross(inverse * torque * time, point - wp.transform_get_translation(pose))
+    return change
+
+
+@func
+def late_force(soft: SoftModel, tree: Int32) -> real:
+    """Share of the external forces on a tree that acts after soft bodies have moved."""
+    share = real(0.0)
+    for anchor in range(soft.count_soft[ANCHORS]):
+        if soft.anchor[anchor].tree == tree:
+            share = maximum(share, soft.anchor[anchor].late_force)
+    return share
+
+
+@func
+def touched_velocity(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    soft: SoftModel,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    dt: real,
+) -> Vector3:
+    """Velocity of a point of a link that can be pushed, as what it touches in a substep sees it [m/s].
+
+    Links are assumed to keep their velocity, but for external forces on single bodies.
+    """
+    velocity = point_velocity(model, state, scratch, world, tree, link, point)
+    if is_single_body(model, tree):
+        share = late_force(soft, tree)
+        velocity += forced_velocity(model, state, world, tree, link, point, (1.0 - share) * dt)
+    return velocity
+
+
+@func
 def held_velocity(
     model: Model,
     state: State,
     scratch: Scratch,
+    soft: SoftModel,
     work: SoftWork,
     world: Int32,
     tree: Int32,
     link: Int32,
     point: Vector3,
+    dt: real,
 ) -> Vector3:
     """Velocity of a point of a link that can be pushed and to which a node is anchored [m/s].
 
-    No motor holds a single body, so it is assumed to move on under the forces on it. Links of other trees are
-    assumed to keep their velocity, as if touched.
+    No motor holds a single body, so it is assumed to move on under the forces on it, as far as they act
+    before soft bodies move. Links of other trees are assumed to keep their velocity, as if touched.
     """
     if is_single_body(model, tree):
         first = model.tree[tree].first_velocity
         arm = point - wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
         omega = three_numbers(work.dof_start, world, first)
-        return three_numbers(work.dof_start, world, first + 3) + wp.cross(omega, arm)
+        velocity = three_numbers(work.dof_start, world, first + 3) + wp.cross(omega, arm)
+        share = late_force(soft, tree)
+        return velocity - forced_velocity(model, state, world, tree, link, point, share * dt)
     return point_velocity(model, state, scratch, world, tree, link, point)
 
 
@@ -243,7 +302,9 @@ def write_touches(
             work.touch_offset[world, touch] = soft.soft[body].margin
             if can_be_pushed(model, state, world, tree, link):
                 make_ready(model, state, scratch, pair_rows, work, world, tree)
-                velocity = point_velocity(model, state, scratch, world, tree, link, point)
+                velocity = touched_velocity(
+                    model, state, scratch, soft, world, tree, link, point, settings.time_step
+                )
                 work.touch_velocity[world, touch] = velocity
                 work.touch_row[world, touch] = row
                 row, block = add_push_rows(
@@ -254,6 +315,7 @@ def write_touches(
 
 @func
 def write_anchors(
+    settings: Settings,
     model: Model,
     state: State,
     scratch: Scratch,
@@ -264,18 +326,24 @@ def write_anchors(
     row: Int32,
     block: Int32,
 ):
-    """Write the anchors, with rows over the trees that they push, from `row` and `block` on."""
+    """Write the anchors, with rows over the trees that they push, from `row` and `block` on.
+
+    Nodes are put where their links have moved.
+    """
     for anchor in range(soft.count_soft[ANCHORS]):
         tree = soft.anchor[anchor].tree
         link = soft.anchor[anchor].link
         point = wp.transform_point(state.link_pose[world, link], soft.anchor[anchor].pivot)
+        state.node_position[world, soft.anchor[anchor].node] = point
         work.anchor_point[world, anchor] = point
         work.anchor_velocity[world, anchor] = Vector3(0.0, 0.0, 0.0)
         work.anchor_impulse[world, anchor] = Vector3(0.0, 0.0, 0.0)
         work.anchor_row[world, anchor] = Int32(-1)
         if can_be_pushed(model, state, world, tree, link):
             make_ready(model, state, scratch, pair_rows, work, world, tree)
-            velocity = held_velocity(model, state, scratch, work, world, tree, link, point)
+            velocity = held_velocity(
+                model, state, scratch, soft, work, world, tree, link, point, settings.time_step
+            )
             work.anchor_velocity[world, anchor] = velocity
             work.anchor_row[world, anchor] = row
             row, block = add_push_rows(

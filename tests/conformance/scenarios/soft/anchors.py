@@ -59,3 +59,31 @@ def box_hangs_on_falling_cloth(p: Any) -> dict[str, Any]:
             p.stepSimulation()
         places.append([*p.getBasePositionAndOrientation(box)[0], *_nodes(p, cloth)[-1]])
     return {"place": places}
+
+
+@scenario(tolerance=0.01)
+def two_pushed_balls_with_maximal_coordinates(p: Any) -> dict[str, Any]:
+    """Balls on two corners of damped cloth, whose speed a controller pushes to 1 m/s: speeds and places.
+
+    Forces act twice on them, the second time after the corners have followed. Damping makes the cloth follow
+    the corners, and the balls feel nothing of it.
+    """
+    p.resetSimulation(p.RESET_USE_DEFORMABLE_WORLD)
+    p.setGravity(0.0, 0.0, 0.0)
+    p.setTimeStep(1.0 / 500.0)
+    cloth = _cloth(p, scale=2.0, mass=1.0, springElasticStiffness=40.0, springDampingStiffness=0.5)
+    balls = []
+    for corner in (0, 24):
+        place = _nodes(p, cloth)[corner].tolist()
+        balls.append(p.createMultiBody(0.1, -1, basePosition=place, useMaximalCoordinates=True))
+        p.createSoftBodyAnchor(cloth, corner, balls[-1], -1)
+    speeds, places = [], []
+    for _ in range(30):
+        for ball in balls:
+            error = np.array([0.0, 0.0, 1.0]) - p.getBaseVelocity(ball)[0]
+            force = np.clip(20.0 * error, -10.0, 10.0)
+            p.applyExternalForce(ball, -1, force.tolist(), [0.0, 0.0, 0.0], p.LINK_FRAME)
+        p.stepSimulation()
+        speeds.append([p.getBaseVelocity(ball)[0][2] for ball in balls])
+        places.append([p.getBasePositionAndOrientation(balls[0])[0][2], _nodes(p, cloth)[0, 2]])
+    return {"speed": speeds, "start": speeds[:3], "place": places}
