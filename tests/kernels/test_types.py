@@ -1,7 +1,7 @@
 """The types of the layouts as the kernels' compiler has them, and float literals in kernels."""
 
 # Kernel code is checked by Warp, not by the Python type checker.
-# pyright: reportCallIssue=false
+# pyright: reportCallIssue=false, reportArgumentType=false
 
 import ctypes
 import importlib
