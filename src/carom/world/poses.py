@@ -1,4 +1,4 @@
-"""Poses and velocities of links, brought up to date with the coordinates of a world."""
+"""The links of a world: whose rows they are, their poses and velocities for its present coordinates."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Derived:
 
 
 class PoseUpdates(ABC):
-    """Updates of the poses and velocities that are computed only when they are asked for."""
+    """Whose the rows of links are, and poses and velocities that are computed only when they are asked for."""
 
     bodies: Bodies
     arrays: WorldArrays
@@ -57,6 +57,24 @@ class PoseUpdates(ABC):
     @abstractmethod
     def _kernel_structs(self) -> KernelStructs:
         """Structs of the present arrays, by the names of kernel arguments."""
+
+    @property
+    def link_places(self) -> list[tuple[int, int]]:
+        """Body and link (-1 is the base) of each row of the link arrays."""
+        if self._derived.link_places is None:
+            bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
+            self._derived.link_places = [
+                (body.id, link) for body in bodies for link in range(-1, body.joint_count)
+            ]
+        return self._derived.link_places
+
+    @property
+    def link_columns(self) -> tuple[list[int], list[int]]:
+        """The bodies and the links of `link_places` as two lists; row -1, which stands for no link, is -1."""
+        if self._derived.link_columns is None:
+            places = [*self.link_places, (-1, -1)]
+            self._derived.link_columns = [body for body, _ in places], [link for _, link in places]
+        return self._derived.link_columns
 
     def present_poses(self) -> PresentPoses:
         """A context in which `link_pose` is up to date with the coordinates of all bodies."""

@@ -263,24 +263,6 @@ class World(
     # State
 
     @property
-    def link_places(self) -> list[tuple[int, int]]:
-        """Body and link (-1 is the base) of each row of the link arrays."""
-        if self._derived.link_places is None:
-            bodies = sorted(self.bodies.values(), key=lambda body: body.first_link)
-            self._derived.link_places = [
-                (body.id, link) for body in bodies for link in range(-1, body.joint_count)
-            ]
-        return self._derived.link_places
-
-    @property
-    def link_columns(self) -> tuple[list[int], list[int]]:
-        """The bodies and the links of `link_places` as two lists; row -1, which stands for no link, is -1."""
-        if self._derived.link_columns is None:
-            places = [*self.link_places, (-1, -1)]
-            self._derived.link_columns = [body for body, _ in places], [link for _, link in places]
-        return self._derived.link_columns
-
-    @property
     def _shape(self) -> Shape:
         if self._derived.shape is None:
             self._derived.shape = Shape(layout(self))
