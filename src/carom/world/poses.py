@@ -41,7 +41,7 @@ class Derived:
 
 
 class PoseUpdates(ABC):
-    """Whose the rows of links are, and poses and velocities that are computed only when they are asked for."""
+    """Whose the rows of links are, and their poses and velocities, computed only when they are asked for."""
 
     bodies: Bodies
     arrays: WorldArrays
