@@ -9,7 +9,7 @@ from tests.soft.scenes import rigid, world
 from carom import Body, Camera, World, Worlds
 from carom.description import Plane, Sphere
 
-COUNT, STEPS = 3, 40
+COUNT, STEPS = 3, 50
 
 
 @pytest.fixture
@@ -33,13 +33,13 @@ def test_contacts_of_cloth_are_those_of_each_world(cloth: tuple[World, Body, Bod
     for number, one in enumerate(lone[:2]):
         one.step(STEPS)
         count, columns = one.queries().contacts(ball.id, -2, sheet.id, -2, one.parameters.substep_time)
-        # A lone world also lists contacts of faces; in many their forces are shared among the nodes, and the
-        # shares of nodes that are not near the ball are missing.
+        # A lone world also lists contacts of faces; in many their forces are shared among the nodes. The shares of
+        # nodes that are not near the ball are missing, as at step 40; there are none at this step.
         assert found.number[number] > 0
         assert count > 0
         normal, along, friction, across = (np.array(list(columns[k])[:count]) for k in (6, 8, 9, 10))
         force = (along[:, None] * normal + friction[:, None] * across).sum(axis=0)
-        np.testing.assert_allclose(found.forces[number], force, atol=0.01 * float(np.linalg.norm(force)))
+        np.testing.assert_allclose(found.forces[number], force, atol=1e-9)
         assert found.forces[number, 2] < 0.0
     np.testing.assert_allclose(worlds.contacts(sheet, ball).forces, -found.forces, atol=1e-12)
     assert worlds.contacts(sheet).number[0] >= found.number[0]
