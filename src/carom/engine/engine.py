@@ -18,6 +18,7 @@ from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
 from carom.engine.settings import EngineSettings
+from carom.engine.task import Task
 from carom.engine.threads import Threads
 from carom.engine.workspace import Workspace
 from carom.layouts.programs import LANES
@@ -532,36 +533,3 @@ class Engine:
                 interpreter.ask(
                     world_count=whole, step_count=1, resumed=0, first_substep=0, end_substep=ALL_SUBSTEPS
                 )
-
-
-class Task:
-    """A task that runs in all worlds when it is called; see `Engine.task`."""
-
-    def __init__(
-        self,
-        engine: Engine,
-        make_launches: Callable[[KernelStructs], list[Launch]],
-        interpreters: list[Stepper],
-        worlds_per_thread: int,
-    ) -> None:
-        self._engine = engine
-        self._make_launches = make_launches
-        self._interpreters = interpreters
-        self._worlds_per_thread = worlds_per_thread
-        self._made_at = -1
-
-    def renew(self) -> None:
-        """Make the launches again before the next call."""
-        self._made_at = -1
-
-    def __call__(self, worlds: np.ndarray | None = None) -> None:
-        """Run it in some worlds, by index; None for all."""
-        if self._made_at != self._engine.changes:
-            self._engine.load(self._interpreters, self._program)
-            self._made_at = self._engine.changes
-        count = self._engine.arrays.world_count if worlds is None else len(worlds)
-        threads = max(1, count // self._worlds_per_thread)
-        self._engine.run(self._interpreters[:threads], worlds)
-
-    def _program(self, structs: KernelStructs) -> Program:
-        return Program(begin=[], detection=self._make_launches(structs), motion=[], end=[], abandon=[])

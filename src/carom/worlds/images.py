@@ -11,8 +11,9 @@ from carom.camera_image import bodies_and_links
 from carom.checks import Array
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
-from carom.engine.engine import Engine, Task
+from carom.engine.engine import Engine
 from carom.engine.presence import absent_links
+from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
 from carom.native.cpu import core_count
 from carom.native.kernels import link_poses_kernel

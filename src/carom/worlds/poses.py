@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.engine.engine import Engine, Task
+from carom.engine.engine import Engine
+from carom.engine.task import Task
 from carom.engine.threads import WORLDS_PER_THREAD
 from carom.native.kernels import forward_kinematics_kernel, link_twist_kernel
 from carom.native.launch import Kernel, KernelStructs, Launch
