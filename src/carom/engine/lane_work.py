@@ -3,7 +3,7 @@
 Each lane has a workspace of its own, in which a world takes its step (`native/source/perform.cpp`).
 `lane_motion_kernel` sees numbers of several worlds side by side, so it has arrays of its own: those that it
 reads are gathered from the worlds before each step, and what it finds out is handed to the steps of single
-worlds (`native/source/lane_motion.cpp`).
+worlds (`native/source/lanes/lane_motion.cpp`).
 """
 
 from __future__ import annotations

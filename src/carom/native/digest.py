@@ -25,6 +25,7 @@ _FOLDERS = (
     "carom/native/building",
     "carom/native/building/libm",
     "carom/native/source",
+    "carom/native/source/lanes",
 )
 _SUFFIXES = (".c", ".cpp", ".h", ".py")
 
