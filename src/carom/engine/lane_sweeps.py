@@ -1,8 +1,8 @@
 """Memory for sweeps over the rows of several worlds at once.
 
 Each world writes its rows into the workspace of its lane. `lane_sweep_kernel` has arrays of its own, into
-which `native/source/lanes/lane_sweeps.cpp` gathers their numbers. Places of rows over two trees are those of the
-first lane, where all have the same.
+which `native/source/lanes/lane_sweeps.cpp` gathers their numbers. Places of rows over two trees are those of
+the first lane, where all have the same.
 """
 
 from __future__ import annotations
