@@ -1,8 +1,8 @@
 """A sweep over rows of motors, limits and user constraints of several worlds at once, each in a lane.
 
 The build compiles this module with a type of several numbers in place of `real`, as it does with
-`dynamics.lane_motion`. Whole numbers are those of all worlds: `native/source/lanes/lane_sweeps.cpp` sees to it
-that their rows have the same places.
+`dynamics.lane_motion`. Whole numbers are those of all worlds: `native/source/lanes/lane_sweeps.cpp` sees to
+it that their rows have the same places.
 """
 
 from carom.kernels.solver.sweeps import sweep_over_visits
