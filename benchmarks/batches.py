@@ -50,8 +50,11 @@ def scene(case: str) -> tuple[World, Body | None]:
         for joint in _hinges(arm):
             arm.add_actuator(joint, PositionActuator(joint, kp=400.0, kv=40.0))
         return world, arm
-    world.add_plane()
-    robot = next(body for body in world.load(DATA / "mjcf" / f"{case}.xml").bodies if body.joint_count)
+    bodies = world.load(DATA / "mjcf" / f"{case}.xml").bodies
+    robot = next(body for body in bodies if body.joint_count)
+    if len(bodies) == 1:
+        # The Humanoid's file has a floor of its own.
+        world.add_plane()
     for joint in _hinges(robot):
         robot.add_actuator(joint, Motor(joint, gear=STRENGTHS[case]))
     return world, robot
