@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from carom.camera_image import CameraImage, PointCloud
 from carom.checks import Array, positive, vector
+from carom.closed import Closed
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import compose, quaternion_from_matrix
 from carom.native.products import length, product
@@ -34,7 +35,7 @@ DAYLIGHT = Light(ambient=0.5, diffuse=0.5, distance=inf, shadow=True, shade=0.4)
 _EYE_FROM_CAMERA = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
-class Camera:
+class Camera(Closed):
     """A pinhole camera. It looks along z, its x axis points to the right of the image, its y axis down.
 
     A point (x, y, z) of the camera's frame is projected to column fx x / z + cx and row fy y / z + cy;
@@ -104,6 +105,7 @@ class Camera:
         self.link: Link | None = link
         self._local = IDENTITY
         self.place(position, orientation)
+        self._close(Camera)
 
     @classmethod
     def with_field_of_view(

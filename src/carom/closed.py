@@ -12,9 +12,9 @@ class Closed:
     class that has closed itself.
     """
 
-    def _close(self, own: type) -> None:
-        """Refuse new attributes from now on, if the object is of the class `own` and of no subclass."""
-        if type(self) is own:
+    def _close(self, own: type | None = None) -> None:
+        """Refuse new attributes from now on; if `own` is stated, only of objects of this class itself."""
+        if own is None or type(self) is own:
             self.__dict__["_closed"] = True
 
     def __setattr__(self, name: str, value: Any) -> None:

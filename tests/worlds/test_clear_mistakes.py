@@ -49,6 +49,26 @@ def test_misspelt_attributes_are_refused(arm: tuple[World, Body], many: bool) ->
     world.gravity = (0.0, 0.0, -1.0)
 
 
+def test_misspelt_attributes_of_bodies_and_cameras_are_refused(arm: tuple[World, Body]) -> None:
+    world, panda = arm
+    camera = Camera.with_field_of_view(32, 32, 50)
+    things = (
+        panda,
+        panda.joints,
+        panda.links,
+        panda.joints[0],
+        panda.links[0],
+        Worlds(world, 2)[panda],
+        camera,
+    )
+    for thing in things:
+        with pytest.raises(AttributeError, match="has no attribute 'positons'"):
+            thing.positons = 1.0  # type: ignore[union-attr]
+    with pytest.raises(AttributeError, match="did you mean 'joint_positions'"):
+        Worlds(world, 2)[panda].joint_positons = 1.0  # type: ignore[attr-defined]
+    camera.width = 16
+
+
 def test_classes_of_ones_own_have_attributes_of_their_own() -> None:
     class Mine(World):
         def __init__(self) -> None:
@@ -67,9 +87,9 @@ def test_steps_are_not_undone(arm: tuple[World, Body], many: bool) -> None:
 
 
 def test_a_body_that_is_not_there_is_named_with_those_that_are(arm: tuple[World, Body]) -> None:
-    with pytest.raises(KeyError, match="there is no body 5; there are 0"):
+    with pytest.raises(KeyError, match=r"there is no body 5; the world has 0 \('panda'\)"):
         arm[0].bodies[5]
-    with pytest.raises(KeyError, match="there are none"):
+    with pytest.raises(KeyError, match="the world has none"):
         World().remove(0)
     assert arm[0].bodies.get(5) is None
 

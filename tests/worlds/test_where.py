@@ -95,6 +95,47 @@ def test_drives_change_where_they_are_to(arm: tuple[World, Body]) -> None:
         assert_same_bits(worlds, number, one)
 
 
+def test_drives_can_be_read_back_and_set_again(arm: tuple[World, Body]) -> None:
+    world, panda = arm
+    worlds = Worlds(world, COUNT)
+    batch = worlds[panda]
+    batch.set_position_targets(
+        [[0.1, -0.2], [0.3, -0.4]],
+        gains=0.2,
+        velocities=0.5,
+        velocity_gains=0.7,
+        max_forces=60.0,
+        max_velocities=2.0,
+        joints=["panda_joint1", "panda_joint2"],
+        where=CHOSEN,
+    )
+    batch.set_velocity_targets(-1.5, max_forces=24.0, joints=[2], where=CHOSEN)
+    batch.set_springs([0.6, 0.8], stiffness=40.0, damping=3.0, max_forces=12.0, joints=[0, 1], where=MASK)
+    batch.disable_motors([3], where=MASK)
+    motors, springs = batch.motors(), batch.springs(joints=[0, 1])
+    assert motors["targets"][:, :2].tolist() == [[0, 0], [0.3, -0.4], [0, 0], [0.1, -0.2], [0, 0]]
+    stated = {
+        "velocities": 0.5,
+        "gains": 0.2,
+        "velocity_gains": 0.7,
+        "max_forces": 60.0,
+        "max_velocities": 2.0,
+    }
+    for name, value in stated.items():
+        np.testing.assert_allclose(motors[name][MASK, :2], value, rtol=1e-15)
+    np.testing.assert_array_equal(motors["velocities"][MASK, 2], -1.5)
+    np.testing.assert_array_equal(motors["gains"][MASK, 2], 0.0)
+    np.testing.assert_array_equal(motors["max_forces"][MASK, 3], 0.0)
+    assert springs["targets"].tolist() == [[0, 0], [0.6, 0.8], [0, 0], [0.6, 0.8], [0, 0]]
+    for name, value in {"velocities": 0.0, "stiffness": 40.0, "damping": 3.0, "max_forces": 12.0}.items():
+        np.testing.assert_array_equal(springs[name][MASK], value)
+    other = Worlds(world, COUNT)
+    other[panda].set_position_targets(motors.pop("targets"), **motors, joints=None)
+    other[panda].set_springs(springs.pop("targets"), **springs, joints=[0, 1])
+    for name, value in batch.motors().items():
+        np.testing.assert_allclose(other[panda].motors()[name], value, rtol=1e-15)
+
+
 def test_forces_act_where_they_are_to() -> None:
     world, cube = box()
     worlds = Worlds(world, COUNT)

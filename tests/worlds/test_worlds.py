@@ -370,7 +370,7 @@ def test_bad_input_is_refused_and_changes_nothing(arm: tuple[World, Body]) -> No
         (ValueError, "count must be at least 1", lambda: Worlds(world, 0)),
         (ValueError, "threads must be at least 1", lambda: Worlds(world, 1, threads=0)),
         (ValueError, "device must be", lambda: Worlds(world, 1, device="toaster")),
-        (KeyError, "there is no body 9; there are 0", lambda: worlds[9]),
+        (KeyError, "there is no body 9; the world has 0", lambda: worlds[9]),
         (ValueError, r"\(3, 9\)", lambda: setattr(batch, "joint_positions", np.zeros((COUNT, 5)))),
         (ValueError, "must be finite", lambda: setattr(batch, "joint_positions", np.nan)),
         (ValueError, "target must be finite", lambda: batch.set_position_targets(np.full(9, np.nan))),

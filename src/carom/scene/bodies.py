@@ -1,16 +1,17 @@
-"""The bodies of a world by their numbers."""
+"""The bodies of a world, or of many, by their numbers."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    from carom.scene.body import Body
+from carom.scene.named import HasName
+
+_Body = TypeVar("_Body", bound=HasName)
 
 
-class Bodies(dict[int, "Body"]):
+class Bodies(dict[int, _Body]):
     """A dictionary whose `KeyError` says which bodies there are."""
 
-    def __missing__(self, number: int) -> Body:
-        there = f"there are {', '.join(map(str, self))}" if self else "there are none"
-        raise KeyError(f"there is no body {number!r}; {there}")
+    def __missing__(self, number: int) -> _Body:
+        there = ", ".join(f"{known} ({body.name!r})" for known, body in self.items())
+        raise KeyError(f"there is no body {number!r}; the world has {there or 'none'}")

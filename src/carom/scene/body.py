@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.closed import Closed
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import (
@@ -62,7 +63,7 @@ class Outline:
             self.dynamics[0].mass = 0.0
 
 
-class Body:
+class Body(Closed):
     """Handle of a body; stays valid until the body is removed.
 
     Attributes:
@@ -84,34 +85,52 @@ class Body:
     # For the other packages of Carom:
     # derived: Data that algorithms cache until masses or inertias change, or the base is fixed or freed.
     # links_before: Number of links that the world had loaded before this body.
+    id: int
+    world: World
+    spec: BodySpec
+    rows: TreeRows
+    joint_count: int
+    joint_types: tuple[int, ...]
+    position_count: tuple[int, ...]
+    velocity_count: tuple[int, ...]
+    first_link: int
+    first_position: int
+    first_velocity: int
+    position_index: tuple[int, ...]
+    velocity_index: tuple[int, ...]
+    fixed_base: bool
+    links_before: int
+    derived: dict[Any, Any]
+    _encoded_names: tuple[bytes, bytes] | None
+    _dynamics: list[LinkDynamics]
 
     def __init__(
         self, world: World, body_id: int, spec: BodySpec, rows: TreeRows, outline: Outline | None = None
     ) -> None:
-        self.id = body_id
-        self.world = world
-        self.spec = spec
-        self.rows = rows
         mine = outline or Outline(spec)
-        self.joint_count: int = len(spec.links)
-        self.joint_types: tuple[int, ...] = mine.joint_types
-        self.position_count: tuple[int, ...] = mine.position_count
-        self.velocity_count: tuple[int, ...] = mine.velocity_count
-        first = rows.first
-        self.first_link: int = first["link"]
-        self.first_position: int = first["position"]
-        self.first_velocity: int = first["dof"]
-        self.position_index: tuple[int, ...] = _first_rows(
-            self.first_position + BASE_POSITIONS, self.position_count
+        position, velocity = rows.first["position"], rows.first["dof"]
+        # All at once, as `Closed` makes it slow to set one after the other.
+        vars(self).update(
+            id=body_id,
+            world=world,
+            spec=spec,
+            rows=rows,
+            joint_count=len(spec.links),
+            joint_types=mine.joint_types,
+            position_count=mine.position_count,
+            velocity_count=mine.velocity_count,
+            first_link=rows.first["link"],
+            first_position=position,
+            first_velocity=velocity,
+            position_index=_first_rows(position + BASE_POSITIONS, mine.position_count),
+            velocity_index=_first_rows(velocity + BASE_VELOCITIES, mine.velocity_count),
+            fixed_base=spec.fixed_base,
+            links_before=0,
+            derived={},
+            _encoded_names=None,
+            _dynamics=mine.dynamics if outline is None else [it.copy() for it in mine.dynamics],
         )
-        self.velocity_index: tuple[int, ...] = _first_rows(
-            self.first_velocity + BASE_VELOCITIES, self.velocity_count
-        )
-        self.fixed_base: bool = spec.fixed_base
-        self.links_before = 0
-        self._encoded_names: tuple[bytes, bytes] | None = None
-        self.derived: dict[Any, Any] = {}
-        self._dynamics = mine.dynamics if outline is None else [it.copy() for it in mine.dynamics]
+        self._close(Body)
 
     def relocate(self, change: Change, first: Mapping[str, int]) -> None:
         """Update the rows of the body in the flat arrays with a change of them; they begin at `first`."""

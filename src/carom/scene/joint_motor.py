@@ -106,6 +106,29 @@ class Drives(NamedTuple):
         }
         self._write(self.pd, columns)
 
+    def motors(self) -> dict[str, np.ndarray]:
+        """What the motors are told, copies; see `JointBatch.motors`."""
+        rows = self.motor[..., self.dofs, :]
+        return {
+            "targets": rows[..., MOTOR_POSITION].copy(),
+            "velocities": rows[..., MOTOR_VELOCITY].copy(),
+            "gains": rows[..., MOTOR_KP].copy(),
+            "velocity_gains": rows[..., MOTOR_KD].copy(),
+            "max_forces": rows[..., MOTOR_MAX_IMPULSE] / self.substep_time,
+            "max_velocities": rows[..., MOTOR_VELOCITY_CLAMP].copy(),
+        }
+
+    def springs(self) -> dict[str, np.ndarray]:
+        """What the PD drives are told, copies; see `JointBatch.springs`."""
+        rows = self.pd[..., self.dofs, :]
+        return {
+            "targets": rows[..., PD_POSITION].copy(),
+            "velocities": rows[..., PD_VELOCITY].copy(),
+            "stiffness": rows[..., PD_KP].copy(),
+            "damping": rows[..., PD_KD].copy(),
+            "max_forces": rows[..., PD_MAX_FORCE].copy(),
+        }
+
     def switch_off(self) -> None:
         """Switch off the motors and the PD drives."""
         self.motor[..., self.dofs, MOTOR_MAX_IMPULSE] = 0.0

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Generic, Protocol, TypeVar
 
+from carom.closed import Closed
+
 
 class HasName(Protocol):
     """Interface of items that have a name."""
@@ -18,7 +20,7 @@ class HasName(Protocol):
 Item = TypeVar("Item", bound=HasName)
 
 
-class Named(Generic[Item]):
+class Named(Closed, Generic[Item]):
     """Items by index or by name."""
 
     def __init__(self, kind: str, items: Sequence[Item], first: int = 0) -> None:
@@ -30,6 +32,7 @@ class Named(Generic[Item]):
         self._items = list(items)
         self._first = first
         self._by_name = {item.name: item for item in reversed(self._items)}
+        self._close()
 
     def __getitem__(self, key: int | str) -> Item:
         """The item with an index or a name.

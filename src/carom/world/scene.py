@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
+from carom.closed import Closed
 from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.scene.actuators.actuator import BodyActuator
@@ -26,7 +27,7 @@ _MAX_NAMES = 8
 _FROM_CAMERA = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
-class Scene(Sequence[Body]):
+class Scene(Closed, Sequence[Body]):
     """The content of a file in a world; a sequence of its bodies, also by name.
 
     Attributes:
@@ -61,6 +62,7 @@ class Scene(Sequence[Body]):
         self.cameras: dict[str, FileCamera] = {}
         self.options: dict[str, Any] = {}
         self.ignored: IgnoredList = ignored
+        self._close(Scene)
 
     def apply_options(self) -> None:
         """Set gravity, fluid and time step of the world to those of the file, and how far its solver goes.

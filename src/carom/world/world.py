@@ -105,7 +105,7 @@ class World(
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
-        self.bodies: Bodies = Bodies()
+        self.bodies: Bodies[Body] = Bodies()
         self.listing: dict[int, Body] = {}
         self._clock = c_double(0.0)
         self.observers: list[Observer] = []

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom.closed import Closed
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.scene.body import Body
@@ -18,7 +19,7 @@ from carom.worlds.chosen import Chosen
 from carom.worlds.poses import PoseFinder
 
 
-class Batch:
+class Batch(Closed):
     """Base class of `BodyBatch`: where the rows of a body are, by which names, and how to write to them."""
 
     def __init__(self, body: Body, scene: World, engine: Engine, threads: int) -> None:
@@ -40,6 +41,7 @@ class Batch:
         self._links = _following(body.first_link + 1, body.joint_count)
         self._nodes = _following(body.rows.first["node"], body.rows.count["node"])
         self._actuators = _following(body.rows.first["actuator"], body.rows.count["actuator"])
+        self._close()
 
     def link_rows(self, link: int | str | None) -> np.ndarray:
         """Rows of a link in the arrays of the engine; None stands for the base and all links."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.checks import Array
 from carom.engine.engine import Engine
+from carom.scene.bodies import Bodies
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.body import BodyBatch
@@ -22,7 +23,7 @@ class ContactQueries:
 
     _scene: World
     _engine: Engine
-    _bodies: dict[int, BodyBatch]
+    _bodies: Bodies[BodyBatch]
 
     def __getitem__(self, body: Body | int) -> BodyBatch:
         """A body in all worlds.
@@ -33,10 +34,7 @@ class ContactQueries:
         Raises:
             KeyError: That world had no such body.
         """
-        number = body if isinstance(body, int) else body.id
-        if number not in self._bodies:
-            raise KeyError(f"there is no body {number}; there are {', '.join(map(str, self._bodies))}")
-        return self._bodies[number]
+        return self._bodies[body if isinstance(body, int) else body.id]
 
     def contacts(
         self,

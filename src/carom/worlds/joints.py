@@ -230,6 +230,31 @@ class JointBatch(Batch):
         with self._drives(columns, self._chosen(where)) as drives:
             drives.switch_off()
 
+    def motors(self, joints: list[int | str] | None = None) -> dict[str, Array]:
+        """What motors are told in each world, by the names of the arguments of `set_position_targets`.
+
+        Args:
+            joints: Which joints, by index or name; None for all movable joints.
+
+        Returns:
+            Copies, (count, dofs). A velocity target has 0 in `gains`, a motor that is off in `max_forces`.
+
+        Raises:
+            ValueError: A joint has more than one degree of freedom.
+        """
+        columns, _ = self._chosen_joints(joints)
+        with self._drives(columns, self._chosen()) as drives:
+            return drives.motors()
+
+    def springs(self, joints: list[int | str] | None = None) -> dict[str, Array]:
+        """What springs of joints are told in each world, by the names of the arguments of `set_springs`.
+
+        Args, Returns, Raises: as for `motors`; a spring that is off has 0 in `max_forces`.
+        """
+        columns, _ = self._chosen_joints(joints)
+        with self._drives(columns, self._chosen()) as drives:
+            return drives.springs()
+
     @contextmanager
     def _drives(self, columns: slice | np.ndarray, worlds: Chosen) -> Iterator[Drives]:
         """The drives of some joints in some worlds; what is set is in force at the end."""

@@ -16,6 +16,7 @@ from carom.engine.engine import MAX_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
+from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
@@ -88,10 +89,10 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted: Mask = np.zeros(count, dtype=bool)
         workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.times)
-        self._bodies = {
-            number: BodyBatch(body, self._scene, self._engine, self._sensors, workers)
+        self._bodies = Bodies(
+            (number, BodyBatch(body, self._scene, self._engine, self._sensors, workers))
             for number, body in self._scene.bodies.items()
-        }
+        )
 
         self._close(Worlds)
 
