@@ -10,7 +10,7 @@ from tests.collision.scene import Scene, box, plane, sphere
 from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth
 from tests.thorough.profiles import cases
 
-from carom.layouts.contacts import KNOWN, LIST_AGE, LIST_IS_WIDE, LISTED, NEAR, PAIRS
+from carom.layouts.contacts import FEW_SHAPES, KNOWN, LIST_AGE, LIST_KIND, LISTED, NEAR, PAIRS
 
 SLACK = 0.02
 
@@ -72,10 +72,10 @@ def test_a_list_lasts_while_no_shape_has_moved_by_half_its_slack():
     for _ in range(2):
         scene.collide()
     # The first list is without slack, as no speed is known.
-    assert counts(scene)[LIST_IS_WIDE] == 0
+    assert counts(scene)[LIST_KIND] == 0
     scene.place(0, (1e-6, 0.0, 0.0))
     scene.collide()
-    assert (counts(scene)[LIST_IS_WIDE], counts(scene)[LISTED], counts(scene)[PAIRS]) == (1, 1, 0)
+    assert (counts(scene)[LIST_KIND], counts(scene)[LISTED], counts(scene)[PAIRS]) == (1, 1, 0)
     scene.place(0, (0.49 * SLACK, 0.0, 0.0))
     scene.place(1, (0.2 + NEAR + 0.42 * SLACK, 0.0, 0.0))
     scene.collide()
@@ -85,15 +85,34 @@ def test_a_list_lasts_while_no_shape_has_moved_by_half_its_slack():
     assert counts(scene)[LIST_AGE] == 0
 
 
-def test_fast_shapes_have_no_list_with_slack_until_they_are_slow():
-    scene = Scene([sphere(0.1), sphere(0.1, position=(0.3, 0.0, 0.0))])
-    wide = []
+def kinds_by_speed(scene: Scene) -> list[int]:
+    """The kind of the list while a shape moves fast, then slowly, then fast again."""
+    kinds = []
     for step, speed in enumerate([0.003] * 5 + [0.002] * 3 + [0.003] * 3):
         scene.place(0, (speed * step, 0.0, 0.0))
         scene.collide()
-        wide.append(int(counts(scene)[LIST_IS_WIDE]))
-    assert wide[:5] == [0] * 5
-    assert 1 in wide[5:]
+        kinds.append(int(counts(scene)[LIST_KIND]))
+    return kinds
+
+
+def test_many_fast_shapes_have_no_list_with_slack_until_they_are_slow():
+    others = [sphere(0.1, position=(0.3 + 0.5 * i, 0.0, 0.0)) for i in range(FEW_SHAPES)]
+    kinds = kinds_by_speed(Scene([sphere(0.1), *others]))
+    assert kinds[:5] == [0] * 5
+    assert 1 in kinds[5:]
+
+
+def test_few_fast_shapes_have_a_list_of_all_pairs():
+    scene = Scene([sphere(0.1), sphere(0.1, position=(0.3, 0.0, 0.0)), sphere(0.1, position=(9.0, 0.0, 0.0))])
+    assert kinds_by_speed(scene) == [0] + [2] * 10
+    scene.place(0, (8.9, 0.0, 0.0))
+    scene.collide()
+    assert (counts(scene)[LIST_AGE], counts(scene)[LISTED], counts(scene)[PAIRS]) == (10, 3, 1)
+    # After a while it is made anew, with as much slack as the speed meanwhile would have needed.
+    scene.place(0, (0.03, 0.0, 0.0))
+    for _ in range(260):
+        scene.collide()
+    assert counts(scene)[LIST_KIND] == 1
 
 
 def test_a_list_that_has_no_room_for_slack_has_none():
@@ -103,7 +122,7 @@ def test_a_list_that_has_no_room_for_slack_has_none():
     for _ in range(3):
         scene.place(0, (1e-6, 0.0, 0.0))
         scene.collide()
-    assert counts(scene)[LIST_IS_WIDE] == 0
+    assert counts(scene)[LIST_KIND] == 0
     assert near_pairs(scene) == {}
 
 

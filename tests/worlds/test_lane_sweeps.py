@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
 
 import numpy as np
@@ -162,3 +163,15 @@ def test_settings_that_change() -> None:
                 one_by_one.step(steps, where=[number])
         assert_same_motion(together, one_by_one)
     assert sweeps_of(together) > 0
+
+
+def test_given_torques_are_left_out_of_all_but_the_first_sweeps() -> None:
+    scene, body = arm(servos=False)
+    worlds, _ = controlled(scene, body, LANES)
+    for steps in (1, 20):
+        worlds.step(steps)
+    (work,) = works_of(worlds)
+    assert work is not None
+    visits = ctypes.c_int32.from_address(work.sweeps.record.visits).value
+    assert sweeps_of(worlds) > 2 * 20
+    assert visits < len(_HOME)

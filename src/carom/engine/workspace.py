@@ -9,6 +9,7 @@ from typing import Any
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.detection_capacity import scratch_capacity
 from carom.layouts.contacts import (
+    FEW_SHAPES,
     LIST_FILTER,
     MAX_CORNERS,
     NO_LIST,
@@ -75,8 +76,10 @@ class Workspace:
         overlaps = contact_arrays.contacts.capacity["overlap"]
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
         room = self.pairs.capacity["pair"]
-        # The neighbour list also has pairs that are not near yet.
-        self.pairs.reserve({"queue": room + overlaps, "listed": 2 * room})
+        # The neighbour list also has pairs that are not near yet; among few shapes it may have all pairs.
+        few = min(contact_arrays.shapes.shape_count, FEW_SHAPES)
+        listed = max(2 * room, few * (few - 1) // 2)
+        self.pairs.reserve({"queue": room + overlaps, "listed": listed})
         self.pair_rows.reserve(
             {
                 "tree": arrays.model.capacity["tree"],

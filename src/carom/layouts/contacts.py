@@ -42,12 +42,14 @@ MARGIN = 0.001
 # Columns of `Pairs.count_pairs`.
 PAIRS, LEAVES, BOUNDED, PLANES, READINESS, LEAF_LENGTH = 0, 1, 2, 3, 4, 5
 START_CONTACTS, START_OVERLAPS, START_KNOWN = 6, 7, 8
-LISTED, LIST_AGE, LIST_IS_WIDE, LIST_FILTER = 9, 10, 11, 12
+LISTED, LIST_AGE, LIST_KIND, LIST_FILTER = 9, 10, 11, 12
 START_RESETS_SEEN = 13
 COLUMNS = 14
-# The neighbour list: number of its pairs; substeps since it was made; 1 if it has slack; `NO_LIST`, or one
-# more than `Settings.filter_both` was.
+# The neighbour list: number of its pairs; substeps since it was made; its kind; `NO_LIST`, or one more than
+# `Settings.filter_both` was.
 NO_LIST = 0
+# Up to this many shapes of a world are compared without a hierarchy: sorting them would not pay.
+FEW_SHAPES = 32
 # Value of START_CONTACTS and START_OVERLAPS, the numbers of contacts and of overlaps at the start of a step,
 # until these have been saved.
 NONE_KEPT = -1

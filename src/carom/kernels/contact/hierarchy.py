@@ -13,12 +13,10 @@ from carom.kernels.contact.bounds import UNBOUNDED, is_bounded
 from carom.kernels.maths.min_max import greatest_entry, lower_corner, maximum, upper_corner
 from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Int32, Vector3, func, real
-from carom.layouts.contacts import BOUNDED, LEAF_LENGTH, LEAVES, PLANES, RADIX
+from carom.layouts.contacts import BOUNDED, FEW_SHAPES, LEAF_LENGTH, LEAVES, PLANES, RADIX
 
 # Maximum number of shapes in a leaf, if there are several leaves.
 LEAF_SIZE = 4
-# Up to this many shapes form one leaf, because sorting them would not pay.
-ONE_LEAF = 32
 # Cells of the curve along each axis.
 CURVE_CELLS = real(1024.0)
 # The curve covers a window of this many mean deviations on each side of the mean of the shapes' centres.
@@ -183,7 +181,7 @@ def build_hierarchy(shapes: Shapes, settings: Settings, pairs: Pairs, world: Int
     gather_shapes(shapes, settings, pairs, world)
     count = pairs.count_pairs[world, BOUNDED]
     leaf_count = Int32(1)
-    if count > ONE_LEAF:
+    if count > FEW_SHAPES:
         while leaf_count * LEAF_SIZE < count:
             leaf_count *= 2
     pairs.count_pairs[world, LEAVES] = leaf_count

@@ -4,7 +4,8 @@ It has the pairs that may collide and whose bounds are at most a *slack* farther
 as near. While no bound has moved by more than half the slack, all near pairs are in the list. So most steps
 need no hierarchy, no filters and no sort. Which pairs are selected does not depend on when the list was made.
 
-In motion so fast that a list would not last, it is made anew in each substep, without slack.
+In motion so fast that a list would not last, it is made anew in each substep, without slack. But among few
+shapes it then has all pairs that may collide, and serves any other world whose steps are taken in between.
 """
 
 import warp as wp
@@ -17,19 +18,26 @@ from carom.kernels.structs import Model, Pairs, Settings, Shapes
 from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.contacts import (
     BOUNDED,
+    FEW_SHAPES,
     LEAVES,
     LIST_AGE,
     LIST_FILTER,
-    LIST_IS_WIDE,
+    LIST_KIND,
     LISTED,
     NEAR,
     NO_LIST,
     PLANES,
 )
 
-# Slack of a list that is to last [m].
+# Kinds of lists: without slack, with it, and of all pairs.
+NARROW, WIDE, COMPLETE = 0, 1, 2
+# Slack of a wide list [m].
 SLACK = real(0.02)
-# Substeps that a list with slack has to last, at the present speed.
+# Slack of a complete list: less than bounds change when a shape without a pose gets one [m].
+ENDLESS = real(1e17)
+# Substeps after which a complete list is made anew, as a wide one may be enough now.
+LONGEST_LIFE = 256
+# Substeps that a wide list has to last, at the present speed.
 MIN_LIFE = real(4.0)
 
 
@@ -56,29 +64,39 @@ def looks_farther(settings: Settings, pairs: Pairs, world: Int32) -> bool:
 
 
 @func
+def slack_of(kind: Int32) -> real:
+    """Slack of a list: narrow, wide or complete."""
+    return ENDLESS if kind == COMPLETE else real(kind) * SLACK
+
+
+@func
 def renew_list(shapes: Shapes, model: Model, settings: Settings, pairs: Pairs, world: Int32):
     """Make the list anew unless it holds; the number of its pairs may exceed the capacity."""
     age = pairs.count_pairs[world, LIST_AGE] + 1
-    wide = Int32(0)
+    few = settings.shape_count <= FEW_SHAPES
+    kind = Int32(NARROW)
     if pairs.count_pairs[world, LIST_FILTER] == 1 + settings.filter_both:
         moved = displacement(settings, pairs, world)
-        slack = real(pairs.count_pairs[world, LIST_IS_WIDE]) * SLACK
-        if 2.0 * moved <= slack and not looks_farther(settings, pairs, world):
+        last = pairs.count_pairs[world, LIST_KIND]
+        is_old = last == COMPLETE and age > LONGEST_LIFE
+        if 2.0 * moved <= slack_of(last) and not is_old and not looks_farther(settings, pairs, world):
             pairs.count_pairs[world, LIST_AGE] = age
             return
         if 2.0 * MIN_LIFE * moved <= real(age) * SLACK:
-            wide = Int32(1)
+            kind = Int32(WIDE)
+        elif few:
+            kind = Int32(COMPLETE)
     build_hierarchy(shapes, settings, pairs, world)
-    count = list_pairs(shapes, model, settings, pairs, world, real(wide) * SLACK)
-    if wide == 1 and count > pairs.listed_shapes.shape[1]:
-        wide = Int32(0)
+    count = list_pairs(shapes, model, settings, pairs, world, slack_of(kind))
+    if kind != NARROW and count > pairs.listed_shapes.shape[1]:
+        kind = Int32(NARROW)
         count = list_pairs(shapes, model, settings, pairs, world, real(0.0))
     for shape in range(settings.shape_count):
         pairs.shape_listed_lower[world, shape] = pairs.shape_lower[world, shape]
         pairs.shape_listed_upper[world, shape] = pairs.shape_upper[world, shape]
         pairs.shape_listed_motion[world, shape] = pairs.shape_motion[world, shape]
     pairs.count_pairs[world, LIST_AGE] = 0
-    pairs.count_pairs[world, LIST_IS_WIDE] = wide
+    pairs.count_pairs[world, LIST_KIND] = kind
     pairs.count_pairs[world, LIST_FILTER] = 1 + settings.filter_both
     if count > pairs.listed_shapes.shape[1]:
         pairs.count_pairs[world, LIST_FILTER] = NO_LIST

@@ -92,6 +92,10 @@ def joint_constraint_rows(
         auto change = own.change - rate;
         if (own.soft != 0)
             change = change * wp::index(share, world, i) - wp::index(softness, world, i) * before;
+        // An impulse at its only possible value stays there, whatever products round to.
+        const auto is_settled = before == own.lower && before == own.upper;
+        if (is_settled)
+            change = wp::where(is_settled, 0.0, change);
         i += stride;
         auto after = before + change * own.effective_mass;
         if (after < own.lower || after > own.upper) {

@@ -11,7 +11,7 @@ from carom.kernels.solver.activity import is_in_force
 from carom.kernels.solver.conjugate import go_on, remember_impulses
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.kernels.solver.pair_rows import has_room
-from carom.kernels.solver.sweeps import contact_sweep, resting_sweep, visit_sweep
+from carom.kernels.solver.sweeps import contact_sweep, leave_out_settled, resting_sweep, visit_sweep
 from carom.kernels.solver.units import keep_unit_impulses, write_units
 from carom.kernels.solver.user_constraints import add_user_rows, keep_user_impulses
 from carom.kernels.solver.warm_starting import (
@@ -25,6 +25,12 @@ from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, 
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import USER
 from carom.layouts.status import OVERFLOW, STATUS
+
+# After each of the first sweeps, rows that have settled are left out of those that follow. The
+# second corrects what the first has rounded.
+SETTLING_SWEEPS = 2
+# In place of the number of rows over one tree, if not all of them are in `visit_row`.
+NOT_IN_ORDER = -1
 
 
 @func
@@ -129,6 +135,10 @@ def sweep_island(
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)
+        elif sweep <= SETTLING_SWEEPS and visits > 0:
+            left = leave_out_settled(scratch, pair_rows, world, visits)
+            rows = wp.where(left < visits, Int32(NOT_IN_ORDER), rows)
+            visits = left
         elif resting == 1:
             square = go_on(scratch, pair_rows, world, manifold_blocks, square)
     return residual, sweep

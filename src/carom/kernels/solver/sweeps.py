@@ -62,6 +62,46 @@ def sweep_over_visits(
 
 
 @func
+def has_stuck_visits(scratch: Scratch, pair_rows: PairRows, world: Int32, visits: Int32) -> bool:
+    """Whether nothing can move along some row in `visit_row`."""
+    for place in range(visits):
+        row = pair_rows.visit_row[world, place]
+        mass = real(0.0)
+        if row >= 0:
+            mass = scratch.row[world, row].effective_mass
+        else:
+            mass = pair_rows.row_terms[world, -1 - row].effective_mass
+        if mass == 0.0:
+            return True
+    return False
+
+
+@func
+def has_settled(scratch: Scratch, world: Int32, row: Int32) -> bool:
+    """Whether the impulse of a row over one tree has the only value that its bounds leave."""
+    impulse = scratch.row[world, row].impulse
+    return impulse == scratch.row[world, row].lower and impulse == scratch.row[world, row].upper
+
+
+@func
+def leave_out_settled(scratch: Scratch, pair_rows: PairRows, world: Int32, visits: Int32) -> Int32:
+    """Take rows out of `visit_row` that no further sweep can change; returns how many are left.
+
+    The impulse of such a row has the only value that its bounds leave, as that of a motor with a given
+    torque. After a row along which nothing can move they still count, as they hide its change, 0/0.
+    """
+    if has_stuck_visits(scratch, pair_rows, world, visits):
+        return visits
+    left = Int32(0)
+    for place in range(visits):
+        row = pair_rows.visit_row[world, place]
+        if row < 0 or not has_settled(scratch, world, row):
+            pair_rows.visit_row[world, left] = row
+            left += 1
+    return left
+
+
+@func
 def visit_sweep(
     settings: Settings,
     scratch: Scratch,
@@ -73,9 +113,9 @@ def visit_sweep(
 ) -> real:
     """Relax motors, limits and user constraints once; returns the maximum change squared.
 
-    `rows` and `visits` are the numbers of rows without and with those of user constraints. As in Bullet, the
-    change of a row along which nothing can move is 0/0, so the maximum is that of the rows after it, and NaN
-    if none follows. This also holds for all rows of contacts.
+    `visits` is the number of rows in `visit_row`, `rows` that of all over one tree; if both are equal, these
+    are relaxed in their order. As in Bullet, the change of a row along which nothing can move is 0/0, so the
+    maximum is that of the rows after it, and NaN if none follows. This also holds for all rows of contacts.
     """
     residual = real(0.0)
     if visits == 0:

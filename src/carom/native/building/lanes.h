@@ -46,6 +46,7 @@ inline Mask operator==(Lane a, Lane b) { return {a.numbers == b.numbers}; }
 inline Mask operator!=(Lane a, Lane b) { return {a.numbers != b.numbers}; }
 inline Mask operator!(Mask a) { return {~a.flags}; }
 inline Mask operator||(Mask a, Mask b) { return {a.flags | b.flags}; }
+inline Mask operator&&(Mask a, Mask b) { return {a.flags & b.flags}; }
 
 inline Lane chosen(Mask mask, Lane a, Lane b) { return Lane(mask.flags ? a.numbers : b.numbers); }
 

@@ -14,8 +14,10 @@ namespace {
 
 // Whole numbers at the beginning of a row over one tree; see `RowScratch`.
 enum { CONSTRAINT, ENTRY, DELTA, RESPONSE, BLOCKS, SOFT, PLACE_NUMBERS };
-// Place among the numbers of rows over one tree and over two.
-constexpr int EFFECTIVE_MASS = 1;
+// Places among the numbers of rows over one tree, of which the first is the same in rows over two.
+enum { EFFECTIVE_MASS = 1, LOWER, UPPER, IMPULSE };
+// After so many sweeps, slots that have settled are left out, as in `kernels.solver.solver`.
+constexpr int SETTLING_SWEEPS = 2;
 
 // More rows than this, for each of those of the world with the most, cost more than solving each world for itself.
 constexpr int MOST_SLOTS = 2;
@@ -219,6 +221,30 @@ Extent gather_rows(const LaneMotion& lanes, int slots) {
     return extent;
 }
 
+// Whether the impulse of a slot has, in all lanes that are searching, the only value that its bounds leave. Lanes without a row
+// are settled.
+bool has_settled(const LaneSweeps& sweeps, int slot, const bool (&is_searching)[LANES]) {
+    const double* numbers = numbers_at(sweeps.row.wide, slot * sweeps.row.wide_stride);
+    bool settled = true;
+    for (int lane = 0; lane < LANES; ++lane) {
+        const double impulse = numbers[IMPULSE * LANES + lane];
+        settled &= !is_searching[lane]
+            || (impulse == numbers[LOWER * LANES + lane] && impulse == numbers[UPPER * LANES + lane]);
+    }
+    return settled;
+}
+
+// Takes slots that no further sweep can change out of the order; see `leave_out_settled` in `kernels.solver.sweeps`.
+void leave_out_settled(const LaneSweeps& sweeps, const bool (&is_searching)[LANES]) {
+    int left = 0;
+    for (int visit = 0; visit < *sweeps.visits; ++visit) {
+        const int slot = sweeps.order[visit];
+        if (slot < 0 || !has_settled(sweeps, slot, is_searching))
+            sweeps.order[left++] = slot;
+    }
+    *sweeps.visits = left;
+}
+
 void hand_over(const LaneSweeps& sweeps, const LaneWorld& world, int lane, int slots, Extent extent) {
     const LaneRows& impulse = sweeps.row_impulse;
     for (int slot = 0; slot < slots; ++slot) {
@@ -266,6 +292,8 @@ bool relax_together(const LaneMotion& lanes) {
             *world.residual = residual;
             hand_over(sweeps, world, lane, merging.slots, extent);
         }
+        if (sweep < SETTLING_SWEEPS)
+            leave_out_settled(sweeps, is_searching);
         ++*sweeps.begun;
     }
     return true;
