@@ -187,6 +187,8 @@ def test_fine_hulls_may_be_a_little_less_deep(ours: float, expected: bool):
         ("mjcf/humanoid.xml", -0.09, True),
         ("mjcf/humanoid.xml", -0.19, False),
         ("mjcf/humanoid.xml", -0.01, False),
+        ("mjcf/swimmer.xml", -0.20000000298, True),
+        ("mjcf/swimmer.xml", -0.2000001, False),
         ("mjcf/ground.xml", -0.09, False),
         ("a1/a1.urdf", -0.09, False),
     ],

@@ -36,7 +36,9 @@ def test_a_ball_rolls_and_slides(torsion, friction):
     set_velocity(ball, 0.0, 2.0, 0.1, 1.0, 0.0, 0.0)
     found = statuses(assert_exact(world, parameters=PARAMETERS))
     assert found["friction of contact 0 of box and sphere"] == ["holds", "holds"]
-    assert ("spinning friction of contact 0 of box and sphere" in found) == bool(torsion)
+    # Without a cone there is none, as in PyBullet.
+    spins = bool(torsion) and friction != "pyramid"
+    assert ("spinning friction of contact 0 of box and sphere" in found) == spins
     set_velocity(ball, 0.0, 0.0, 0.3, 3.0, 1.0, 0.0)
     found = statuses(assert_exact(world, parameters=PARAMETERS))
     assert "holds" not in found["friction of contact 0 of box and sphere"]

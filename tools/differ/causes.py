@@ -76,6 +76,8 @@ _NO_ROTATION = 1e-6
 LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
+# Sizes of files pass through single precision.
+_AS_IN_FILES = 1e-8
 SEEN_TO_BE_NEARER = 1e-6
 _OF_SIMPLIFIED_HULLS = 4e-3
 _MARGIN, _SAME_FACE, _MARGIN_OF_SWEPT = 1e-3, 1e-6, 0.04
@@ -266,7 +268,7 @@ def is_a_little_nearer(seen: Seen, least: float = 0.0) -> bool:
     return least < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
 
 
-def _made_for(seen: Seen, argument: Any) -> list[Call]:
+def made_for(seen: Seen, argument: Any) -> list[Call]:
     """The calls that an argument refers to, and those that these refer to."""
     made = {call["id"]: call for call in seen.before[:-1]}
     waiting, found = references(argument), list[Call]()
@@ -285,7 +287,7 @@ def is_farther_from_a_fine_hull(seen: Seen) -> bool:
         return False
     asked = [*seen.call["a"], *seen.call["k"].values()]
     return abs(math.dist(ours[5], ours[6]) - abs(ours[8])) < _ROUNDED and any(
-        map(_is_fine, _made_for(seen, asked))
+        map(_is_fine, made_for(seen, asked))
     )
 
 
@@ -293,7 +295,7 @@ def is_thinner_than_its_margins(seen: Seen) -> bool:
     """Whether a box of a body is thinner than twice its margin, and distances differ by less."""
     theirs, ours = seen.difference.place[1:3]
     for body in seen.call["a"][:2]:
-        made = [call for call in _made_for(seen, body) if call["f"] == "loadURDF" and call["a"][0] in THIN]
+        made = [call for call in made_for(seen, body) if call["f"] == "loadURDF" and call["a"][0] in THIN]
         thickness = [THIN[call["a"][0]] * call["k"].get("globalScaling", 1.0) for call in made]
         margins = [
             call["k"]["collisionMargin"]
@@ -323,7 +325,7 @@ def _is_fine(call: Call) -> bool:
 
 def _swept(seen: Seen) -> list[tuple[float, float]]:
     """Of bodies with capsules given by two points their least radius, and the greatest of round shapes."""
-    loaded = [call["a"][0] for body in seen.call["a"][:2] for call in _made_for(seen, body) if call["a"]]
+    loaded = [call["a"][0] for body in seen.call["a"][:2] for call in made_for(seen, body) if call["a"]]
     return [SWEPT[name] for name in loaded if isinstance(name, str) and name in SWEPT]
 
 
@@ -331,7 +333,7 @@ def crosses_capsules(seen: Seen) -> bool:
     """Whether round shapes, as capsules given by two points, are deeper, at most by the sum of radii."""
     theirs, ours = seen.difference.place[1:3]
     radii = [greatest for _, greatest in _swept(seen)]
-    return len(radii) == 2 and -sum(radii) - _ROUNDED < ours[8] < theirs[8] < 0.0
+    return len(radii) == 2 and -sum(radii) - _AS_IN_FILES < ours[8] < theirs[8] < 0.0
 
 
 def is_the_shorter_way_out(seen: Seen) -> bool:
@@ -427,8 +429,8 @@ def stands_out_round(seen: Seen) -> bool:
     assert said
     wrong, count, nearer = map(int, said.groups())
     # From close by more of an image is an edge; then nothing else may differ.
-    body = _maker_of(seen, seen.difference.place.ours) if nearer == wrong else None
-    shown = [] if body is None else [body, *_made_for(seen, [body["a"], body["k"]])]
+    body = maker_of(seen, seen.difference.place.ours) if nearer == wrong else None
+    shown = [] if body is None else [body, *made_for(seen, [body["a"], body["k"]])]
     share = _SHARE_FROM_CLOSE_BY if any(map(_is_round, shown)) else _SHARE_OF_ROUND_EDGES
     return wrong < share * count and nearer > _SHARE_OF_NEARER * wrong
 
@@ -444,7 +446,7 @@ def shades_as_a_ball(seen: Seen) -> bool:
         # Nothing says which body it is.
         bodies = [call for call in seen.before if call["f"].startswith(MAKE)]
     else:
-        body = _maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
+        body = maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
         bodies = [] if body is None else [body]
     return any(_has_something_long_and_round(seen, body) for body in bodies)
 
@@ -453,7 +455,7 @@ def _has_something_long_and_round(seen: Seen, body: Call) -> bool:
     """Whether the body that a call makes has cylinders or capsules."""
     if body["f"].startswith("load"):
         return body["a"][:1] != [] and body["a"][0] in LONG_AND_ROUND
-    return any(map(_is_long_and_round, _made_for(seen, [body["a"], body["k"]])))
+    return any(map(_is_long_and_round, made_for(seen, [body["a"], body["k"]])))
 
 
 def draws_given_vertices(seen: Seen) -> bool:
@@ -461,7 +463,7 @@ def draws_given_vertices(seen: Seen) -> bool:
     said = re.match(r"(\d+) of \d+ differ, (\d+) are nearer", str(seen.difference.place.theirs))
     assert said
     wrong, nearer = map(int, said.groups())
-    body = _maker_of(seen, seen.difference.place.ours)
+    body = maker_of(seen, seen.difference.place.ours)
     if nearer <= _SHARE_OF_NEARER * wrong or body is None or body["f"] != "createMultiBody":
         return False
     shapes, visuals = (
@@ -469,10 +471,10 @@ def draws_given_vertices(seen: Seen) -> bool:
         for place, name in ((1, "linkCollisionShapeIndices"), (2, "linkVisualShapeIndices"))
     )
     bare = [shape for shape, visual in zip(shapes, visuals, strict=False) if visual == -1]
-    return any("vertices" in call["k"] for call in _made_for(seen, bare))
+    return any("vertices" in call["k"] for call in made_for(seen, bare))
 
 
-def _maker_of(seen: Seen, label: int) -> Call | None:
+def maker_of(seen: Seen, label: int) -> Call | None:
     """The call that made the body with a label in images."""
     number = label % _LABELS_OF_A_LINK
     for call in seen.before if label >= 0 else ():
@@ -550,7 +552,7 @@ def comes_near_bare_links(seen: Seen) -> bool:
 def touches_itself_rigidly(seen: Seen) -> bool:
     """Whether the links that touch in PyBullet only are of one body each, that has fixed joints alone."""
     theirs, ours = seen.difference.place[1:3]
-    return not ours and all(a[0] == b[0] and _is_rigid(seen, _maker_of(seen, a[0])) for a, b in theirs)
+    return not ours and all(a[0] == b[0] and _is_rigid(seen, maker_of(seen, a[0])) for a, b in theirs)
 
 
 def _is_rigid(seen: Seen, body: Call | None) -> bool:

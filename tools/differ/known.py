@@ -60,9 +60,13 @@ from tools.differ.causes import (
     turns_by_no_rotation,
 )
 from tools.differ.compare import Difference
+from tools.differ.pose_causes import looks_from_within, starts_half_a_turn_away
 from tools.differ.programs import Call
 from tools.differ.row_causes import (
+    changes_the_breaking_distance,
+    drives_before_restoring,
     fixes_what_touches_itself,
+    leaves_inertia_to_mjcf,
     renumbers_islands,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
@@ -201,6 +205,26 @@ KNOWN: tuple[Known, ...] = (
         ),
     ),
     Known(
+        "A camera between the two",
+        lambda seen: seen.differs("getCameraImage segments") and looks_from_within(seen),
+    ),
+    Known(
+        "Which way a link turns that is exactly half a turn from its target",
+        lambda seen: seen.differs("@reach worse") and starts_half_a_turn_away(seen),
+    ),
+    Known(
+        "A new `contactBreakingThreshold` holds at once",
+        lambda seen: (
+            seen.difference.phase == "contact"
+            and seen.differs("@probe")
+            and changes_the_breaking_distance(seen)
+        ),
+    ),
+    Known(
+        "joints that turn no inertia",
+        lambda seen: seen.differs("@probe") and leaves_inertia_to_mjcf(seen),
+    ),
+    Known(
         "Collision shapes made of vertices are drawn",
         lambda seen: seen.differs("getCameraImage segments") and draws_given_vertices(seen),
     ),
@@ -260,8 +284,13 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "In PyBullet motors keep the targets they have",
         lambda seen: (
-            seen.has("restoreState")
-            and seen.differs("getJointState .3", "getJointState .2", "getJointStates .", "@probe reactions")
+            (
+                seen.has("restoreState")
+                and seen.differs(
+                    "getJointState .3", "getJointState .2", "getJointStates .", "@probe reactions"
+                )
+            )
+            or (seen.differs("@probe") and drives_before_restoring(seen))
         ),
     ),
     Known(

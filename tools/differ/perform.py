@@ -192,7 +192,7 @@ def reach(body, links, answer, targets, turn):
     far = sum((a - b) ** 2 for state, target in zip(states, targets) for a, b in zip(state[4], target)) ** 0.5
     angle = 0.0
     if turn is not None:
-        angle = abs(p.getAxisAngleFromQuaternion(p.getDifferenceQuaternion(states[0][5], turn))[1])
+        angle = abs(p.getAxisAngleFromQuaternion(p.getDifferenceQuaternion(states[0][1], turn))[1])
         angle = min(angle, 2 * 3.141592653589793 - angle)
     return [far, angle, list(answer)]
 

@@ -9,6 +9,7 @@ from tools.differ.causes import LEFT_OVER, MAKE, TOUCHES_ITSELF, Seen, has_joint
 from tools.differ.programs import Call
 
 _ROBOTS = 2
+_INERTIA_FROM_FILE = 2
 
 
 def shares_with_a_limit(seen: Seen) -> bool:
@@ -70,4 +71,32 @@ def fixes_what_touches_itself(seen: Seen) -> bool:
     return seen.difference.phase == "contact" and any(
         call["f"] == "changeDynamics" and call["k"].get("mass") == 0 and call["a"][0].get("$") in touching
         for call in seen.before
+    )
+
+
+def drives_before_restoring(seen: Seen) -> bool:
+    """Whether motors were told something after a state was saved, and then the state was restored."""
+    saved = driven = False
+    for call in seen.before:
+        if call["f"] == "restoreState" and driven:
+            return True
+        driven |= saved and call["f"].startswith("setJointMotorControl")
+        saved |= call["f"] in ("saveState", "saveBullet")
+    return False
+
+
+def changes_the_breaking_distance(seen: Seen) -> bool:
+    """Whether `contactBreakingThreshold` was set after bounds of bodies may have met."""
+    met = False
+    for call in seen.before:
+        if met and call["f"] == "setPhysicsEngineParameter" and "contactBreakingThreshold" in call["k"]:
+            return True
+        met |= call["f"] in ("stepSimulation", "performCollisionDetection")
+    return False
+
+
+def leaves_inertia_to_mjcf(seen: Seen) -> bool:
+    """Whether a file of MJCF that states no inertia was loaded with the flag that takes it from there."""
+    return any(
+        call["f"] == "loadMJCF" and call["k"].get("flags", 0) & _INERTIA_FROM_FILE for call in seen.before
     )

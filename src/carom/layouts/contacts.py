@@ -94,6 +94,7 @@ class Shapes:
     shape_size: Vectors3  # see `codes.ShapeKind`
     shape_pose: Transforms  # in the link's inertial frame
     shape_part: Ints  # see `codes.Part`
+    shape_depth: Ints  # in so many compounds, one in the other, Bullet has it
     shape_margin: Reals
     shape_breaking: Reals  # breaking distance of contacts [m]
     shape_ccd_radius: Reals  # of the swept sphere of continuous detection [m]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import hypot, sqrt
 
-from carom.description import SignedDistanceField
+from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
@@ -17,6 +17,7 @@ from carom.model.swept_spheres import FIRST_MARGIN, is_swept
 
 _log = Logger(__name__)
 
+_IDENTITY_TOLERANCE = 1e-12
 AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 
@@ -29,11 +30,13 @@ class PlacedPiece:
         piece: The piece.
         pose: Its frame in the inertial frame of its link: (x, y, z, qx, qy, qz, qw).
         link: Index of the link in its body; the base is 0.
+        depth: In so many compounds, one in the other, Bullet has the piece.
     """
 
     piece: ShapePiece
     pose: tuple[float, ...]
     link: int
+    depth: int
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
@@ -50,8 +53,20 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
         margin = shape_margin(link, collision)
         if margin is not None:
             pieces = [replace(piece, margin=margin) for piece in pieces]
-        placed.extend(PlacedPiece(piece, pose, index) for piece in pieces)
+        depth = int(len(link.collisions) > 1 or hypot(*pose[:6]) > _IDENTITY_TOLERANCE) + _is_compound(
+            collision
+        )
+        placed.extend(PlacedPiece(piece, pose, index, depth) for piece in pieces)
     return placed
+
+
+def _is_compound(collision: Collision) -> bool:
+    """Whether the shape itself is a compound in Bullet, as that of an OBJ file is, also of one part.
+
+    Shapes that scripts make are none: of these the parts are put directly into the compound of the link.
+    """
+    geometry = collision.geometry
+    return isinstance(geometry, Mesh) and not geometry.concave and geometry.path.suffix.lower() == ".obj"
 
 
 def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import hypot
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -31,7 +30,6 @@ BREAKING_FRACTION = 0.02
 """Breaking distance of a contact, relative to the reach of the smaller shape."""
 
 # A shape whose pose in its link differs from the identity by less is in no compound.
-_IDENTITY_TOLERANCE = 1e-12
 # Half extent of links with planes [m]; its square is still finite.
 _UNBOUNDED = 1e18
 
@@ -260,6 +258,7 @@ class ShapeArrays:
         """
         piece, row = placed.piece, at["shape"]
         numpy["shape_pose"][row] = placed.pose
+        numpy["shape_depth"][row] = placed.depth
         numpy["shape_size"][row] = piece.size
         numpy["shape_margin"][row] = piece.margin
         numpy["shape_center"][row] = piece.center
@@ -457,8 +456,7 @@ class ShapeArrays:
     def _write_link_bounds(self, numpy: Mapping[str, np.ndarray], row: int, bounds: Bounds) -> None:
         """Write the bounds of a link with shapes, and whether these are in a compound."""
         shapes = self._shapes_of(row)
-        pose = numpy["shape_pose"][shapes.start]
-        alone = shapes.stop - shapes.start == 1 and hypot(*pose[:6]) <= _IDENTITY_TOLERANCE
+        alone = numpy["shape_depth"][shapes.start] == 0
         numpy["shape_part"][shapes] = Part.ALONE if alone else Part.OTHER
         if not alone:
             numpy["shape_part"][shapes.start] = Part.FIRST

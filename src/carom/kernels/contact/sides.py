@@ -3,9 +3,6 @@
 Normals point from b to a, and friction directions are computed from normals. Users see both.
 """
 
-import warp as wp
-
-from carom.kernels.contact.contact_margins import is_part_of_compound
 from carom.kernels.structs import Shapes
 from carom.kernels.types import Index2, Int32, func
 from carom.layouts.codes import PLANE, TRIANGLES
@@ -13,11 +10,14 @@ from carom.layouts.codes import PLANE, TRIANGLES
 
 @func
 def side_rank(shapes: Shapes, shape: Int32) -> Int32:
-    """Rank of a shape in this order: 0 part of a compound, 1 other convex shape, 2 plane or surface."""
+    """Rank of a shape in this order: first what is in the most compounds, last a plane or surface.
+
+    Bullet takes two compounds apart at once until only one of them is left; that comes first.
+    """
     kind = shapes.shape_kind[shape]
     if kind == PLANE or kind >= TRIANGLES:
-        return Int32(2)
-    return wp.where(is_part_of_compound(shapes, shape), Int32(0), Int32(1))
+        return Int32(1)
+    return -shapes.shape_depth[shape]
 
 
 @func

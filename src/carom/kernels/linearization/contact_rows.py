@@ -189,7 +189,7 @@ def add_contact(
                     model, settings, state, shapes, space, steps, place, world, touch, ROLLING_FRICTION,
                     normal, friction[1], along[0], along[1],
                 )  # fmt: skip
-            if friction[2] > 0.0:
+            if friction[2] > 0.0 and settings.cone_friction != 0:
                 add_friction_rows(
                     model, settings, state, shapes, space, steps, place, world, touch, SPINNING_FRICTION,
                     normal, friction[2], along[2], real(0.0),

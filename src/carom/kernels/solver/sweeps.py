@@ -17,7 +17,7 @@ from carom.kernels.solver.single_contacts import (
 )
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, SPINNING_ROW
+from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, SPINNING_ROW
 
 
 @func
@@ -254,7 +254,10 @@ def contact_sweep(
     `units` and `torsion` are returned by `units.write_units`. Returns the residual after them.
     """
     residual = normal_sweep(scratch, pair_rows, world, units, before)
-    kind = Int32(SPINNING_ROW) if torsion != 0 else Int32(LATERAL_ROW)
+    kind = Int32(LATERAL_ROW)
+    if torsion != 0:
+        # Without a cone spinning friction has no effect in PyBullet.
+        kind = Int32(SPINNING_ROW) if settings.cone_friction != 0 else Int32(ROLLING_ROW)
     while kind >= LATERAL_ROW:
         residual = friction_sweep(settings, scratch, pair_rows, world, units, kind, residual)
         kind -= 1

@@ -1,0 +1,57 @@
+"""Which differences in what is seen or reached from a pose the fuzzer takes for known."""
+
+from __future__ import annotations
+
+import pytest
+from tests.differ.test_known import is_known
+from tests.differ.test_programs import call
+from tools.differ.programs import Call
+
+HALF = 0.7071067811865476
+ROUND_LINK = {
+    "linkOrientations": [[0, 0, HALF, HALF], [0, 0, HALF, HALF]],
+    "linkInertialFrameOrientations": [[0, 0, 0, 1], [0, 0, 0, 1]],
+    "linkParentIndices": [0, 1],
+    "linkJointTypes": [0, 0],
+}
+ARM = call(0, "createMultiBody", 1, **ROUND_LINK)
+RESET = call(1, "resetJointState", {"$": 0}, 0, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("kind", "eye", "nearer", "expected"),
+    [
+        (7, [0.1, 0, 0.2], 0, True),
+        (2, [0.1, 0, 0.2], 0, True),
+        (3, [0.1, 0, 0.2], 0, False),
+        (7, [0.1, 0, 0.2], 1, False),
+        (7, [2.1, 0, 0.2], 0, False),
+    ],
+)
+def test_a_camera_may_be_between_a_round_shape_and_its_polyhedron(
+    kind: int, eye: list[float], nearer: int, expected: bool
+):
+    shape = call(0, "createCollisionShape", kind, radius=0.2, height=0.3)
+    body = call(1, "createMultiBody", 1, {"$": 0}, -1, [0, 0, 0.2])
+    view = call(2, "computeViewMatrix", eye, [0, 0, 0], [0, 0, 1])
+    image = call(4, "getCameraImage", 32, 24, {"whole": 2}, {"whole": 3})
+    said = f"110 of 768 differ, {nearer} are nearer: 0"
+    assert is_known([shape, body, view, image], "segments", said, -1) == expected
+
+
+@pytest.mark.parametrize(
+    ("before", "target", "expected"),
+    [
+        ([ARM], [HALF, 0, 0, HALF], True),
+        ([ARM], [0, 0, 0, 1], True),
+        ([ARM], [0, 0, 0.6, 0.8], False),
+        ([ARM, RESET], [HALF, 0, 0, HALF], False),
+        ([call(0, "loadURDF", "cube_small.urdf")], [HALF, 0, 0, HALF], False),
+    ],
+)
+def test_a_link_may_turn_either_way_to_what_is_half_a_turn_away(
+    before: list[Call], target: list[float], expected: bool
+):
+    ask = call(2, "calculateInverseKinematics", {"$": 0}, 1, [5, 0, 0], targetOrientation=target)
+    reach = call(3, "@reach", {"$": 0}, [1], {"whole": 2}, [[5, 0, 0]], target)
+    assert is_known([*before, ask, reach], "worse", [5.2, 1.5, []], [5.3, 1.9, []]) == expected

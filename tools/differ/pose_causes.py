@@ -1,0 +1,79 @@
+"""What may cause a difference in what is seen or reached from a pose."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+from tools.differ.causes import Seen, made_for, maker_of
+from tools.differ.programs import Call
+
+_ROUND = frozenset({2, 7})
+_HALF_A_TURN = 1e-9
+_NO_TURN = (0.0, 0.0, 0.0, 1.0)
+_MOVES = ("reset", "restore", "step")
+
+
+def looks_from_within(seen: Seen) -> bool:
+    """Whether the camera is inside a ball or capsule, whose polyhedron PyBullet's image shows."""
+    said = re.match(r"\d+ of \d+ differ, 0 are nearer: (\d+)", str(seen.difference.place.theirs))
+    body = maker_of(seen, int(said[1])) if said else None
+    if body is None or body["f"] != "createMultiBody":
+        return False
+    shapes = [call for call in made_for(seen, body["a"]) if call["f"].startswith("create")]
+    made = next((call for call in seen.before if call["id"] == seen.call["a"][2].get("whole")), None)
+    if made is None or made["f"] != "computeViewMatrix":
+        return False
+    reach = max(
+        (
+            call["k"].get("radius", 0.5) + 0.5 * call["k"].get("height", call["k"].get("length", 1.0))
+            for call in shapes
+            if call["a"][:1] and call["a"][0] in _ROUND
+        ),
+        default=0.0,
+    )
+    return math.dist(made["a"][0], body["a"][3]) < reach
+
+
+def starts_half_a_turn_away(seen: Seen) -> bool:
+    """Whether inverse kinematics of a body that stands as it was made turns a link by exactly 180 degrees."""
+    asked = next(call for call in seen.before if call["id"] == seen.call["a"][2]["whole"])
+    target, body = asked["k"].get("targetOrientation"), asked["a"][0]
+    made = next((call for call in seen.before if call["id"] == body.get("$")), None)
+    if target is None or made is None or made["f"] != "createMultiBody":
+        return False
+    moved = any(call["f"].startswith(_MOVES) for call in seen.before[: seen.before.index(asked)])
+    return not moved and any(
+        abs(sum(a * b for a, b in zip(target, turn, strict=True))) < _HALF_A_TURN for turn in _turns(made)
+    )
+
+
+def _turns(made: Call) -> list[tuple[float, ...]]:
+    """Rotations of the inertial frames of the links of a body as it is made."""
+    given = made["k"]
+    found = []
+    frames: list[Any] = given.get("linkInertialFrameOrientations", [])
+    for link, own in enumerate(frames):
+        turn, parent = _unit(own), link + 1
+        while parent > 0:
+            turn = _product(_unit(given["linkOrientations"][parent - 1]), turn)
+            parent = given["linkParentIndices"][parent - 1]
+        found.append(_product(_unit(given.get("baseOrientation", _NO_TURN)), turn))
+    return found
+
+
+def _unit(turn: Any) -> tuple[float, ...]:
+    length = math.hypot(*turn)
+    return tuple(part / length for part in turn)
+
+
+def _product(a: tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
+    """The quaternion (x, y, z, w) of two rotations, the second one first."""
+    (ax, ay, az, aw), (bx, by, bz, bw) = a, b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
