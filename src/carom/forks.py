@@ -23,8 +23,8 @@ def free_in_forks(lock: Any, *, of_world: bool = False) -> Any:
 
 
 def _take() -> None:
-    # Other threads may have one world and want another, and new ones may come. So only one is waited for while
-    # none is held: if another one is taken, all are given back, and that one is waited for.
+    # Another thread may have one world and want a second one. So only the first is waited for, while none is
+    # held: if one of the others is taken, all are given back, and that one is waited for.
     worlds = _living(_worlds)
     while not all(lock.acquire(not place) and not _held.append(lock) for place, lock in enumerate(worlds)):
         taken = worlds.pop(len(_held))

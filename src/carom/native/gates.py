@@ -7,13 +7,17 @@ from __future__ import annotations
 
 import ctypes
 from _thread import allocate_lock
-from functools import cache
+from collections.abc import Callable
+from functools import cache, wraps
+from operator import attrgetter
 from threading import RLock
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from carom.forks import free_in_forks
 from carom.layouts.gates import Gate
 from carom.native.builtins import defined, descriptor_of
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 _METHODS = {"acquire": "acquire", "release": "release", "__enter__": "acquire", "__exit__": "release"}
 
@@ -69,3 +73,22 @@ def _has_methods() -> bool:
         code = host.symbols[f"carom_gate_{method}"]
         setattr(GateLock, name, descriptor_of(defined(name, code, keywords=True), GateLock))
     return True
+
+
+def alone(lock: str) -> Callable[[F], F]:
+    """Let a function have a world for itself, from its arguments to its result.
+
+    Args:
+        lock: Where the lock of the world is: attributes of the function's first argument, with points.
+    """
+    lock_of = attrgetter(lock)
+
+    def guard(function: F) -> F:
+        @wraps(function)
+        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+            with lock_of(first):
+                return function(first, *arguments, **keywords)
+
+        return cast("F", call)
+
+    return guard

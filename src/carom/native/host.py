@@ -1,7 +1,7 @@
 """What the native library knows of Python: addresses of its functions, in a table of the library.
 
-The library is not linked against Python, so that one library serves all versions. Builds of CPython other than
-the usual one, and interpreters of the process other than the first, have no such table.
+The library is not linked against Python, so that one library serves all versions. Builds of CPython other
+than the usual one, and interpreters of the process other than the first, have no such table.
 """
 
 from __future__ import annotations

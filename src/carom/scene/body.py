@@ -26,6 +26,7 @@ from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.tables import NUMPY_REAL
 from carom.scene.dynamics_changes import change_dynamics, set_present, write_link
 from carom.scene.handles import world_of
@@ -299,6 +300,7 @@ class Body:
         """Inertial frame of a link in its link frame; -1 is the base."""
         return self.link_spec(link).inertial_frame
 
+    @alone("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Set the pose of the base's inertial frame; its velocity does not change.
 
@@ -318,6 +320,7 @@ class Body:
         self.world.contact_arrays.forget_warm_start()
         self.update_link_poses()
 
+    @alone("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s].
 
@@ -326,6 +329,7 @@ class Body:
         first = self.first_velocity * _NUMBER.itemsize
         _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
 
+    @alone("world.lock")
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
@@ -354,6 +358,7 @@ class Body:
                 self.world.velocity[first : first + count] = velocity
         self.update_link_poses()
 
+    @alone("world.lock")
     def coordinates(self) -> list[float]:
         """All position coordinates: those of the base, then those of the joints."""
         first, count = self.rows.first["position"], self.rows.count["position"]
@@ -363,10 +368,12 @@ class Body:
         """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_reset`."""
         self.world.contact_arrays.note_reset(self.rows.tree, moved=moved)
 
+    @alone("world.lock")
     def update_link_poses(self) -> None:
         """Update the body's rows of `World.link_pose` from its coordinates."""
         self.world.update_link_poses(self)
 
+    @alone("world.lock")
     def update_link_velocities(self) -> None:
         """Update the body's rows of `World.link_velocity` from its coordinates."""
         self.world.update_link_velocities(self)
@@ -413,6 +420,7 @@ class Body:
         """
         change_dynamics(self, self.links[link].index if isinstance(link, str) else link, changes)
 
+    @alone("world.lock")
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
         self._dynamics[link + 1] = dynamics
@@ -422,6 +430,7 @@ class Body:
         """Whether the force-torque sensor of a joint is on."""
         return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] & SENSED)
 
+    @alone("world.lock")
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         model = self.world.arrays.model.numpy
@@ -432,6 +441,7 @@ class Body:
         if not enabled:
             self.world.joint_reaction[row] = 0.0
 
+    @alone("world.lock")
     def measure_load(self, joint: int) -> None:
         """Measure from now on what a joint transmits, for sensors of sites and of its limit."""
         self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] |= LOADED

@@ -15,6 +15,7 @@ from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, checked_terms, note_terms, write_terms
 
@@ -43,6 +44,7 @@ _NOT_OF_SURFACE = {
 }
 
 
+@alone("world.lock")
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     with uninterrupted:
@@ -268,6 +270,7 @@ def _note_inertia(change: Change, body: Body, link: int) -> None:
     body.world.arrays.note_inertia(change, body.first_link + 1 + link, mass, inertia)
 
 
+@alone("world.lock")
 def set_present(body: Body, present: bool) -> None:
     """Let a body come or go, or leave it as it is; see `Body.present`."""
     world = body.world

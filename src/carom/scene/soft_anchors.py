@@ -8,6 +8,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.model.soft_arrays import Anchor
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def add_anchor(
     return anchor
 
 
+@alone("lock")
 def remove_anchor(world: World, number: int) -> None:
     """Remove the anchor with a number, if it exists."""
     with uninterrupted:

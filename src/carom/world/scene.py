@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from carom.description.pose import Pose
 from carom.description.transform import compose
+from carom.native.gates import alone
 from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
 from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
@@ -138,6 +139,7 @@ class Scene(Sequence[Body]):
         camera.place(pose.position, pose.orientation)
         return camera
 
+    @alone("world.lock")
     def reset(self, name: str) -> None:
         """Reset the bodies that have a keyframe of this name to it, and the world to its time.
 

@@ -10,6 +10,7 @@ from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
     """Add an actuator to a body, as `Body.add_actuator` does."""
     world, spec = world_of(body), actuator.spec(name)

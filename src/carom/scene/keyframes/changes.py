@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.keyframes.state import captured, changes, check_keyframe, keyframe_of
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def add_keyframe(body: Body, keyframe: BodyKeyframe | str) -> None:
     """Add a keyframe to a body, as `Body.add_keyframe` does."""
     world = world_of(body)

@@ -12,6 +12,7 @@ from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
@@ -28,6 +29,7 @@ _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
 
 
+@alone("world.lock")
 def add_site(
     body: Body, name: str, link: int | str, pose: Pose, shape: SiteShape | str, size: Sequence[float]
 ) -> None:
@@ -52,6 +54,7 @@ def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
     put_sensor(body, sensor.spec(name))
 
 
+@alone("world.lock")
 def put_sensor(body: Body, spec: SensorSpec) -> None:
     """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
     world = world_of(body)
