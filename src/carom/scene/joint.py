@@ -11,6 +11,7 @@ from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.products import length
 from carom.scene.handles import world_of
@@ -468,8 +469,11 @@ class Joints(Named[Joint]):
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
             states.append(joint.checked_state(positions[q:q_end], velocities[u:u_end]))
             q, u = q_end, u_end
+        change = Change()
         for joint, state in zip(self._movable, states, strict=True):
-            self._body.set_joint_state(joint.index, *state)
+            self._body.note_joint_state(change, joint.index, *state)
+        self._body.world.note_link_poses(change, self._body)
+        change.commit()
 
     @alone("_body.world.lock")
     def set_position_targets(

@@ -49,6 +49,10 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
+# The parameters that determine which launches a step consists of.
+_STRUCTURE = ("substeps", "minimum_island_size")
+
+
 class World(
     DescriptionLoading,
     ShapeAdding,
@@ -118,7 +122,7 @@ class World(
         self._viewed: ArrayTable | None = None
         self._replacements = 0
         self._derived: Derived = Derived()
-        self._made_for: tuple[int, int] | None = None
+        self._made_for: list[int] | None = None
         self.quick: QuickScene = QuickScene()
         change = Change()
         self._start_empty(change)
@@ -345,20 +349,33 @@ class World(
     @gravity.setter
     def gravity(self, value: Sequence[float]) -> None:
         x, y, z = vector(value, 3, "gravity").tolist()
-        self.parameters.gravity = (x, y, z)
-        self.apply_parameters()
+        self.change_parameters(gravity=(x, y, z))
 
     @alone("lock")
+    def change_parameters(self, **values: Any) -> None:
+        """Set some of `parameters` and apply them, all at once."""
+        change = Change()
+        self.note_parameters(change, **values)
+        change.commit()
+
     def apply_parameters(self) -> None:
         """Apply changes of `parameters`."""
-        shapes, breaking = self.contact_arrays.shapes, self.parameters.contact_breaking_threshold
-        if breaking != shapes.breaking_fraction or self._structure() != self._made_for:
-            shapes.set_breaking_fraction(breaking)
-            self.scene_changed()
-        elif self._derived.step is not None:
-            self.engine.update_settings(self.parameters)
+        self.change_parameters()
+
+    def note_parameters(self, change: Change, **values: Any) -> None:
+        """Set parameters with a change, and let the next step use them."""
+        if values:
+            change.set_all(self.parameters, **values)
+        breaking, *structure = (
+            change.get(self.parameters, name) for name in ("contact_breaking_threshold", *_STRUCTURE)
+        )
+        shapes = self.contact_arrays.shapes
+        if breaking != shapes.breaking_fraction or structure != self._made_for:
+            shapes.set_breaking_fraction(change, breaking)
+            self.change_scene(change)
         else:
-            self._derived.step_before = None
+            self.engine.note_parameters(change)
+            self.change_constraints(change)
 
     @alone("lock")
     def scene_changed(self) -> None:
@@ -547,7 +564,7 @@ class World(
         self.contact_arrays.soft.write_anchors()
         self.quick.forget_queries()
         self._derived.queries = None
-        self._made_for = self._structure()
+        self._made_for = [getattr(self.parameters, name) for name in _STRUCTURE]
         self.engine.update_settings(self.parameters)
         in_substeps = self.parameters.substeps > 1
         self.engine.prepare(watched=in_substeps and bool(self._substep_observers))
@@ -619,10 +636,6 @@ class World(
                 self.quick,
             )
         return self._derived.queries
-
-    def _structure(self) -> tuple[int, int]:
-        """The parameters that determine which launches a step consists of."""
-        return self.parameters.substeps, self.parameters.minimum_island_size
 
     def _kernel_structs(self) -> KernelStructs:
         """Structs of the present arrays, by the names of kernel arguments."""
