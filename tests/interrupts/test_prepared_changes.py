@@ -189,7 +189,7 @@ def summary(world: World) -> tuple[Any, ...]:
         world.position[: world.arrays.used["position"]].tobytes(),
         world.link_pose[: world.arrays.used["link"]].tobytes(),
         [[(it.mass, it.lateral_friction) for it in body.all_dynamics] for body in bodies],
-        [(body.spec.actuators, body.spec.sensors, body.spec.sites) for body in bodies],
+        [(body.spec.actuators, body.spec.sites) for body in bodies],
         repr(world.parameters),
         world.arrays.model.numpy["link_sensor"][: world.arrays.used["link"]].tobytes(),
         sorted(world.contact_arrays.soft.anchors),

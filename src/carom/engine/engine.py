@@ -148,7 +148,11 @@ class Engine:
     def note_parameters(self, change: Change) -> None:
         """Update the settings of kernels before the next step, after a change of parameters."""
         self._settings.note_change(change)
-        self.note_constraints(change)
+
+    @property
+    def is_planned(self) -> bool:
+        """Whether the launches of a step are those for the present bodies and constraints."""
+        return self._plan is not None
 
     # Structs
 

@@ -357,6 +357,7 @@ class World(
         change = Change()
         self.note_parameters(change, **values)
         change.commit()
+        self.resume_step()
 
     def apply_parameters(self) -> None:
         """Apply changes of `parameters`."""
@@ -375,7 +376,7 @@ class World(
             self.change_scene(change)
         else:
             self.engine.note_parameters(change)
-            self.change_constraints(change)
+            self.pause_step(change)
 
     @alone("lock")
     def scene_changed(self) -> None:
@@ -406,11 +407,24 @@ class World(
 
     def change_constraints(self, change: Change) -> None:
         """Set the prepared step aside with a change of constraints, and of nothing else."""
+        self.pause_step(change)
+        self.engine.note_constraints(change)
+
+    def pause_step(self, change: Change) -> None:
+        """Set the prepared step aside with a change, after which it needs other numbers."""
         derived = self._derived
         if derived.step is not None:
             change.set_all(derived, step=None, step_before=derived.step)
         self.quick.pause_step(change)
-        self.engine.note_constraints(change)
+
+    def resume_step(self) -> None:
+        """Give a step that was set aside its numbers if that is all it needs; else the next step does."""
+        derived = self._derived
+        if derived.step is None and derived.step_before is not None and self.engine.is_planned:
+            self.user_constraints.write(self.contact_arrays, self.arrays.state)
+            self.engine.update_settings(self.parameters)
+            self.quick.resume_step()
+            derived.step = derived.step_before
 
     def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
         """Make room for rows of a table of this world; nothing else of the world changes."""
@@ -616,9 +630,12 @@ class World(
             self.engine.detect()
             self._renew_after_growth()
 
-    @alone("lock")
     def queries(self) -> Queries:
         """Rays, nearest points and overlaps for the present coordinates."""
+        return self._derived.queries or self._new_queries()
+
+    @alone("lock")
+    def _new_queries(self) -> Queries:
         if self._derived.queries is None:
             from carom.queries.queries import Queries
 

@@ -449,6 +449,7 @@ def _change(client: Client, **values: Any) -> None:
         for field, value in recorded.items():
             change.copy_blocks(blank(record, field, value), (record, value))
         change.commit()
+        world.resume_step()
 
 
 def _keep_forces_of_constraints(change: Change, world: World, ratio: float) -> None:

@@ -189,8 +189,9 @@ def changeConstraint(
             values["erp"] = share
         change = Change()
         change.set_all(constraint, **values)
-        client.world.change_constraints(change)
+        client.world.pause_step(change)
         change.commit()
+        client.world.resume_step()
 
 
 @exported

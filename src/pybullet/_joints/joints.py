@@ -276,7 +276,11 @@ def resetJointStateMultiDof(
     position, velocity = _targets(targetValue, targetVelocity)
     access, index = joint_access(bodyUniqueId, jointIndex, physicsClientId)
     _check_turn(access.body, index, position)
-    _reset(client, access.body, [(index, position, velocity)])
+    body = access.body
+    if len(position) == 1 == body.position_count[index]:
+        access.reset_joint(index, position[0], velocity[0] if len(velocity) == 1 else 0.0)
+    else:
+        _reset(client, body, [(index, position, velocity)])
 
 
 @exported
