@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ _BOUNDS = ("control", "force", "activation", "joint")
 _UNBOUNDED = (-inf, inf)
 
 
-def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
+def write_actuator(model: Mapping[str, Any], row: int, spec: ActuatorSpec) -> None:
     """Write the parameters of an actuator."""
     model["actuator_dynamics"][row] = spec.dynamics
     model["actuator_gain"][:, row] = spec.gain
@@ -59,7 +59,7 @@ def check_joint_ranges(specs: Iterable[ActuatorSpec]) -> None:
             )
 
 
-def join_actuators(model: dict[str, Any], first: int, specs: Sequence[ActuatorSpec]) -> None:
+def join_actuators(model: Mapping[str, Any], first: int, specs: Sequence[ActuatorSpec]) -> None:
     """Chain the actuators of each joint and tendon with bounds of their sum; they are those of a body."""
     known: dict[tuple[str, str], list[int]] = {}
     for number, spec in enumerate(specs):

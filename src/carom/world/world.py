@@ -421,7 +421,6 @@ class World(
         """Give a step that was set aside its numbers if that is all it needs; else the next step does."""
         derived = self._derived
         if derived.step is None and derived.step_before is not None and self.engine.is_planned:
-            self.user_constraints.write(self.contact_arrays, self.arrays.state)
             self.engine.update_settings(self.parameters)
             self.quick.resume_step()
             derived.step = derived.step_before

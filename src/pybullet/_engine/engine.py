@@ -433,18 +433,20 @@ def _change(client: Client, **values: Any) -> None:
     """Changes parameters, all at once."""
     with client.lock:
         world, record = client.world, client.bodies.quick.record
-        before = world.parameters
-        after = replace(before, **values)
-        recorded: dict[str, Any] = {}
+        parameters, recorded = world.parameters, dict[str, Any]()
         if "time_step" in values:
-            recorded["time_step"] = c_double(after.time_step)
+            recorded["time_step"] = c_double(values["time_step"])
         if "report_solver_analytics" in values:
-            recorded["reports_analytics"] = c_int64(bool(after.report_solver_analytics))
-        if after == before and all(getattr(record, name) == it.value for name, it in recorded.items()):
+            recorded["reports_analytics"] = c_int64(bool(values["report_solver_analytics"]))
+        if all(getattr(parameters, field) == value for field, value in values.items()) and all(
+            getattr(record, field) == it.value for field, it in recorded.items()
+        ):
             return
-        change = Change()
-        if after.substep_time != before.substep_time:
-            _keep_forces_of_constraints(change, world, after.substep_time / before.substep_time)
+        change, after = Change(), parameters
+        if "time_step" in values or "substeps" in values:
+            after = replace(parameters, **values)
+        if after.substep_time != parameters.substep_time:
+            _keep_forces_of_constraints(change, world, after.substep_time / parameters.substep_time)
         world.note_parameters(change, **values)
         for field, value in recorded.items():
             change.copy_blocks(blank(record, field, value), (record, value))

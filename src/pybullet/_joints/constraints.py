@@ -191,6 +191,7 @@ def changeConstraint(
         change.set_all(constraint, **values)
         client.world.pause_step(change)
         change.commit()
+        client.world.user_constraints.write(client.world.contact_arrays, client.world.arrays.state)
         client.world.resume_step()
 
 
