@@ -246,18 +246,19 @@ class Camera(Closed):
             world = self.link.body.world
         if world is None:
             raise ValueError("a camera that is not mounted needs to be told which world to look at")
-        pose = self.pose
-        image = renderer_of(world).draw(
-            world, self.view, self.projection, self.width, self.height, self.light
-        )
-        return CameraImage(
-            np.ascontiguousarray(image.rgba[:, :, :3]),
-            image.distance,
-            image.label,
-            pose,
-            self._intrinsics,
-            world.bodies,
-        )
+        with world.lock:
+            pose = self.pose
+            image = renderer_of(world).draw(
+                world, self.view, self.projection, self.width, self.height, self.light
+            )
+            return CameraImage(
+                np.ascontiguousarray(image.rgba[:, :, :3]),
+                image.distance,
+                image.label,
+                pose,
+                self._intrinsics,
+                world.bodies,
+            )
 
 
 def _inverses(matrices: Array) -> Array:

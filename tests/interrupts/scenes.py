@@ -35,6 +35,7 @@ class Scene:
 def build(folder: Path) -> Scene:
     """Begin anew: some bodies that touch, tied to each other, after a few steps."""
     p.resetSimulation()
+    p.setPhysicsEngineParameter(fixedTimeStep=1.0 / 240.0, numSubSteps=0, reportSolverAnalytics=0)
     clients[0].world.time = 0.0
     p.setAdditionalSearchPath(pybullet_data.getDataPath())
     p.setGravity(0, 0, -9.81)
@@ -108,6 +109,47 @@ CALLS: dict[str, Callable[[Scene], Any]] = {
     "addUserData": lambda scene: p.addUserData(scene.cube, "other", "text"),
     "restoreState": lambda scene: p.restoreState(scene.state),
     "loadBullet": lambda scene: p.loadBullet(scene.world_file),
+    "setPhysicsEngineParameter": lambda scene: p.setPhysicsEngineParameter(
+        fixedTimeStep=0.01,
+        numSolverIterations=70,
+        numSubSteps=2,
+        erp=0.3,
+        contactBreakingThreshold=0.03,
+        reportSolverAnalytics=1,
+    ),
+    "setTimeStep": lambda scene: p.setTimeStep(0.01),
+    "setGravity": lambda scene: p.setGravity(0, 0, -1),
+    "resetJointState": lambda scene: p.resetJointState(scene.arm, 0, 0.4, 0.5),
+    "resetJointStateMultiDof": lambda scene: p.resetJointStateMultiDof(scene.arm, 0, [0.4], [0.5]),
+    "resetJointStatesMultiDof": lambda scene: p.resetJointStatesMultiDof(
+        scene.arm, [0, 1], [[0.4], [0.3]], [[0.5], [0.6]]
+    ),
+    "resetBasePositionAndOrientation": lambda scene: p.resetBasePositionAndOrientation(
+        scene.cube, [0, 1, 1], [0, 0, 0.6, 0.8]
+    ),
+    "resetBaseVelocity": lambda scene: p.resetBaseVelocity(scene.cube, [1, 2, 3], [4, 5, 6]),
+    "setJointMotorControl2": lambda scene: p.setJointMotorControl2(
+        scene.arm, 0, p.POSITION_CONTROL, targetPosition=0.3, force=4
+    ),
+    "setJointMotorControlArray": lambda scene: p.setJointMotorControlArray(
+        scene.arm, [0, 1], p.VELOCITY_CONTROL, targetVelocities=[0.3, 0.4], forces=[1, 2]
+    ),
+    "setJointMotorControlMultiDofArray": lambda scene: p.setJointMotorControlMultiDofArray(
+        scene.arm, [0, 1], p.POSITION_CONTROL, targetPositions=[[0.3], [0.4]], forces=[[1], [2]]
+    ),
+    "applyExternalForce": lambda scene: p.applyExternalForce(
+        scene.cube, -1, [1, 2, 3], [0.1, 0.2, 0.3], p.LINK_FRAME
+    ),
+    "applyExternalTorque": lambda scene: p.applyExternalTorque(scene.cube, -1, [1, 2, 3], p.WORLD_FRAME),
+    "enableJointForceTorqueSensor": lambda scene: p.enableJointForceTorqueSensor(scene.arm, 0, 1),
+    "setCollisionFilterPair": lambda scene: p.setCollisionFilterPair(scene.cube, scene.arm, -1, 1, 0),
+    "setCollisionFilterGroupMask": lambda scene: p.setCollisionFilterGroupMask(scene.cube, -1, 4, 2),
+    "changeConstraint": lambda scene: p.changeConstraint(
+        scene.tie, [0.1, 0.2, 0.3], [0, 0, 0.6, 0.8], maxForce=20, erp=0.3
+    ),
+    "unsupportedChangeScaling": lambda scene: p.unsupportedChangeScaling(scene.cube, [2, 2, 2]),
+    "removeUserData": lambda scene: p.removeUserData(p.getUserDataId(scene.cube, "name")),
+    "removeState": lambda scene: p.removeState(scene.state),
     "restoreState of a file": lambda scene: p.restoreState(fileName=scene.world_file),
 }
 
@@ -157,6 +199,14 @@ def look() -> dict[str, Any]:
             if number in world.bodies
         },
         "time": world.time,
+        "all parameters": asdict(world.parameters),
+        "of the connection": (client.time_step, client.report_analytics, client.deformable),
+        "user constraints": [
+            (it.id, it.max_force, it.max_impulse, it.erp, it.child_frame) for it in world.user_constraints.all
+        ],
+        "sensors": [
+            [body.has_sensor(joint) for joint in range(body.joint_count)] for body in world.bodies.values()
+        ],
     }
     used = {axis: count for axis, count in world.arrays.used.items() if axis not in ("constraint", "row")}
     seen |= _rows("model", world.arrays.model, used)

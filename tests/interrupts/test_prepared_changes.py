@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 from typing import Any
 
+import numpy as np
 import pytest
 from tests.interrupts.faults import Fault, enters_or_leaves_a_section
 
 import carom
-from carom import World
+from carom import JointLimitForce, Motor, World
+from carom.description.keyframe import BodyKeyframe
 from carom.layouts.codes import UserConstraintKind
 from carom.native import uninterrupted
 from carom.native.tables import ArrayTable
 from carom.render.appearance import appearance_of
+from carom.scene.keyframes.keyframe import Keyframe
 
 _OURS = str(Path(carom.__path__[0]))
 # Of the lines of a call, about so many are tried, the same ones each time.
@@ -68,6 +72,18 @@ def _restore(world: World, _: Path) -> Callable[[], Any]:
     return lambda: world.restore(state, update_poses=True)
 
 
+def _anchor(world: World, _: Path) -> Callable[[], Any]:
+    cloth = world.load_cloth(size=(0.1, 0.1), cells=(1, 1), position=(0.0, 5.0, 1.0))
+    cloth.set_node_velocities(np.ones((4, 3)))
+    return lambda: cloth.anchor(1)
+
+
+def _keyframe(world: World, _: Path) -> Callable[[], Any]:
+    body = world.bodies[3]
+    body.add_keyframe(BodyKeyframe("there", positions=(0.3, 0.4), time=2.0))
+    return Keyframe("there", [body]).reset
+
+
 Change = Callable[[World, Path], Callable[[], Any]]
 
 CHANGES: dict[str, Change] = {
@@ -93,6 +109,32 @@ CHANGES: dict[str, Change] = {
     ),
     "fix a base": lambda world, _: lambda: world.bodies[2].change_dynamics(-1, mass=0.0),
     "free a base": lambda world, _: lambda: world.set_base_freedom(world.bodies[3], free=True),
+    "set dynamics": lambda world, _: (
+        lambda: world.bodies[3].set_dynamics(
+            0, replace(world.bodies[3].dynamics(0), mass=2.0, lateral_friction=0.3, collision_margin=0.02)
+        )
+    ),
+    "set parameters": lambda world, _: (
+        lambda: world.change_parameters(gravity=(0.0, 0.0, -1.0), substeps=2, contact_breaking_threshold=0.05)
+    ),
+    "set gravity": lambda world, _: lambda: setattr(world, "gravity", (0.0, 0.0, -1.0)),
+    "add an actuator": lambda world, _: (
+        lambda: world.bodies[1].add_actuator("motor", Motor(joint=world.bodies[1].joints.movable[-1].name))
+    ),
+    "add a site": lambda world, _: lambda: world.bodies[1].add_site("imu"),
+    "add a sensor": lambda world, _: (
+        lambda: world.bodies[1].add_sensor(
+            "limit", JointLimitForce(world.bodies[1].joints.movable[0].name, delay=0.01)
+        )
+    ),
+    "switch a sensor on": lambda world, _: world.bodies[3].joints.movable[0].enable_sensor,
+    "anchor": _anchor,
+    "reset to a keyframe": _keyframe,
+    "reset a joint": lambda world, _: lambda: world.bodies[3].joints.movable[0].reset(0.3, 0.4),
+    "reset all joints": lambda world, _: lambda: world.bodies[3].joints.reset([0.3, 0.4], 0.5),
+    "place a base": lambda world, _: (
+        lambda: world.bodies[1].set_base_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8))
+    ),
     "absent": lambda world, _: lambda: setattr(world.bodies[2], "present", False),
 }
 
@@ -147,6 +189,11 @@ def summary(world: World) -> tuple[Any, ...]:
         world.position[: world.arrays.used["position"]].tobytes(),
         world.link_pose[: world.arrays.used["link"]].tobytes(),
         [[(it.mass, it.lateral_friction) for it in body.all_dynamics] for body in bodies],
+        [(body.spec.actuators, body.spec.sites) for body in bodies],
+        repr(world.parameters),
+        world.arrays.model.numpy["link_sensor"][: world.arrays.used["link"]].tobytes(),
+        sorted(world.contact_arrays.soft.anchors),
+        len(world.observers),
     )
 
 

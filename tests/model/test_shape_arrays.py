@@ -221,7 +221,7 @@ def test_breaking_distances_follow_the_engines_parameter() -> None:
     scene = Scene()
     scene.add(SPECS[0])
     before = scene.column("shape_breaking").copy()
-    scene.shapes.set_breaking_fraction(0.05)
+    at_once(scene.shapes.set_breaking_fraction, 0.05)
     np.testing.assert_allclose(scene.column("shape_breaking"), before * 2.5, rtol=1e-12)
     scene.add(SPECS[0])
     np.testing.assert_allclose(scene.column("shape_breaking")[2:], before * 2.5, rtol=1e-12)

@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
+from carom.native.gates import alone
 from carom.native.kernels import coriolis_kernel
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
+@alone("world.lock")
 def compute_coriolis_matrix(body: Body, positions: Numbers, velocities: Numbers) -> Array:
     """The Coriolis matrix C with M v̇ + C v + g = forces, for which dM/dt - 2 C is skew-symmetric.
 
@@ -41,6 +43,7 @@ def compute_coriolis_matrix(body: Body, positions: Numbers, velocities: Numbers)
     return answer[: dofs * dofs].reshape(dofs, dofs).copy()
 
 
+@alone("world.lock")
 def gravity_forces(body: Body, positions: Numbers) -> Array:
     """The forces (dofs,) that hold a body at rest against gravity [N m or N].
 
@@ -50,6 +53,7 @@ def gravity_forces(body: Body, positions: Numbers) -> Array:
     return answer[dofs * dofs :].copy()
 
 
+@alone("world.lock")
 def bias_forces(body: Body, positions: Numbers, velocities: Numbers) -> Array:
     """The forces C v + g (dofs,), for gravity and velocities [N m or N].
 

@@ -11,6 +11,7 @@ from carom.algorithms.answers import CentroidalDynamics, centroidal_of
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
 from carom.layouts.mechanism import CENTROIDAL_COLUMNS, CENTROIDAL_NUMBERS
+from carom.native.gates import alone
 from carom.native.kernels import centroidal_kernel
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
+@alone("world.lock")
 def centroidal_dynamics(
     body: Body,
     positions: Numbers,

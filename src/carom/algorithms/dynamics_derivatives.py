@@ -15,6 +15,7 @@ from carom.algorithms.answers import (
 )
 from carom.algorithms.sweeps import sweeps_of
 from carom.checks import Array
+from carom.native.gates import alone
 from carom.native.kernels import (
     forward_derivatives_kernel,
     forward_dynamics_kernel,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
+@alone("world.lock")
 def inverse_dynamics_derivatives(
     body: Body, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> InverseDynamicsDerivatives:
@@ -65,6 +67,7 @@ def inverse_dynamics_derivatives(
     return inverse_derivatives_of(answer, sweeps.dofs)
 
 
+@alone("world.lock")
 def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces: Numbers) -> Array:
     """Accelerations for given generalized forces: the inverse of `inverse_dynamics`.
 
@@ -95,6 +98,7 @@ def forward_dynamics(body: Body, positions: Numbers, velocities: Numbers, forces
     return answer[:dofs].copy()
 
 
+@alone("world.lock")
 def forward_dynamics_derivatives(
     body: Body, positions: Numbers, velocities: Numbers, forces: Numbers
 ) -> ForwardDynamicsDerivatives:

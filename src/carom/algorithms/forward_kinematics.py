@@ -12,6 +12,7 @@ from carom.description.pose import IDENTITY, Pose, Quaternion
 from carom.description.transform import compose, inverse
 from carom.layouts.codes import BASE_POSITIONS
 from carom.model.body_spec import BASE
+from carom.native.gates import alone
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
+@alone("world.lock")
 def forward_kinematics(
     body: Body, positions: Numbers, links: Sequence[int] | None = None, *, in_base_frame: bool = False
 ) -> tuple[Pose, ...]:
@@ -45,6 +47,7 @@ def forward_kinematics(
     )
 
 
+@alone("world.lock")
 def inertial_poses(
     body: Body, positions: Numbers, links: Iterable[int], *, in_base_frame: bool = False
 ) -> list[Pose]:

@@ -11,11 +11,13 @@ from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array
 from carom.description.transform import conjugate, rotate
 from carom.layouts.codes import BASE_POSITIONS
+from carom.native.gates import alone
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def inverse_dynamics(
     body: Body,
     positions: Sequence[float] | np.ndarray,

@@ -9,11 +9,13 @@ import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array
+from carom.native.gates import alone
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def jacobian(
     body: Body,
     link: int,

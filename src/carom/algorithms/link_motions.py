@@ -10,6 +10,7 @@ import numpy as np
 from carom.algorithms.answers import LinkMotionDerivatives, LinkMotions, link_derivatives_of, link_motions_of
 from carom.algorithms.sweeps import link_numbers, sweeps_of
 from carom.layouts.mechanism import LINK_MOTION
+from carom.native.gates import alone
 from carom.native.kernels import link_derivatives_kernel, link_motions_kernel
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
+@alone("world.lock")
 def link_motions(
     body: Body,
     positions: Numbers,
@@ -53,6 +55,7 @@ def link_motions(
     return link_motions_of(answer, chosen)
 
 
+@alone("world.lock")
 def link_motion_derivatives(
     body: Body, link: int, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> LinkMotionDerivatives:

@@ -9,11 +9,13 @@ import numpy as np
 
 from carom.algorithms.mechanism import mechanism_of
 from carom.checks import Array
+from carom.native.gates import alone
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 

@@ -12,6 +12,7 @@ from carom.checks import Array
 from carom.description.transform import rotation_matrix
 from carom.layouts.mechanism import INERTIAL_PARAMETERS
 from carom.model.body_spec import BASE
+from carom.native.gates import alone
 from carom.native.kernels import regressor_kernel
 from carom.native.products import product
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 Numbers = Sequence[float] | np.ndarray
 
 
+@alone("world.lock")
 def joint_torque_regressor(
     body: Body, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> Array:
@@ -55,6 +57,7 @@ def joint_torque_regressor(
     return answer.reshape(sweeps.dofs, width)
 
 
+@alone("world.lock")
 def inertial_parameters(body: Body) -> Array:
     """Inertial parameters of the base and all links, (1 + joints, 10), about and along their link frames.
 

@@ -146,17 +146,22 @@ class ContactArrays:
         if count > 0:
             self.contacts.numpy["contact_warm_start"][0, :count] = 0.0
 
-    def note_reset(self, tree: int, *, moved: bool) -> None:
-        """Note that a body of a single world was reset, for the order in which its contacts are relaxed.
+    def note_cold_start(self, change: Change) -> None:
+        """`forget_warm_start` of a single world with a change."""
+        change.write(self.contacts.numpy["contact_warm_start"][0, : self.contact_count], 0.0)
+
+    def note_reset(self, change: Change, tree: int, *, moved: bool) -> None:
+        """Note that a change resets a body of a single world, for the order in which contacts are relaxed.
 
         Only PyBullet's functions do so, since only there the order of calls is known to matter.
 
         Args:
+            change: The change.
             tree: Its tree.
             moved: Whether it has another pose now; else only the first call after a step counts.
         """
-        counts = self.contacts.numpy["count_contacts"][0]
-        numbers = self._arrays.state.numpy["tree_reset"][0]
+        counts = change.arrays(self.contacts.numpy)["count_contacts"][0]
+        numbers = change.arrays(self._arrays.state.numpy)["tree_reset"][0]
         if not moved and abs(numbers[tree]) > counts[RESETS_SEEN]:
             return
         count = min(int(counts[RESETS]) + 1, MAX_RESETS)

@@ -145,6 +145,15 @@ class Engine:
         if self._plan is not None:
             change.set_all(self, _plan=None, _plan_before=self._plan)
 
+    def note_parameters(self, change: Change) -> None:
+        """Update the settings of kernels before the next step, after a change of parameters."""
+        self._settings.note_change(change)
+
+    @property
+    def is_planned(self) -> bool:
+        """Whether the launches of a step are those for the present bodies and constraints."""
+        return self._plan is not None
+
     # Structs
 
     def structs(self) -> KernelStructs:
@@ -159,7 +168,7 @@ class Engine:
         """Use the launches of before constraints changed, if they still perform the right step.
 
         Args:
-            parameters: Parameters of the world, the same as before.
+            parameters: Parameters of the world.
 
         Returns:
             False if `prepare` has to be called.

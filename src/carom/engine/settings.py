@@ -12,6 +12,7 @@ from carom.engine.parameters import EngineParameters
 from carom.layouts.codes import FrictionBound
 from carom.layouts.model import Settings
 from carom.model.builder import WorldArrays
+from carom.native.change import Change
 
 # Comparing the parameters takes a fifth of the time of what is derived from them.
 _PARAMETERS = attrgetter(*[known.name for known in fields(EngineParameters)])
@@ -36,8 +37,12 @@ class EngineSettings:
         self._gravity = (0.0, 0.0, 0.0)
         self._fluid = (0.0, 0.0, (0.0, 0.0, 0.0))
 
+    def note_change(self, change: Change) -> None:
+        """Update the struct before it is used again: parameters change."""
+        change.set(self, "_given", ())
+
     def has_counts(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
-        """Whether the struct has the present numbers of constraints."""
+        """Whether the struct has the present numbers of constraints, and parameters."""
         counts = arrays.used["constraint"], contact_arrays.user_count
         return bool(self._given) and counts == self._constraint_counts
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
@@ -12,13 +12,14 @@ from carom.errors import DescriptionError
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.model.builder import TreeRows, WorldArrays
+    from carom.native.change import Change
 
 _AXIS = "actuator"
 _BOUNDS = ("control", "force", "activation", "joint")
 _UNBOUNDED = (-inf, inf)
 
 
-def write_actuator(model: dict[str, Any], row: int, spec: ActuatorSpec) -> None:
+def write_actuator(model: Mapping[str, Any], row: int, spec: ActuatorSpec) -> None:
     """Write the parameters of an actuator."""
     model["actuator_dynamics"][row] = spec.dynamics
     model["actuator_gain"][:, row] = spec.gain
@@ -58,7 +59,7 @@ def check_joint_ranges(specs: Iterable[ActuatorSpec]) -> None:
             )
 
 
-def join_actuators(model: dict[str, Any], first: int, specs: Sequence[ActuatorSpec]) -> None:
+def join_actuators(model: Mapping[str, Any], first: int, specs: Sequence[ActuatorSpec]) -> None:
     """Chain the actuators of each joint and tendon with bounds of their sum; they are those of a body."""
     known: dict[tuple[str, str], list[int]] = {}
     for number, spec in enumerate(specs):
@@ -88,26 +89,40 @@ def read_actuator(model: dict[str, Any], row: int, world: int, spec: ActuatorSpe
     )
 
 
-def insert_actuator(arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows]) -> int:
+def insert_actuator(change: Change, arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows]) -> int:
     """Make room for one more actuator of a body, after those it has; those of other bodies move down.
 
     Returns:
         The new row, all zeros.
     """
-    used, row = arrays.used[_AXIS], rows.first[_AXIS] + rows.count[_AXIS]
-    arrays.reserve(actuator=1)
-    for table in arrays.tables:
-        for name, array in table.numpy.items():
-            if name.partition("_")[0] == _AXIS:
-                moved = array.swapaxes(0, 1) if table.is_per_world(name) else array
-                moved[row + 1 : used + 1] = moved[row:used].copy()
-                moved[row] = 0
-    rows.count = {**rows.count, _AXIS: rows.count[_AXIS] + 1}
-    first = arrays.model.numpy["tree_first_actuator"]
+    row = insert_rows(change, arrays, rows, others, _AXIS, 1)
+    model = change.arrays(arrays.model.numpy)
     for other in others:
         if other is not rows and other.tree > rows.tree:
-            other.first = {**other.first, _AXIS: other.first[_AXIS] + 1}
-            first[other.tree] += 1
-    arrays.model.numpy["tree_actuator_count"][rows.tree] += 1
-    arrays.used[_AXIS] = used + 1
+            model["tree_first_actuator"][other.tree] += 1
+    model["tree_actuator_count"][rows.tree] += 1
+    return row
+
+
+def insert_rows(
+    change: Change, arrays: WorldArrays, rows: TreeRows, others: Sequence[TreeRows], axis: str, count: int
+) -> int:
+    """Insert rows of zeros on an axis after those of a body with a change; returns the first.
+
+    `change` makes room for them at once.
+    """
+    used, row = arrays.used[axis], rows.first[axis] + rows.count[axis]
+    change.make_room(arrays.tables, {axis: used + count})
+    for table in arrays.tables:
+        copies = change.arrays(table.numpy)
+        for name in table.numpy:
+            if name.partition("_")[0] == axis:
+                moved = copies[name].swapaxes(0, 1) if table.is_per_world(name) else copies[name]
+                moved[row + count : used + count] = moved[row:used].copy()
+                moved[row : row + count] = 0
+    change.set(rows, "count", {**rows.count, axis: rows.count[axis] + count})
+    for other in others:
+        if other is not rows and other.tree > rows.tree:
+            change.set(other, "first", {**other.first, axis: other.first[axis] + count})
+    change.put(arrays.used, axis, used + count)
     return row

@@ -199,7 +199,7 @@ class ShapeArrays:
         self._end(change, body, {**used, **needed})
         change.set(self, "changes", change.get(self, "changes") + 1)
         if self.breaking_fraction != known.breaking_fraction:
-            self._write_breaking(body)
+            self._write_breaking(self.table.numpy["shape_breaking"], body, self.breaking_fraction)
 
     def _make_room(self, change: Change, needed: dict[str, int]) -> None:
         if self.table.lacks(needed):
@@ -404,19 +404,17 @@ class ShapeArrays:
         change.write(self.table.numpy["link_group"][link_row : link_row + 1], _as_int32(group))
         change.write(self.table.numpy["link_mask"][link_row : link_row + 1], _as_int32(mask))
 
-    def set_breaking_fraction(self, fraction: float) -> None:
-        """Set the breaking distance of contacts, relative to the reach of a link's shapes."""
+    def set_breaking_fraction(self, change: Change, fraction: float) -> None:
+        """Set the breaking distance of contacts, relative to the reach of a link's shapes, with a change."""
         if fraction == self.breaking_fraction:
             return
-        self.breaking_fraction = fraction
+        change.set(self, "breaking_fraction", fraction)
         for body in self._bodies.values():
-            self._write_breaking(body)
+            self._write_breaking(change.arrays(self.table.numpy)["shape_breaking"], body, fraction)
 
-    def _write_breaking(self, body: BodyShapes) -> None:
-        breaking = self.table.numpy["shape_breaking"]
+    def _write_breaking(self, breaking: np.ndarray, body: BodyShapes, fraction: float) -> None:
         for link, bounds in enumerate(body.bounds):
-            shapes = self._shapes_of(body.rows.first["link"] + link)
-            breaking[shapes] = self.breaking_fraction * reach(bounds)
+            breaking[self._shapes_of(body.rows.first["link"] + link)] = fraction * reach(bounds)
 
     def bounds(self, link_row: int) -> Bounds:
         """Bounds of a link's shapes along the axes of its inertial frame, margins included."""

@@ -147,27 +147,32 @@ class SoftArrays:
 
     def write_anchors(self) -> None:
         """Update the arrays from the present anchors."""
-        numpy = self.table.numpy
-        if not self.bodies and not numpy["count_soft"][ANCHORS]:
+        change = Change()
+        self.note_anchors(change)
+        change.commit()
+
+    def note_anchors(self, change: Change) -> None:
+        """The same with a change, for the anchors that there are after it; it makes room for them at once."""
+        if not self.bodies and not self.table.numpy["count_soft"][ANCHORS]:
             return
+        anchors = change.content(self.anchors).values()
+        held = [(anchor, anchor.body) for anchor in anchors if anchor.body is not None]
+        change.make_room([self.table], {"anchor": len(held)})
+        numpy = change.arrays(self.table.numpy)
         for soft in self.bodies:
             nodes = slice(soft.first["node"], soft.first["node"] + soft.count["node"])
             numpy["node_inverse_mass"][nodes] = 1.0 / soft.spec.masses
             numpy["node_anchored"][nodes] = FREE
-        held = [anchor for anchor in self.anchors.values() if anchor.body is not None]
-        self.table.reserve({"anchor": len(held)})
-        numpy = self.table.numpy
         numpy["count_soft"][ANCHORS] = len(held)
-        for row, anchor in enumerate(held):
+        for row, (anchor, body) in enumerate(held):
             node = anchor.soft.first["node"] + anchor.node
-            assert anchor.body is not None
             numpy["node_anchored"][node] = HELD if anchor.damped else HELD_UNDAMPED
             numpy["anchor_node"][row] = node
-            numpy["anchor_tree"][row] = anchor.body.tree
-            numpy["anchor_link"][row] = anchor.body.first["link"] + 1 + anchor.link
+            numpy["anchor_tree"][row] = body.tree
+            numpy["anchor_link"][row] = body.first["link"] + 1 + anchor.link
             numpy["anchor_pivot"][row] = anchor.pivot
             numpy["anchor_late_force"][row] = anchor.late_force
-        for anchor in self.anchors.values():
+        for anchor in anchors:
             if anchor.body is None:
                 numpy["node_inverse_mass"][anchor.soft.first["node"] + anchor.node] = 0.0
 

@@ -41,6 +41,13 @@ def builtin_of(definition: MethodDefinition, its_self: object, module: str) -> A
     return _maker()(ctypes.byref(definition), its_self, module)
 
 
+def descriptor_of(definition: MethodDefinition, kind: type) -> Any:
+    """The method of a class that a definition describes; its code gets the object as `self`."""
+    make = ctypes.pythonapi.PyDescr_NewMethod
+    make.restype, make.argtypes = ctypes.py_object, (ctypes.py_object, ctypes.POINTER(MethodDefinition))
+    return make(kind, ctypes.byref(definition))
+
+
 @cache
 def _maker() -> Any:
     make = ctypes.pythonapi.PyCFunction_NewEx

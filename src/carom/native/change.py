@@ -223,8 +223,11 @@ class Change:
         )
 
 
-def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 = _ZERO) -> bytes:
-    """The block that writes a value, 0 by default, to a field of a record; its path has points."""
+def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 | ctypes.c_double = _ZERO) -> bytes:
+    """The block that writes a value, 0 by default, to a field of a record; its path has points.
+
+    The value has to be kept until it is written.
+    """
     *outer, name = path.split(".")
     holder: Any = record
     for step in outer:

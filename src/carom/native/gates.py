@@ -8,56 +8,87 @@ from __future__ import annotations
 import ctypes
 from _thread import allocate_lock
 from collections.abc import Callable
-from typing import Any
+from functools import cache, wraps
+from operator import attrgetter
+from threading import RLock
+from typing import Any, TypeVar, cast
 
+from carom.forks import free_in_forks
 from carom.layouts.gates import Gate
+from carom.native.builtins import defined, descriptor_of
 
-# Builds `(name, address of the C code, self) -> builtin`.
-BuiltinMaker = Callable[[str, int, Any], Any]
+F = TypeVar("F", bound=Callable[..., Any])
+
+_METHODS = {"acquire": "acquire", "release": "release", "__enter__": "acquire", "__exit__": "release"}
 
 
-class GateLock:
+class GateLock(float):
     """The lock of a world: that of `threading.RLock`, which calls in the native library take as well.
+
+    Its value is the address of its `Gate`, by which C code finds this: a float, because there are no weak
+    references to whole numbers.
 
     Attributes:
         acquire: Takes it, with the arguments of `threading.Lock.acquire`.
         release: Gives it back.
-        address: Address of the `Gate`.
     """
 
-    __slots__ = ("_gate", "_methods", "_turnstile", "acquire", "address", "release")
-
-    # Set by the subclass that `lock_of` makes for each lock: builtins that know its address.
+    acquire: Any
+    release: Any
     __enter__: Any
     __exit__: Any
 
-    def __init__(self, gate: Gate, acquire: Any, release: Any) -> None:
+    def __new__(cls) -> GateLock:
+        """A new lock."""
+        gate = Gate()
+        lock = super().__new__(cls, ctypes.addressof(gate))
         # Closed until a thread that waits is woken.
-        self._turnstile = allocate_lock()
-        self._turnstile.acquire()
-        self._methods = self._turnstile.acquire, self._turnstile.release
-        self._gate = gate
-        gate.wait, gate.wake = map(id, self._methods)
-        self.address: int = ctypes.addressof(gate)
-        self.acquire = acquire
-        self.release = release
+        turnstile = allocate_lock()
+        turnstile.acquire()
+        lock._gate, lock._methods = gate, (turnstile.acquire, turnstile.release)
+        gate.wait, gate.wake = map(id, lock._methods)
+        return lock
+
+    _gate: Gate
+    _methods: tuple[Any, Any]
 
     def forget_threads(self) -> None:
         """In a forked process: no other thread waits."""
         self._gate.waiting = 0
 
 
-def lock_of(symbols: Any, new_builtin: BuiltinMaker) -> GateLock:
-    """A new lock; it must be kept as long as the library knows its gate."""
-    gate = Gate()
-    address = ctypes.addressof(gate)
-    acquire, release = (
-        new_builtin(name, _address(symbols, f"carom_gate_{name}"), address) for name in ("acquire", "release")
-    )
-    # Builtins do not bind, so `with` calls them as they are.
-    methods = {"__slots__": (), "__enter__": acquire, "__exit__": release}
-    return type("GateLock", (GateLock,), methods)(gate, acquire, release)
+def new_lock() -> Any:
+    """A lock for a world, which the same thread can take again; forks wait for it."""
+    return free_in_forks(GateLock() if _has_methods() else RLock(), of_world=True)
 
 
-def _address(symbols: Any, name: str) -> int:
-    return ctypes.cast(symbols[name], ctypes.c_void_p).value or 0
+@cache
+def _has_methods() -> bool:
+    """Give the class its methods, which are C code of the library; whether it has them."""
+    from carom.native.host import host
+
+    if host is None:
+        return False
+    for name, method in _METHODS.items():
+        code = host.symbols[f"carom_gate_{method}"]
+        setattr(GateLock, name, descriptor_of(defined(name, code, keywords=True), GateLock))
+    return True
+
+
+def alone(lock: str) -> Callable[[F], F]:
+    """Let a function have a world for itself, from its arguments to its result.
+
+    Args:
+        lock: Where the lock of the world is: attributes of the function's first argument, with points.
+    """
+    lock_of = attrgetter(lock)
+
+    def guard(function: F) -> F:
+        @wraps(function)
+        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+            with lock_of(first):
+                return function(first, *arguments, **keywords)
+
+        return cast("F", call)
+
+    return guard

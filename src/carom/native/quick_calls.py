@@ -8,18 +8,15 @@ the addresses of the few functions that it needs, so that one library serves all
 
 from __future__ import annotations
 
-import builtins
 import ctypes
 import sys
-import sysconfig
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from carom.layouts.gates import MAX_CLIENTS, Conduct, Guard
 from carom.layouts.quick_calls import MAX_CALLS, QuickCall
-from carom.native.gates import BuiltinMaker, GateLock, lock_of
-from carom.native.library import library
+from carom.native.host import Host, host
 from carom.native.uninterrupted import begin, end, is_our_own
 
 
@@ -49,20 +46,19 @@ class QuickCalls:
         is_paused: Its value is not 0 while Python has to handle all calls that name a connection.
     """
 
-    def __init__(
-        self, symbols: Any, calls: int, guards: int, clients: int, python: dict[str, ctypes.c_void_p]
-    ) -> None:
-        self.clients: Any = (ctypes.c_void_p * MAX_CLIENTS).from_address(clients)
+    def __init__(self, host: Host) -> None:
+        symbols = host.symbols
+        self.clients: Any = (ctypes.c_void_p * MAX_CLIENTS).from_address(host.clients)
         symbols.carom_gates.restype = ctypes.c_void_p
         self.gates: Any = (ctypes.c_void_p * len(self.clients)).from_address(symbols.carom_gates())
         self.is_paused: ctypes.c_int32 = ctypes.c_int32.in_dll(symbols, "carom_quick_calls_paused")
         self._symbols = symbols
-        self._calls = (QuickCall * MAX_CALLS).from_address(calls)
-        self._guards = (Guard * MAX_CALLS).from_address(guards)
+        self._calls = (QuickCall * MAX_CALLS).from_address(host.calls)
+        self._guards = (Guard * MAX_CALLS).from_address(host.guards)
         symbols.carom_quick_entry.restype = ctypes.c_void_p
         symbols.carom_meet_host.argtypes = [ctypes.py_object] * 3
         symbols.carom_meet_host(begin, end, is_our_own)
-        self._python = python
+        self._python = host.python
         # Memory that the library points to.
         self._kept: list[Any] = [begin, end, is_our_own]
         self._made = 0
@@ -102,10 +98,6 @@ class QuickCalls:
             parameter.missing = given.missing or 0.0
         made.is_flat = flat
 
-    def new_lock(self, new_builtin: BuiltinMaker) -> GateLock:
-        """A lock of a world, which the library takes as well."""
-        return lock_of(self._symbols, new_builtin)
-
     def meet_numpy(self) -> None:
         """Accept arrays as arguments, too, if NumPy has been imported."""
         numpy = sys.modules.get("numpy")
@@ -115,41 +107,11 @@ class QuickCalls:
 
 
 def quick_calls(vectorcall: int) -> QuickCalls | None:
-    """The quick calls of this process, for the first caller; None for others, and if there are none.
+    """The quick calls of this process; None where the library cannot use Python.
 
-    They need a usual build of CPython: in others the header of objects differs, or threads run in parallel.
-    They point to objects of one interpreter, so other interpreters of the process have none. `vectorcall` is
-    the address of the function that calls a Python function.
+    `vectorcall` is the address of the function that calls a Python function.
     """
-    if (
-        sys.implementation.name != "cpython"
-        or hasattr(sys, "getobjects")
-        or sysconfig.get_config_var("Py_GIL_DISABLED")
-    ):
+    if host is None:
         return None
-    symbols: ctypes.CDLL | None = library().symbols
-    if symbols is None:
-        # The library is in another process; see `tools.wheels.elsewhere`.
-        return None
-    python, calls, guards, clients = (ctypes.c_void_p() for _ in range(4))
-    if not symbols.carom_claim_quick_calls(*map(ctypes.byref, (python, calls, guards, clients))):
-        return None
-    functions, objects = (
-        ctypes.string_at(_address(symbols, f"carom_python_{kind}")).decode().split()
-        for kind in ("functions", "objects")
-    )
-    size = ctypes.sizeof(ctypes.c_void_p)
-    places = {
-        name: ctypes.c_void_p.from_address((python.value or 0) + place * size)
-        for place, name in enumerate((*functions, *objects))
-    }
-    for name in functions:
-        places[name].value = vectorcall if name == "PyObject_Vectorcall" else _address(ctypes.pythonapi, name)
-    for name in objects:
-        if hasattr(builtins, name):
-            places[name].value = id(getattr(builtins, name))
-    return QuickCalls(symbols, calls.value or 0, guards.value or 0, clients.value or 0, places)
-
-
-def _address(symbols: Any, name: str) -> int:
-    return ctypes.addressof(ctypes.c_char.in_dll(symbols, name))
+    host.python["PyObject_Vectorcall"].value = vectorcall
+    return QuickCalls(host)

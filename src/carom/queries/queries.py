@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
+from functools import wraps
 from itertools import chain, islice
 from struct import Struct
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -34,12 +35,29 @@ if TYPE_CHECKING:
     from carom.queries.soft_bodies import SoftQueries
 
 _POSE = Struct(f"7{np.dtype(NUMPY_REAL).char}")
+P = ParamSpec("P")
+Answer = TypeVar("Answer")
+
 # Value of `placement.changes` if no shapes have been placed.
 NEVER = -1
 
 
+def _alone(
+    ask: Callable[Concatenate[Queries, P], Answer],
+) -> Callable[Concatenate[Queries, P], Answer]:
+    @wraps(ask)
+    def call(self: Queries, *arguments: P.args, **keywords: P.kwargs) -> Answer:
+        with self._lock:
+            return ask(self._current(), *arguments, **keywords)
+
+    return call
+
+
 class Queries:
     """The collision queries of a world, as launches over its present arrays.
+
+    A method has the world for itself, and asks it as it is then: `current` is `World.queries`. `ray_tuples`,
+    `ray_tuple` and `contacts` are for callers that have the lock.
 
     `structs` are by the names of kernel arguments, `places` are body and link of each row of the link arrays,
     `pairs` is the workspace of collision detection, and `quick` gets addresses for quick calls.
@@ -47,6 +65,8 @@ class Queries:
 
     def __init__(
         self,
+        lock: Any,
+        current: Callable[[], Queries],
         structs: KernelStructs,
         positions: memoryview[float],
         places: Sequence[tuple[int, int]],
@@ -57,6 +77,7 @@ class Queries:
         soft_work: ArrayTable,
         quick: QuickScene,
     ) -> None:
+        self._lock, self._current = lock, current
         self._structs = structs
         structs["places"] = row_map_struct(places)
         self._link_count = len(places)
@@ -125,6 +146,7 @@ class Queries:
             if not count and row not in hidden
         ]
 
+    @_alone
     def cast_rays(
         self, starts: Points, ends: Points, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> tuple[RayHit, ...]:
@@ -143,6 +165,7 @@ class Queries:
         hits = self.ray_tuples(starts, ends, mask=mask, hit_number=hit_number, separation=separation)
         return tuple(map(RayHit._make, hits))
 
+    @_alone
     def cast_ray(
         self, start: Vector3, end: Vector3, *, mask: int = -1, hit_number: int = 0, separation: float = 0.0
     ) -> RayHit:
@@ -177,6 +200,7 @@ class Queries:
         self._prepare(IN_HIERARCHY)
         return self._cast.one(start, end, mask, hit_number, separation)
 
+    @_alone
     def nearest(
         self, first: Sequence[int], second: Sequence[int], max_distance: float
     ) -> list[NearestPoints]:
@@ -227,6 +251,7 @@ class Queries:
             return NO_CONTACTS
         return self._soft.contacts(body_a, link_a, body_b, link_b, time_step)
 
+    @_alone
     def overlapping(self, lower: Vector3, upper: Vector3) -> list[int]:
         """Rows of the links whose bounds overlap a box, given by its corners in world axes [m].
 

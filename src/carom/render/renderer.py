@@ -31,7 +31,7 @@ _ONLY_WORLD = np.zeros(1, dtype=np.int64)
 
 
 class Renderer:
-    """Draw images of one world; get it from `renderer_of`. Not safe for use by several threads at once."""
+    """Draw images of one world, whose lock it takes; get it from `renderer_of`."""
 
     def __init__(self) -> None:
         self._scene: SceneArrays | None = None
@@ -71,15 +71,16 @@ class Renderer:
         if is_singular(view) or is_singular(projection):
             # A singular matrix projects no triangle. Without a window, for instance, matrices are all zeros.
             return RawImage.blank(width, height)
-        scene = self._present_scene(world)
-        target = self._target(scene, width, height)
-        with world.present_poses():
-            scene.follow_nodes()
-            link_to_world = poses_to_matrices(world.link_pose[scene.link_rows])
-        absent = absent_links(world.arrays, scene.link_rows, _ONLY_WORLD)
-        if absent is not None:
-            link_to_world[absent[0]] = 0.0
-        return target.draw(link_to_world, view, projection, light, projector)
+        with world.lock:
+            scene = self._present_scene(world)
+            target = self._target(scene, width, height)
+            with world.present_poses():
+                scene.follow_nodes()
+                link_to_world = poses_to_matrices(world.link_pose[scene.link_rows])
+            absent = absent_links(world.arrays, scene.link_rows, _ONLY_WORLD)
+            if absent is not None:
+                link_to_world[absent[0]] = 0.0
+            return target.draw(link_to_world, view, projection, light, projector)
 
     def draw_worlds(
         self,

@@ -27,8 +27,9 @@ from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import TreeRows
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.tables import NUMPY_REAL
-from carom.scene.dynamics_changes import change_dynamics, set_present, write_link
+from carom.scene.dynamics_changes import change_dynamics, set_dynamics, set_present
 from carom.scene.handles import world_of
 from carom.scene.link_dynamics import LinkDynamics
 
@@ -47,7 +48,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 _NUMBER = np.dtype(NUMPY_REAL)
-_POSE, _SPATIAL = Struct(f"{BASE_POSITIONS}{_NUMBER.char}"), Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
+_SPATIAL = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 
 
 class Outline:
@@ -308,7 +309,7 @@ class Body(Closed):
         """
         from carom.scene.keyframes.changes import reset
 
-        reset([self], name)
+        reset([self], name, with_time=False)
 
     def link_spec(self, link: int) -> LinkSpec:
         """The specification of link `link`; -1 is the base."""
@@ -318,6 +319,7 @@ class Body(Closed):
         """Inertial frame of a link in its link frame; -1 is the base."""
         return self.link_spec(link).inertial_frame
 
+    @alone("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Set the pose of the base's inertial frame; its velocity does not change.
 
@@ -329,14 +331,14 @@ class Body(Closed):
         squared = x * x + y * y + z * z + w * w
         # A pose that was read and is written back must not change in the last digit.
         scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
-        _POSE.pack_into(
-            self.world.position_memory,
-            self.first_position * _NUMBER.itemsize,
-            *position, x * scale, y * scale, z * scale, w * scale,
-        )  # fmt: skip
-        self.world.contact_arrays.forget_warm_start()
-        self.update_link_poses()
+        first, change = self.first_position, Change()
+        pose = *position, x * scale, y * scale, z * scale, w * scale
+        change.write(self.world.position[first : first + BASE_POSITIONS], pose)
+        self.world.contact_arrays.note_cold_start(change)
+        self.world.note_link_poses(change, self)
+        change.commit()
 
+    @alone("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s].
 
@@ -345,6 +347,7 @@ class Body(Closed):
         first = self.first_velocity * _NUMBER.itemsize
         _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
 
+    @alone("world.lock")
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
@@ -356,23 +359,31 @@ class Body(Closed):
                 None keeps them.
             velocity: All velocity coordinates of the joint; None keeps them.
         """
-        if position is not None:
-            first, count = self.position_index[joint], self.position_count[joint]
-            if count == 1:
-                self.world.position_memory[first] = position[0]
-            elif count == 4:
-                length = sum(component * component for component in position) ** 0.5
-                self.world.position[first : first + 4] = [component / length for component in position]
-            elif count:
-                self.world.position[first : first + count] = position
-        if velocity is not None:
-            first, count = self.velocity_index[joint], self.velocity_count[joint]
-            if count == 1:
-                self.world.velocity_memory[first] = velocity[0]
-            elif count:
-                self.world.velocity[first : first + count] = velocity
-        self.update_link_poses()
+        change = Change()
+        self.note_joint_state(change, joint, position, velocity)
+        self.world.note_link_poses(change, self)
+        change.commit()
 
+    def note_joint_state(
+        self, change: Change, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
+    ) -> list[float]:
+        """Set the state of a joint with a change, as `set_joint_state`; poses of links stay.
+
+        Returns:
+            The coordinates that are set.
+        """
+        if position is not None and (count := self.position_count[joint]):
+            first = self.position_index[joint]
+            if count == 4:
+                size = sum(component * component for component in position) ** 0.5
+                position = [component / size for component in position]
+            change.write(self.world.position[first : first + count], position)
+        if velocity is not None and (count := self.velocity_count[joint]):
+            first = self.velocity_index[joint]
+            change.write(self.world.velocity[first : first + count], velocity)
+        return list(position or ())
+
+    @alone("world.lock")
     def coordinates(self) -> list[float]:
         """All position coordinates: those of the base, then those of the joints."""
         first, count = self.rows.first["position"], self.rows.count["position"]
@@ -380,12 +391,16 @@ class Body(Closed):
 
     def note_reset(self, *, moved: bool) -> None:
         """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_reset`."""
-        self.world.contact_arrays.note_reset(self.rows.tree, moved=moved)
+        change = Change()
+        self.world.contact_arrays.note_reset(change, self.rows.tree, moved=moved)
+        change.commit()
 
+    @alone("world.lock")
     def update_link_poses(self) -> None:
         """Update the body's rows of `World.link_pose` from its coordinates."""
         self.world.update_link_poses(self)
 
+    @alone("world.lock")
     def update_link_velocities(self) -> None:
         """Update the body's rows of `World.link_velocity` from its coordinates."""
         self.world.update_link_velocities(self)
@@ -432,34 +447,33 @@ class Body(Closed):
         """
         change_dynamics(self, self.links[link].index if isinstance(link, str) else link, changes)
 
+    @alone("world.lock")
     def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
         """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
-        self._dynamics[link + 1] = dynamics
-        write_link(self, link)
+        set_dynamics(self, link, dynamics)
 
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
         return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] & SENSED)
 
+    @alone("world.lock")
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
-        model = self.world.arrays.model.numpy
-        row = self.first_link + 1 + joint
-        others = model["link_sensor"][row] & ~SENSED
-        model["link_sensor"][row] = others | SENSED if enabled else others
-        self._count_sensors()
+        change = Change()
+        self._note_sensor(change, joint, SENSED, on=enabled)
         if not enabled:
-            self.world.joint_reaction[row] = 0.0
+            change.write(self.world.joint_reaction[self.first_link + 1 + joint], 0.0)
+        change.commit()
 
-    def measure_load(self, joint: int) -> None:
-        """Measure from now on what a joint transmits, for sensors of sites and of its limit."""
-        self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] |= LOADED
-        self._count_sensors()
+    def measure_load(self, change: Change, joint: int) -> None:
+        """Measure what a joint transmits after a change, for sensors of sites and of its limit."""
+        self._note_sensor(change, joint, LOADED, on=True)
 
-    def _count_sensors(self) -> None:
-        model = self.world.arrays.model.numpy
-        links = slice(self.first_link, self.first_link + 1 + self.joint_count)
-        model["tree_sensor_count"][self.rows.tree] = int(np.count_nonzero(model["link_sensor"][links]))
+    def _note_sensor(self, change: Change, joint: int, kind: int, *, on: bool) -> None:
+        model = change.arrays(self.world.arrays.model.numpy)
+        sensors = model["link_sensor"][self.first_link : self.first_link + 1 + self.joint_count]
+        sensors[1 + joint] = sensors[1 + joint] | kind if on else sensors[1 + joint] & ~kind
+        model["tree_sensor_count"][self.rows.tree] = int(np.count_nonzero(sensors))
 
 
 def _body_of(world: World, number: int) -> Body:

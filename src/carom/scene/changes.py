@@ -12,6 +12,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BodySpec
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
 from carom.scene.draft import draft_of
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 
+@alone("lock")
 def add_bodies(
     world: World,
     bodies: Sequence[tuple[BodySpec, Pose]],
@@ -110,6 +112,7 @@ def append_now(world: World, spec: BodySpec, pose: Pose) -> Body:
     return body
 
 
+@alone("lock")
 def remove_body(world: World, body: Body) -> None:
     """Remove a body from a world, with everything that belongs to it."""
     with uninterrupted:
@@ -133,6 +136,7 @@ def remove_body(world: World, body: Body) -> None:
         change.commit()
 
 
+@alone("lock")
 def tie(world: World, constraint: UserConstraint) -> UserConstraint:
     """Add a new user constraint, and return it."""
     with uninterrupted:
@@ -144,6 +148,7 @@ def tie(world: World, constraint: UserConstraint) -> UserConstraint:
     return constraint
 
 
+@alone("lock")
 def untie(world: World, constraint: UserConstraint) -> None:
     """Remove a user constraint."""
     with uninterrupted:
@@ -154,6 +159,7 @@ def untie(world: World, constraint: UserConstraint) -> None:
         change.commit()
 
 
+@alone("lock")
 def free_base(world: World, body: Body, *, free: bool) -> None:
     """Free the base of a body, or fix it in the world."""
     with uninterrupted:

@@ -46,7 +46,9 @@ class Draft:
             for body in bodies:
                 for spec in body.spec.sensors:
                     check_sensor(self.world, body, spec)
-            self._watches = measure_loads(bodies)
+            change = Change()
+            self._watches = measure_loads(change, bodies)
+            change.commit()
 
     def publish(self, change: Change) -> None:
         """Let the original take over everything with a change, which is made."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,8 +15,15 @@ from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.model.shape_arrays import SURFACE_FIELDS
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
-from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, checked_terms, note_terms, write_terms
+from carom.scene.joint_terms.implicit import (
+    OF_DOFS,
+    SPRING_REFERENCE,
+    checked_terms,
+    note_all_terms,
+    note_terms,
+)
 
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
@@ -43,6 +50,7 @@ _NOT_OF_SURFACE = {
 }
 
 
+@alone("world.lock")
 def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     with uninterrupted:
@@ -177,14 +185,21 @@ def _note_joint(change: Change, body: Body, joint: int, changes: Mapping[str, An
     return renews
 
 
-def write_link(body: Body, link: int) -> None:
-    """Write `Body.dynamics` of a link to the engine, except the limits of its joint."""
-    dynamics = body.dynamics(link)
-    body.derived.clear()
-    body.world.arrays.write_inertia(body.first_link + 1 + link, dynamics.mass, dynamics.inertia)
+def set_dynamics(body: Body, link: int, dynamics: LinkDynamics) -> None:
+    """Set all parameters of a link, except the limits of its joint, at once; see `Body.set_dynamics`."""
+    change, row = Change(), body.first_link + 1 + link
+    world, present = body.world, body.dynamics(link)
+    for field in fields(dynamics):
+        change.set(present, field.name, getattr(dynamics, field.name))
+    change.set(body, "derived", {})
+    world.arrays.note_inertia(change, row, dynamics.mass, dynamics.inertia)
     if link != BASE:
-        write_terms(body, link)
-    body.world.contact_arrays.shapes.write_surface(body.first_link + 1 + link, dynamics)
+        note_all_terms(change, body, link, dynamics)
+    surface = {name: getattr(dynamics, name) for name in SURFACE_FIELDS}
+    if surface["collision_margin"] == present.collision_margin:
+        del surface["collision_margin"]
+    world.contact_arrays.shapes.note_surface(change, row, surface)
+    change.commit()
 
 
 def _note_mass(change: Change, body: Body, link: int, mass: float, inertia: Vector3 | None) -> bool:
@@ -268,6 +283,7 @@ def _note_inertia(change: Change, body: Body, link: int) -> None:
     body.world.arrays.note_inertia(change, body.first_link + 1 + link, mass, inertia)
 
 
+@alone("world.lock")
 def set_present(body: Body, present: bool) -> None:
     """Let a body come or go, or leave it as it is; see `Body.present`."""
     world = body.world

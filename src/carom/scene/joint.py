@@ -11,6 +11,8 @@ from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
@@ -166,27 +168,32 @@ class Joint:
     # State
 
     @property
+    @alone("body.world.lock")
     def position(self) -> float:
         """Present position."""
         self._require_one_freedom()
         return float(world_of(self.body).position[self.body.position_index[self.index]])
 
     @property
+    @alone("body.world.lock")
     def velocity(self) -> float:
         """Present velocity."""
         return float(world_of(self.body).velocity[self._dof])
 
     @property
+    @alone("body.world.lock")
     def coordinates(self) -> Array:
         """All position coordinates, shape (0,), (1,), or (4,) for the quaternion of a spherical joint."""
         first, count = self.body.position_index[self.index], self.body.position_count[self.index]
         return world_of(self.body).position[first : first + count].copy()
 
     @property
+    @alone("body.world.lock")
     def rates(self) -> Array:
         """All velocity coordinates, shape (0,), (1,), or (3,)."""
         return world_of(self.body).velocity[self._dofs].copy()
 
+    @alone("body.world.lock")
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
@@ -218,6 +225,7 @@ class Joint:
 
     # Drive
 
+    @alone("body.world.lock")
     def set_position_target(
         self,
         target: float,
@@ -247,6 +255,7 @@ class Joint:
             target, velocity, gain, velocity_gain, force, max_velocity
         )
 
+    @alone("body.world.lock")
     def set_velocity_target(
         self, target: float, *, gain: float = 1.0, max_force: float | None = None
     ) -> None:
@@ -259,6 +268,7 @@ class Joint:
         """
         self._drives(self._one_dof).aim_at_velocity(target, gain, self._force(max_force))
 
+    @alone("body.world.lock")
     def set_spring(
         self,
         target: float,
@@ -280,6 +290,7 @@ class Joint:
         force = self._force(max_force)
         self._drives(self._one_dof).pull_like_a_spring(target, velocity, stiffness, damping, force)
 
+    @alone("body.world.lock")
     def set_orientation_target(
         self,
         target: ArrayLike,
@@ -305,6 +316,7 @@ class Joint:
         force = self._force(max_force)
         self._drives(self._dofs).aim_at_orientation(quaternion / size, gain, damping, force)
 
+    @alone("body.world.lock")
     def set_torque(self, torque: ArrayLike) -> None:
         """Torque control: apply a force or torque in the next step, instead of one set before.
 
@@ -313,11 +325,13 @@ class Joint:
         torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
         world_of(self.body).joint_torque[self._dofs] = torque
 
+    @alone("body.world.lock")
     def disable_motor(self) -> None:
         """Switch off the motor, which is on after loading, and the spring."""
         self._drives(self._dofs).switch_off()
 
     @property
+    @alone("body.world.lock")
     def motor_torque(self) -> float:
         """Force or torque of the motor in the last substep."""
         world = world_of(self.body)
@@ -325,12 +339,14 @@ class Joint:
 
     # Force-torque sensor
 
+    @alone("body.world.lock")
     def enable_sensor(self, enabled: bool = True) -> None:
         """Switch the force-torque sensor on or off; it reads 0 until the next step."""
         world_of(self.body)  # raises an error if the body has been removed
         self.body.set_sensor(self.index, enabled)
 
     @property
+    @alone("body.world.lock")
     def reaction(self) -> Array:
         """Force [N] and torque [N m] measured by the sensor in the last substep, shape (6,).
 
@@ -401,15 +417,19 @@ class Joints(Named[Joint]):
     @property
     def positions(self) -> Array:
         """Position coordinates of all movable joints: a copy, read-only; `reset` sets them."""
-        first, count = self._body.first_position + BASE_POSITIONS, sum(self._body.position_count)
-        return _read_only(world_of(self._body).position[first : first + count].copy())
+        count = sum(self._body.position_count)
+        with self._body.world.lock:
+            first = self._body.first_position + BASE_POSITIONS
+            return _read_only(world_of(self._body).position[first : first + count].copy())
 
     @property
     def velocities(self) -> Array:
         """Velocity coordinates of all movable joints: a copy, read-only; `reset` sets them."""
-        return _read_only(world_of(self._body).velocity[self._dofs].copy())
+        with self._body.world.lock:
+            return _read_only(world_of(self._body).velocity[self._dofs].copy())
 
     @property
+    @alone("_body.world.lock")
     def motor_torques(self) -> Array:
         """Forces of the motors in the last substep, one for each velocity coordinate."""
         world = world_of(self._body)
@@ -426,6 +446,7 @@ class Joints(Named[Joint]):
         """Maximum forces of the motors according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
+    @alone("_body.world.lock")
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
 
@@ -448,9 +469,13 @@ class Joints(Named[Joint]):
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
             states.append(joint.checked_state(positions[q:q_end], velocities[u:u_end]))
             q, u = q_end, u_end
+        change = Change()
         for joint, state in zip(self._movable, states, strict=True):
-            self._body.set_joint_state(joint.index, *state)
+            self._body.note_joint_state(change, joint.index, *state)
+        self._body.world.note_link_poses(change, self._body)
+        change.commit()
 
+    @alone("_body.world.lock")
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -475,6 +500,7 @@ class Joints(Named[Joint]):
             self._each(max_velocities, "max_velocities"),
         )
 
+    @alone("_body.world.lock")
     def set_velocity_targets(
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
@@ -485,11 +511,13 @@ class Joints(Named[Joint]):
             self._each(self._forces(max_forces), "max_forces"),
         )
 
+    @alone("_body.world.lock")
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
         torques = self._each(finite(torques, "torques"), "torques")
         world_of(self._body).joint_torque[self._dofs] = torques
 
+    @alone("_body.world.lock")
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
         self._drives(self._dofs).switch_off()

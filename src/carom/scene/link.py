@@ -11,6 +11,7 @@ from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, inverse, rotate
 from carom.model.body_spec import BASE
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 
@@ -101,16 +102,19 @@ class Link:
     # State
 
     @property
+    @alone("body.world.lock")
     def pose(self) -> LinkPose:
         """World pose of the link frame, as defined by the file."""
         return _as_arrays(self._link_frame())
 
     @property
+    @alone("body.world.lock")
     def inertial_pose(self) -> LinkPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
         return _as_arrays(self._inertial_frame())
 
     @property
+    @alone("body.world.lock")
     def velocity(self) -> LinkVelocity:
         """Velocity of the centre of mass and angular velocity, in world axes."""
         world = world_of(self.body)
@@ -121,6 +125,7 @@ class Link:
 
     # Forces
 
+    @alone("body.world.lock")
     def apply_force(
         self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
     ) -> None:
@@ -146,6 +151,7 @@ class Link:
         wrench[:3] += world_force
         wrench[3:] += np.cross(arm, world_force)
 
+    @alone("body.world.lock")
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
         """Apply a torque in the next step, in addition to other torques.
 

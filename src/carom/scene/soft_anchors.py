@@ -8,6 +8,7 @@ from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
 from carom.model.soft_arrays import Anchor
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from carom.world.world import World
 
 
+@alone("world.lock")
 def add_anchor(
     soft: SoftBody, node: int, body: Body | None, link: int, damped: bool, late_force: float
 ) -> Anchor:
@@ -35,24 +37,29 @@ def add_anchor(
         local = compose(inverse(Pose((px, py, pz), (qx, qy, qz, qw))), Pose((x, y, z)))
         pivot = local.position
     with uninterrupted:
-        change = Change()
+        change = Change(world.change_scene)
         number = world.user_constraints.take_id(change)
         rows = None if body is None else body.rows
         anchor = Anchor(number, soft.soft_rows, node, rows, link, pivot, damped, late_force)
         change.put(world.contact_arrays.soft.anchors, number, anchor)
         if body is None:
             change.write(soft.node_velocities[node], 0.0)
-        world.change_scene(change)
-        change.commit()
-        world.update_soft_poses()
+        _commit(change, world)
     return anchor
 
 
+@alone("lock")
 def remove_anchor(world: World, number: int) -> None:
     """Remove the anchor with a number, if it exists."""
     with uninterrupted:
-        change = Change()
+        change = Change(world.change_scene)
         change.drop(world.contact_arrays.soft.anchors, number)
-        world.change_scene(change)
-        change.commit()
-        world.update_soft_poses()
+        _commit(change, world)
+
+
+def _commit(change: Change, world: World) -> None:
+    """Make a change of anchors, and update what depends on them with it."""
+    world.contact_arrays.soft.note_anchors(change)
+    world.note_soft_poses(change)
+    world.change_scene(change)
+    change.commit()

@@ -12,6 +12,7 @@ from carom.checks import Array, finite
 from carom.description.transform import rotation_matrix
 from carom.model.soft_arrays import Anchor, SoftRows
 from carom.model.soft_spec import SoftSpec
+from carom.native.gates import alone
 from carom.native.products import dots, length, product
 from carom.scene.body import Body
 
@@ -76,6 +77,7 @@ class SoftBody(Body):
         return self.soft_spec.faces
 
     @property
+    @alone("world.lock")
     def surface(self) -> tuple[Array, NDArray[np.int32]]:
         """Its visible mesh: (v, 3) vertices in world axes [m], a copy, and (t, 3) triangles."""
         skin = self.soft_spec.skin
@@ -93,10 +95,12 @@ class SoftBody(Body):
         """Its anchors."""
         return [it for it in self.world.contact_arrays.soft.anchors.values() if it.soft.rows is self.rows]
 
+    @alone("world.lock")
     def update(self) -> None:
         """Update the pose and the velocity of the base after nodes have been written."""
         self.world.update_soft_poses()
 
+    @alone("world.lock")
     def set_nodes(self, positions: Array | Sequence[Sequence[float]]) -> None:
         """Set the positions of the nodes; their velocities do not change.
 
@@ -109,6 +113,7 @@ class SoftBody(Body):
         self.nodes[:] = _as_many(positions, self.nodes.shape, "positions")
         self.update()
 
+    @alone("world.lock")
     def set_node_velocities(self, velocities: Array | Sequence[Sequence[float]]) -> None:
         """Set the velocities of the nodes [m/s], shape (n, 3).
 
@@ -118,6 +123,7 @@ class SoftBody(Body):
         self.node_velocities[:] = _as_many(velocities, self.node_velocities.shape, "velocities")
         self.update()
 
+    @alone("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_base_pose`."""
         state = self.world.arrays.state.numpy
@@ -129,6 +135,7 @@ class SoftBody(Body):
         self.node_velocities[:] = product(self.node_velocities, turn.T)
         self.update()
 
+    @alone("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
         first = self.first_position
@@ -142,11 +149,13 @@ class SoftBody(Body):
             link, **{name: value for name, value in changes.items() if name not in _FIXED}
         )
 
+    @alone("world.lock")
     def bounds(self) -> tuple[Array, Array]:
         """Minimum and maximum corner of its bounding box in world axes, margin included [m]."""
         margin = self.soft_spec.margin
         return self.nodes.min(axis=0) - margin, self.nodes.max(axis=0) + margin
 
+    @alone("world.lock")
     def anchor(
         self,
         node: int,
@@ -181,6 +190,7 @@ class SoftBody(Body):
             raise ValueError(f"late_force is {late_force}; it has to be between 0 and 1")
         return add_anchor(self, node, body, link, damped, late_force)
 
+    @alone("world.lock")
     def release(self, anchor: Anchor) -> None:
         """Remove an anchor."""
         from carom.scene.soft_anchors import remove_anchor

@@ -6,7 +6,7 @@ import webbrowser
 from collections.abc import Callable, Iterable
 from functools import partial
 from math import inf, isfinite
-from threading import RLock, Timer
+from threading import Timer
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
@@ -68,8 +68,8 @@ class Viewer:
     Args:
         world: The world.
         lock: Lock held while the world is stepped or bodies are added and removed; its owner checks `held`
-            before each step. Without it the viewer controls the steps by an observer of the world, and
-            `Viewer.lock` has to be held while bodies are added and removed.
+            before each step. Without it the lock is that of the world, and the viewer controls the steps by
+            an observer.
         host: Address to listen on; by default only for this machine. Pages need a token, which is part of
             `address`.
         port: Port to listen on; None for the default port or, if it is taken, any.
@@ -131,7 +131,7 @@ class Viewer:
         self._gamepads = Gamepads()
         self.pause_control: PauseControl = PauseControl()
         self._pictures = Pictures()
-        self.lock: Any = RLock() if lock is None else lock
+        self.lock: Any = world.lock if lock is None else lock
         self._world = world
         self._step_queue = StepQueue(self.lock)
         self._joint_hands = JointHands(world)

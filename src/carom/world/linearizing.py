@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 from numpy.typing import ArrayLike
 
+from carom.native.gates import alone
+
 if TYPE_CHECKING:
     from carom.checks import Array
     from carom.linearization import LinearizedStep
@@ -26,6 +28,7 @@ class Linearizing:
             self._kept_linearization = {}
         return self._kept_linearization
 
+    @alone("lock")
     def linearize(
         self,
         controls: Sequence[str] = ("torques",),
@@ -90,6 +93,7 @@ class Linearizing:
             Start(positions, velocities, activations, control_values),
         )
 
+    @alone("lock")
     def step_vjp(
         self,
         cotangent: ArrayLike,

@@ -114,9 +114,24 @@ class PoseUpdates(ABC):
                 self.contact_arrays.soft.write_anchors()
             self.engine.structs().launch(follow_nodes_kernel, first_world=0)()
 
+    def note_soft_poses(self, change: Change) -> None:
+        """The same after a change, which has noted the anchors."""
+        if self.contact_arrays.soft.bodies:
+            launch = self.engine.structs().launch(follow_nodes_kernel, first_world=0)
+            # The kernel's number is that of the first world instead of a tree.
+            change.run(launch.addresses("first_world"), 0, launch)
+
     def update_link_velocities(self, body: Body) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
+        self._prepare_velocities()(body.rows.tree)
+
+    def note_link_velocities(self, change: Change, body: Body) -> None:
+        """The same after a change."""
+        launch = self._prepare_velocities()
+        change.run(launch.addresses(), body.rows.tree, launch)
+
+    def _prepare_velocities(self) -> TreeLaunch:
         if self._derived.twist_launch is None:
             self._derived.twist_launch = TreeLaunch(link_twist_kernel, self.engine.structs())
             self.quick.set_twist_addresses(self._derived.twist_launch)
-        self._derived.twist_launch(body.rows.tree)
+        return self._derived.twist_launch

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 from carom.closed import Closed
 from carom.description.pose import Pose
 from carom.description.transform import compose
+from carom.native.gates import alone
 from carom.scene.actuators.actuator import BodyActuator
 from carom.scene.body import Body
 from carom.scene.keyframes.keyframe import Keyframe, keyframes_of
@@ -71,20 +72,19 @@ class Scene(Closed, Sequence[Body]):
         `solver_residual_threshold` of 1e-7 the solver ends while they are 1e-4 to 2e-3 from those of MuJoCo,
         so `options["solver_residual_threshold"]` is 1e-11 for them. Other options have no effect.
         """
-        if "gravity" in self.options:
-            has_gravity = self.options.get("flag.gravity", True)
-            self.world.gravity = self.options["gravity"] if has_gravity else (0.0, 0.0, 0.0)
+        options, values = self.options, dict[str, Any]()
+        if "gravity" in options:
+            values["gravity"] = options["gravity"] if options.get("flag.gravity", True) else (0.0, 0.0, 0.0)
         if self.format == "MJCF":
-            is_off = not any(self.options.get(f"flag.{name}", True) for name in ("spring", "damper"))
-            density, viscosity = (self.options.get(name, 0.0) for name in ("density", "viscosity"))
-            self.world.parameters.fluid_density = 0.0 if is_off else density
-            self.world.parameters.fluid_viscosity = 0.0 if is_off else viscosity
-            self.world.parameters.wind = self.options.get("wind", (0.0, 0.0, 0.0))
-        if "timestep" in self.options:
-            self.world.parameters.time_step = self.options["timestep"]
-        if "solver_residual_threshold" in self.options:
-            self.world.parameters.solver_residual_threshold = self.options["solver_residual_threshold"]
-        self.world.apply_parameters()
+            is_off = not any(options.get(f"flag.{name}", True) for name in ("spring", "damper"))
+            for name in ("density", "viscosity"):
+                values[f"fluid_{name}"] = 0.0 if is_off else options.get(name, 0.0)
+            values["wind"] = options.get("wind", (0.0, 0.0, 0.0))
+        if "timestep" in options:
+            values["time_step"] = options["timestep"]
+        if "solver_residual_threshold" in options:
+            values["solver_residual_threshold"] = options["solver_residual_threshold"]
+        self.world.change_parameters(**values)
 
     def __repr__(self) -> str:
         names = ", ".join(repr(body.name) for body in self.bodies[:_MAX_NAMES])
@@ -140,6 +140,7 @@ class Scene(Closed, Sequence[Body]):
         camera.place(pose.position, pose.orientation)
         return camera
 
+    @alone("world.lock")
     def reset(self, name: str) -> None:
         """Reset the bodies that have a keyframe of this name to it, and the world to its time.
 

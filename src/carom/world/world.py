@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from ctypes import addressof, c_double, sizeof
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from carom.layouts.status import STATUS, WELL
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.native.change import Change, packed_block
+from carom.native.gates import alone, new_lock
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 from carom.native.uninterrupted import uninterrupted
@@ -48,6 +49,10 @@ if TYPE_CHECKING:
     from carom.world.log import Log
 
 
+# The parameters that determine which launches a step consists of.
+_STRUCTURE = ("substeps", "minimum_island_size")
+
+
 class World(
     DescriptionLoading,
     ShapeAdding,
@@ -69,6 +74,8 @@ class World(
         bodies: The bodies by their numbers, in the order they were added.
         user_data: Texts attached to bodies.
         observers: Objects that are called at every step, such as logs.
+        lock: The lock that every call has from its arguments to its results; hold it to make several calls
+            without those of other threads in between. A thread can take it again.
         position: Coordinates of all bodies: of each the position [m] and the quaternion (x, y, z, w) of its
             base, then those of its joints [rad or m].
         velocity: Velocities of all bodies: of each the angular [rad/s] and the linear [m/s] velocity of its
@@ -104,6 +111,7 @@ class World(
     _growths: int
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
+        self.lock: Any = new_lock()
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: Bodies[Body] = Bodies()
         self.listing: dict[int, Body] = {}
@@ -114,7 +122,7 @@ class World(
         self._viewed: ArrayTable | None = None
         self._replacements = 0
         self._derived: Derived = Derived()
-        self._made_for: tuple[int, int] | None = None
+        self._made_for: list[int] | None = None
         self.quick: QuickScene = QuickScene()
         change = Change()
         self._start_empty(change)
@@ -159,7 +167,7 @@ class World(
         return self
 
     def __exit__(self, *_: object) -> None:
-        with uninterrupted:
+        with self.lock, uninterrupted:
             change = Change()
             self._start_empty(change)
             change.commit()
@@ -169,6 +177,7 @@ class World(
     def _as_world(self) -> World:
         return self
 
+    @alone("lock")
     def save(self, path: str | Path) -> None:
         """Write everything to a file: bodies, meshes, constraints, parameters, colours and textures, state.
 
@@ -194,6 +203,7 @@ class World(
     ) -> list[Body]:
         return add_bodies(self, bodies, also, note)
 
+    @alone("lock")
     def remove(self, body_id: int) -> None:
         """Remove a body from the world.
 
@@ -209,7 +219,7 @@ class World(
             also: A function that notes what else changes with the reset.
         """
         kept = self.parameters
-        with uninterrupted:
+        with self.lock, uninterrupted:
             change = Change()
             parameters = EngineParameters(time_step=kept.time_step, substeps=kept.substeps)
             change.set(self, "parameters", parameters)
@@ -218,6 +228,7 @@ class World(
                 also(change)
             change.commit()
 
+    @alone("lock")
     def copy(self) -> World:
         """An independent world with the same bodies, which continues exactly as this one does.
 
@@ -268,6 +279,7 @@ class World(
             self._derived.shape = Shape(layout(self))
         return self._derived.shape
 
+    @alone("lock")
     def snapshot(self) -> Snapshot:
         """The present state, for `restore`, which can be called any number of times.
 
@@ -300,7 +312,7 @@ class World(
 
             restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
             return
-        with uninterrupted:
+        with self.lock, uninterrupted:
             change = Change()
             return_to(change, self, self._shape, state)
             if update_poses:
@@ -337,20 +349,36 @@ class World(
     @gravity.setter
     def gravity(self, value: Sequence[float]) -> None:
         x, y, z = vector(value, 3, "gravity").tolist()
-        self.parameters.gravity = (x, y, z)
-        self.apply_parameters()
+        self.change_parameters(gravity=(x, y, z))
+
+    @alone("lock")
+    def change_parameters(self, **values: Any) -> None:
+        """Set some of `parameters` and apply them, all at once."""
+        change = Change()
+        self.note_parameters(change, **values)
+        change.commit()
+        self.resume_step()
 
     def apply_parameters(self) -> None:
         """Apply changes of `parameters`."""
-        shapes, breaking = self.contact_arrays.shapes, self.parameters.contact_breaking_threshold
-        if breaking != shapes.breaking_fraction or self._structure() != self._made_for:
-            shapes.set_breaking_fraction(breaking)
-            self.scene_changed()
-        elif self._derived.step is not None:
-            self.engine.update_settings(self.parameters)
-        else:
-            self._derived.step_before = None
+        self.change_parameters()
 
+    def note_parameters(self, change: Change, **values: Any) -> None:
+        """Set parameters with a change, and let the next step use them."""
+        if values:
+            change.set_all(self.parameters, **values)
+        breaking, *structure = (
+            change.get(self.parameters, name) for name in ("contact_breaking_threshold", *_STRUCTURE)
+        )
+        shapes = self.contact_arrays.shapes
+        if breaking != shapes.breaking_fraction or structure != self._made_for:
+            shapes.set_breaking_fraction(change, breaking)
+            self.change_scene(change)
+        else:
+            self.engine.note_parameters(change)
+            self.pause_step(change)
+
+    @alone("lock")
     def scene_changed(self) -> None:
         """Discard derived data: bodies, constraints or arrays have changed."""
         change = Change()
@@ -370,6 +398,7 @@ class World(
             self.view(change, state)
             change.set_all(self, _viewed=state, _replacements=replacements)
 
+    @alone("lock")
     def constraints_changed(self) -> None:
         """Set the prepared step aside: constraints have changed, and nothing else."""
         change = Change()
@@ -378,11 +407,23 @@ class World(
 
     def change_constraints(self, change: Change) -> None:
         """Set the prepared step aside with a change of constraints, and of nothing else."""
+        self.pause_step(change)
+        self.engine.note_constraints(change)
+
+    def pause_step(self, change: Change) -> None:
+        """Set the prepared step aside with a change, after which it needs other numbers."""
         derived = self._derived
         if derived.step is not None:
             change.set_all(derived, step=None, step_before=derived.step)
         self.quick.pause_step(change)
-        self.engine.note_constraints(change)
+
+    def resume_step(self) -> None:
+        """Give a step that was set aside its numbers if that is all it needs; else the next step does."""
+        derived = self._derived
+        if derived.step is None and derived.step_before is not None and self.engine.is_planned:
+            self.engine.update_settings(self.parameters)
+            self.quick.resume_step()
+            derived.step = derived.step_before
 
     def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
         """Make room for rows of a table of this world; nothing else of the world changes."""
@@ -431,27 +472,31 @@ class World(
         if self.observers:
             for observer in self.observers:
                 observer.before_step()
-        (self._derived.step or self._prepare_step())()
-        if self._status[STATUS]:
-            self._look_into_status()
-        if self._substep_observers:
-            self._tell_of_substep()
-        self._clock.value += self.parameters.time_step
-        if self.observers:
-            for observer in self.observers.copy():
-                observer.after_step()
+        with self.lock:
+            (self._derived.step or self._prepare_step())()
+            if self._status[STATUS]:
+                self._look_into_status()
+            if self._substep_observers:
+                self._tell_of_substep()
+            self._clock.value += self.parameters.time_step
+            if self.observers:
+                for observer in self.observers.copy():
+                    observer.after_step()
 
+    @alone("lock")
     def watch_substeps(self, observer: SubstepObserver) -> None:
         """Call an observer at every substep from now on."""
         self._substep_observers.append(observer)
         self.scene_changed()
 
+    @alone("lock")
     def unwatch_substeps(self, observer: SubstepObserver) -> None:
         """Stop calling an observer at every substep."""
         if observer in self._substep_observers:
             self._substep_observers.remove(observer)
             self.scene_changed()
 
+    @alone("lock")
     def profile(self, count: int = 100) -> dict[str, float]:
         """Advance the world by `count` time steps, as `step` does, and return the time of each stage.
 
@@ -484,7 +529,7 @@ class World(
 
     def _look_into_status(self) -> None:
         """Repeat the step if arrays were too short; raise an error if a velocity is not finite."""
-        with uninterrupted:
+        with self.lock, uninterrupted:
             self.engine.recover()
             self._renew_after_growth()
         if self._status[STATUS]:
@@ -505,6 +550,7 @@ class World(
             f"the world is as it was before the step{cause and f': {cause}'}"
         )
 
+    @alone("lock")
     def prepare(self) -> None:
         """Update the arrays of the engine for the present bodies, constraints and parameters.
 
@@ -515,7 +561,7 @@ class World(
 
     def _prepare_step(self) -> Callable[[], None]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
-        with uninterrupted:
+        with self.lock, uninterrupted:
             return self._prepared_step()
 
     def _prepared_step(self) -> Callable[[], None]:
@@ -531,7 +577,7 @@ class World(
         self.contact_arrays.soft.write_anchors()
         self.quick.forget_queries()
         self._derived.queries = None
-        self._made_for = self._structure()
+        self._made_for = [getattr(self.parameters, name) for name in _STRUCTURE]
         self.engine.update_settings(self.parameters)
         in_substeps = self.parameters.substeps > 1
         self.engine.prepare(watched=in_substeps and bool(self._substep_observers))
@@ -575,6 +621,7 @@ class World(
         due, self.unspent_time = self.parameters.substeps_due(self.unspent_time)
         return due
 
+    @alone("lock")
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
         self.prepare()
@@ -584,10 +631,16 @@ class World(
 
     def queries(self) -> Queries:
         """Rays, nearest points and overlaps for the present coordinates."""
+        return self._derived.queries or self._new_queries()
+
+    @alone("lock")
+    def _new_queries(self) -> Queries:
         if self._derived.queries is None:
             from carom.queries.queries import Queries
 
             self._derived.queries = Queries(
+                self.lock,
+                self.queries,
                 self._kernel_structs(),
                 self.position_memory,
                 self.link_places,
@@ -600,15 +653,12 @@ class World(
             )
         return self._derived.queries
 
-    def _structure(self) -> tuple[int, int]:
-        """The parameters that determine which launches a step consists of."""
-        return self.parameters.substeps, self.parameters.minimum_island_size
-
     def _kernel_structs(self) -> KernelStructs:
         """Structs of the present arrays, by the names of kernel arguments."""
         self.engine.update_settings(self.parameters)
         return self.engine.structs()
 
+    @alone("lock")
     def analytics(self) -> list[dict[str, float]]:
         """Statistics of the solver in the last substep, for each group of bodies solved together.
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from carom.errors import DescriptionError, StateError
 from carom.formats.bullet import BulletState, MultiBodyState, RigidBodyState, is_bullet, read_bullet_state
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.soft_body import SoftBody
 
@@ -108,6 +109,7 @@ def _rows(body: Body, saved: MultiBodyState | RigidBodyState) -> Iterator[tuple[
         yield (body.position_index[joint], link.position), (body.velocity_index[joint], link.velocity)
 
 
+@alone("lock")
 def _put(world: World, rows: list[tuple[_Rows, _Rows]], update_poses: bool) -> None:
     with uninterrupted:
         change = Change()

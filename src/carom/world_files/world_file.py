@@ -31,6 +31,7 @@ from carom.layouts.codes import (
 from carom.model.body_spec import BASE, BodySpec
 from carom.model.soft_arrays import Anchor
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.actuators.actuated_joint import actuated_joint
 from carom.scene.changes import append_now, free_base
@@ -232,6 +233,7 @@ def save_world(world: World, path: Path, parts: Parts) -> None:
     write_whole(path, packed(document, writer.blocks))
 
 
+@alone("lock")
 def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
     data, _ = read_bounded(path, MAX_BYTES)

@@ -59,11 +59,6 @@ exports: dict[str, Export] = {}
 """All functions of the public interface, by name."""
 
 
-def new_builtin(name: str, code: int, its_self: Any) -> Any:
-    """A builtin of C code at an address, of the form `f(self, args, nargs, kwnames)`."""
-    return builtin_of(defined(name, code, keywords=True), its_self, "pybullet")
-
-
 def exported(function: F) -> F:
     """Makes a function of the public interface a builtin of the module `pybullet`."""
     return exported_as(_plain_signature(function))(function)

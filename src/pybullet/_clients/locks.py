@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from threading import RLock
 from typing import Any
 
-from pybullet._calls.builtin import new_builtin
+from carom.native.gates import new_lock
 from pybullet._calls.quick import install
 
 # By id of the connection. None is ever freed: a call may be waiting for it when its connection ends.
@@ -17,12 +16,10 @@ def lock_of(number: int) -> Any:
     lock = _locks.get(number)
     calls = install()
     if lock is None:
-        from carom.forks import free_in_forks
-
-        lock = RLock() if calls is None else calls.new_lock(new_builtin)
-        lock = _locks.setdefault(number, free_in_forks(lock, of_world=True))
+        lock = _locks.setdefault(number, new_lock())
     if calls is not None:
-        calls.gates[number] = lock.address
+        # The value of a `GateLock` is the address of its gate.
+        calls.gates[number] = int(lock)
     return lock
 
 

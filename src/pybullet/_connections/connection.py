@@ -191,7 +191,9 @@ def _new_client(slot: int, method: int, target: Target) -> Client:
     from carom.world.world import World
     from pybullet._bodies.body_access import BodyTable
 
-    client = Client(method, World(), BodyTable(), Window(), lock_of(slot))
+    world, lock = World(), lock_of(slot)
+    world.lock = lock
+    client = Client(method, world, BodyTable(), Window(), lock)
     if method in _WITH_WINDOW:
         from pybullet._window.page_window import open_window
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from ctypes import c_double, c_int64
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from carom.errors import SimulationError
 from carom.native.change import Change, blank
@@ -14,6 +16,9 @@ from pybullet._calls.constants import DIRECT, RESET_USE_DEFORMABLE_WORLD, RESET_
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.shape_registry import ShapeRegistry
+
+if TYPE_CHECKING:
+    from carom.world.world import World
 
 __all__ = [
     "getPhysicsEngineParameters",
@@ -200,7 +205,7 @@ def setTimeStep(timeStep: float, physicsClientId: int = 0) -> None:
         >>> p.getPhysicsEngineParameters()["fixedTimeStep"]
         0.001
     """
-    _set_time_step(client_of(physicsClientId), timeStep, "timeStep")
+    _change(client_of(physicsClientId), time_step=_time_step(timeStep, "timeStep"))
 
 
 @exported
@@ -395,10 +400,10 @@ def setPhysicsEngineParameter(
     integer(enableFileCaching, "enableFileCaching")
     real(sparseSdfVoxelSize, "sparseSdfVoxelSize")
     if real(fixedTimeStep, "fixedTimeStep") >= 0.0:
-        _set_time_step(client, fixedTimeStep, "fixedTimeStep")
+        changes["time_step"] = _time_step(fixedTimeStep, "fixedTimeStep")
     if changes:
+        changes.setdefault("report_solver_analytics", client.world.parameters.report_solver_analytics)
         _change(client, **changes)
-        client.report_analytics = bool(client.world.parameters.report_solver_analytics)
 
 
 def _check_work(client: Client, changes: dict[str, Any]) -> None:
@@ -415,36 +420,44 @@ def _check_work(client: Client, changes: dict[str, Any]) -> None:
         fail(f"{stated} would be {product}; it has to be at most {_MAX_WORK}.")
 
 
-def _set_time_step(client: Client, value: Any, name: str) -> None:
+def _time_step(value: Any, name: str) -> float:
     time_step = quantity(value, name)
     if time_step <= 0.0:
         fail(f"{name} has to be greater than 0, not {time_step}.")
     if time_step < _MIN_TIME_STEP:
         fail(f"{name} has to be at least {_MIN_TIME_STEP:g} s, not {time_step:g} s.")
-    _change(client, time_step=time_step)
-    client.time_step = time_step
+    return time_step
 
 
-def _change(client: Client, **changes: Any) -> None:
-    parameters = client.world.parameters
+def _change(client: Client, **values: Any) -> None:
+    """Changes parameters, all at once."""
     with client.lock:
-        if all(getattr(parameters, field) == value for field, value in changes.items()):
+        world, record = client.world, client.bodies.quick.record
+        parameters, recorded = world.parameters, dict[str, Any]()
+        if "time_step" in values:
+            recorded["time_step"] = c_double(values["time_step"])
+        if "report_solver_analytics" in values:
+            recorded["reports_analytics"] = c_int64(bool(values["report_solver_analytics"]))
+        if all(getattr(parameters, field) == value for field, value in values.items()) and all(
+            getattr(record, field) == it.value for field, it in recorded.items()
+        ):
             return
-        before = parameters.substep_time
-        for field, value in changes.items():
-            setattr(parameters, field, value)
-        client.world.apply_parameters()
-        if parameters.substep_time != before:
-            _keep_forces_of_constraints(client, parameters.substep_time / before)
+        change, after = Change(), parameters
+        if "time_step" in values or "substeps" in values:
+            after = replace(parameters, **values)
+        if after.substep_time != parameters.substep_time:
+            _keep_forces_of_constraints(change, world, after.substep_time / parameters.substep_time)
+        world.note_parameters(change, **values)
+        for field, value in recorded.items():
+            change.copy_blocks(blank(record, field, value), (record, value))
+        change.commit()
+        world.resume_step()
 
 
-def _keep_forces_of_constraints(client: Client, ratio: float) -> None:
+def _keep_forces_of_constraints(change: Change, world: World, ratio: float) -> None:
     """Let `getConstraintState` go on reporting the forces of the last step: impulses follow the time step."""
-    world = client.world
     constraints, state = world.user_constraints, world.arrays.state
     if len(constraints):
         impulses = constraints.all_impulses(state) * ratio
         world.grow(state, {"user": len(impulses)})
-        change = Change()
         constraints.set_impulses(change, state, impulses)
-        change.commit()

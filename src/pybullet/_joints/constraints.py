@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import UserConstraintKind
+from carom.native.change import Change
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_GEAR, JOINT_POINT2POINT
@@ -167,25 +168,31 @@ def changeConstraint(
         logger.warning("changeConstraint: there is no constraint %s.", userConstraintUniqueId)
         return
     with client.lock:
+        values: dict[str, Any] = {}
         if auxiliary >= 0:
-            constraint.gear_auxiliary_link = link_of(
+            values["gear_auxiliary_link"] = link_of(
                 constraint.parent, auxiliary, "gearAuxLink", _CHANGE_FAILED
             )
         if pivot is not None or orientation is not None:
             old = constraint.child_frame
-            constraint.child_frame = Pose(
+            values["child_frame"] = Pose(
                 pivot or old.position, old.orientation if orientation is None else unit(orientation)
             )
         if force >= 0.0:
-            constraint.max_force = force
-            constraint.max_impulse = force * client.world.parameters.substep_time
+            values["max_force"] = force
+            values["max_impulse"] = force * client.world.parameters.substep_time
         if ratio != 0.0:
-            constraint.gear_ratio = ratio
+            values["gear_ratio"] = ratio
         if target < _UNCHANGED_TARGET:
-            constraint.relative_position_target = target
+            values["relative_position_target"] = target
         if share >= 0.0:
-            constraint.erp = share
+            values["erp"] = share
+        change = Change()
+        change.set_all(constraint, **values)
+        client.world.pause_step(change)
+        change.commit()
         client.world.user_constraints.write(client.world.contact_arrays, client.world.arrays.state)
+        client.world.resume_step()
 
 
 @exported

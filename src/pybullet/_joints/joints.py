@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from carom.native.change import Change
 from pybullet._calls.arguments import (
     Indices,
     Vector,
@@ -17,7 +18,7 @@ from pybullet._calls.arguments import (
 )
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail
-from pybullet._clients.clients import client_of, clients
+from pybullet._clients.clients import Client, client_of, clients
 from pybullet._clients.lookup import (
     body_access,
     has_joint,
@@ -28,9 +29,13 @@ from pybullet._clients.lookup import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from carom.scene.body import Body
-    from pybullet._bodies.body_access import BodyAccess, JointState, MultiDofState
+    from pybullet._bodies.body_access import JointState, MultiDofState
     from pybullet._joints.joint_info import JointInfo
+
+_State = tuple[int, tuple[float, ...], tuple[float, ...]]
 
 __all__ = [
     "getJointInfo",
@@ -271,8 +276,11 @@ def resetJointStateMultiDof(
     position, velocity = _targets(targetValue, targetVelocity)
     access, index = joint_access(bodyUniqueId, jointIndex, physicsClientId)
     _check_turn(access.body, index, position)
-    with client.lock:
-        _reset(access, index, position, velocity)
+    body = access.body
+    if len(position) == 1 == body.position_count[index]:
+        access.reset_joint(index, position[0], velocity[0] if len(velocity) == 1 else 0.0)
+    else:
+        _reset(client, body, [(index, position, velocity)])
 
 
 @exported
@@ -315,17 +323,17 @@ def resetJointStatesMultiDof(
                 "Number of targetValues and targetVelocities needs to match number of indices.",
                 f"There are {len(requested)} indices and {len(values)} {name}.",
             )
-    resets = []
+    resets, body = list[_State](), None
     for place, index in enumerate(requested):
         access, joint = joint_access(bodyUniqueId, index, physicsClientId)
         position, velocity = _targets(
             positions[place] if positions else (), velocities[place] if velocities else None
         )
         _check_turn(access.body, joint, position)
-        resets.append((access, joint, position, velocity))
-    with client.lock:
-        for reset in resets:
-            _reset(*reset)
+        body = access.body
+        resets.append((joint, position, velocity))
+    assert body is not None
+    _reset(client, body, resets)
 
 
 def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -344,14 +352,21 @@ def _check_turn(body: Body, joint: int, position: tuple[float, ...]) -> None:
         check_rotation(position, "expected a targetValue sequence.", "targetValue")
 
 
-def _reset(access: BodyAccess, index: int, position: tuple[float, ...], velocity: tuple[float, ...]) -> None:
-    body = access.body
-    freedoms = body.velocity_count[index]
-    if not position or len(position) != body.position_count[index]:
+def _reset(client: Client, body: Body, states: Sequence[_State]) -> None:
+    """Resets joints, given by index, positions and velocities, all at once."""
+    with client.lock:
+        change, contacts = Change(), client.world.contact_arrays
+        positions: dict[int, list[float]] = {}
+        for joint, position, velocity in states:
+            count, freedoms = body.position_count[joint], body.velocity_count[joint]
+            moved = False
+            if position and len(position) == count:
+                first = body.position_index[joint]
+                before = positions.get(joint) or client.world.position[first : first + count].tolist()
+                rates = velocity if len(velocity) == freedoms else (0.0,) * freedoms
+                positions[joint] = body.note_joint_state(change, joint, position, rates)
+                moved = positions[joint] != before
+            contacts.note_reset(change, body.rows.tree, moved=moved)
         # As after any reset, the body is up to date.
-        body.note_reset(moved=False)
-        body.update_link_poses()
-        return
-    before = body.coordinates()
-    body.set_joint_state(index, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms)
-    body.note_reset(moved=body.coordinates() != before)
+        client.world.note_link_poses(change, body)
+        change.commit()

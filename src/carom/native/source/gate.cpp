@@ -142,8 +142,8 @@ PyObject* read(Gate& gate, PyObject* function, Arguments arguments, intptr_t cou
     return change(gate, function, arguments, count, names);
 }
 
-// The builtins of a lock have its address as `self`.
-Gate& gate_at(PyObject* address) { return *static_cast<Gate*>(python.PyLong_AsVoidPtr(address)); }
+// A lock of Python is a float: the address of its gate.
+Gate& gate_at(PyObject* lock) { return *reinterpret_cast<Gate*>(static_cast<uintptr_t>(python.PyFloat_AsDouble(lock))); }
 
 PyObject* truth(bool value) {
     PyObject* object = value ? python.True : python.False;
@@ -221,8 +221,7 @@ extern "C" CAROM_EXPORT void carom_meet_host(PyObject* begin, PyObject* end, PyO
     is_our_own = is_own;
 }
 
-// The methods of a lock as C functions of builtins: `acquire`, with the arguments of Python's locks, and `release`,
-// which as `__exit__` takes any.
+// The methods of a lock: `acquire`, with the arguments of Python's locks, and `release`, which as `__exit__` takes any.
 extern "C" CAROM_EXPORT PyObject* carom_gate_acquire(PyObject* self, Arguments arguments, intptr_t count, PyObject* names) {
     Gate& gate = gate_at(self);
     const intptr_t named = names ? python.PyTuple_Size(names) : 0;

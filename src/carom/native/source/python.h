@@ -42,7 +42,6 @@ struct PyBuffer {
     F(double, PyFloat_AsDouble, (PyObject*))                                          \
     F(PyObject*, PyLong_FromLong, (long))                                             \
     F(double, PyLong_AsDouble, (PyObject*))                                           \
-    F(void*, PyLong_AsVoidPtr, (PyObject*))                                           \
     F(intptr_t, PyNumber_AsSsize_t, (PyObject*, PyObject*))                           \
     F(int, PyUnicode_CompareWithASCIIString, (PyObject*, const char*))                \
     F(PyObject*, PyErr_Occurred, ())                                                  \

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each
 from carom.description.actuator import ActuatorSpec, Range
+from carom.native.gates import alone
 from carom.scene.actuators.actuated_joint import drives_joint
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -56,34 +57,41 @@ class BodyActuator:
         return self.body.joints[self.spec.joint]
 
     @property
+    @alone("body.world.lock")
     def control(self) -> float:
         """The control, which stays until it is set again; settable. Its range bounds what has an effect."""
         return float(self._state("actuator_control")[self._row])
 
     @control.setter
+    @alone("body.world.lock")
     def control(self, value: float) -> None:
         self._state("actuator_control")[self._row] = float(finite(value, "control"))
 
     @property
+    @alone("body.world.lock")
     def activation(self) -> float:
         """The activation, a state of actuators with dynamics; settable."""
         return float(self._state("actuator_activation")[self._row])
 
     @activation.setter
+    @alone("body.world.lock")
     def activation(self, value: float) -> None:
         self._state("actuator_activation")[self._row] = float(finite(value, "activation"))
 
     @property
+    @alone("body.world.lock")
     def force(self) -> float:
         """Its force in the last substep, within its range [N or N m]; the joint feels `gear` times that."""
         return float(self._state("actuator_force")[self._row])
 
     @property
+    @alone("body.world.lock")
     def length(self) -> float:
         """`gear` times the position of its joint or the length of its tendon; of sites see `ActuatorSpec`."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[0][0])
 
     @property
+    @alone("body.world.lock")
     def velocity(self) -> float:
         """The rate of its length."""
         return float(along_actuator(LoneSource(world_of(self.body)), self.body, self.index)[1][0])
@@ -132,25 +140,30 @@ class BodyActuators(Named[BodyActuator]):
         return f"<Actuators of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
     @property
+    @alone("_body.world.lock")
     def controls(self) -> Array:
         """The controls of all, a copy; settable, by one number for each or one for all."""
         return self._state("actuator_control").copy()
 
     @controls.setter
+    @alone("_body.world.lock")
     def controls(self, values: ArrayLike) -> None:
         self._state("actuator_control")[:] = one_or_each(finite(values, "controls"), len(self), "controls")
 
     @property
+    @alone("_body.world.lock")
     def activations(self) -> Array:
         """The activations of all, a copy; settable."""
         return self._state("actuator_activation").copy()
 
     @activations.setter
+    @alone("_body.world.lock")
     def activations(self, values: ArrayLike) -> None:
         numbers = one_or_each(finite(values, "activations"), len(self), "activations")
         self._state("actuator_activation")[:] = numbers
 
     @property
+    @alone("_body.world.lock")
     def forces(self) -> Array:
         """The forces of all in the last substep, a copy."""
         return self._state("actuator_force").copy()

@@ -10,6 +10,7 @@ from carom.errors import DescriptionError
 from carom.layouts.codes import ConstraintKind
 from carom.model.actuator_rows import check_joint_ranges, insert_actuator, join_actuators, write_actuator
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.handles import world_of
 from carom.scene.joint_constraints import JointConstraint
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
     """Add an actuator to a body, as `Body.add_actuator` does."""
     world, spec = world_of(body), actuator.spec(name)
@@ -27,7 +29,7 @@ def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
         raise DescriptionError(f"actuator {name!r}: each one of a body needs a name of its own")
     check_joint_ranges((*body.spec.actuators, spec))
     number = len(body.spec.actuators)
-    change = Change()
+    change = Change(world.change_scene)
     if drives_joint(spec):
         joint = actuated_joint(body, spec)
         made = JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number)
@@ -35,10 +37,11 @@ def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
         transmission = new_transmission(body, number, spec)
         made = JointConstraint(body, transmission.parent_link, ConstraintKind.USER, user=transmission)
         world.user_constraints.put(change, transmission)
-    row = insert_actuator(world.arrays, body.rows, [other.rows for other in world.bodies.values()])
-    write_actuator(world.arrays.model.numpy, row, spec)
-    body.spec = replace(body.spec, actuators=(*body.spec.actuators, spec))
-    join_actuators(world.arrays.model.numpy, body.rows.first["actuator"], body.spec.actuators)
+    row = insert_actuator(change, world.arrays, body.rows, [other.rows for other in world.bodies.values()])
+    model, specs = change.arrays(world.arrays.model.numpy), (*body.spec.actuators, spec)
+    write_actuator(model, row, spec)
+    join_actuators(model, body.rows.first["actuator"], specs)
+    change.set(body, "spec", replace(body.spec, actuators=specs))
     change.extend(world.constraints.all, [made])
     change.drop(body.__dict__, "actuators")
     world.change_scene(change)

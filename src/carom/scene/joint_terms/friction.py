@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.layouts.codes import WITH_FRICTION, ConstraintKind
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.scene.joint_constraints import JointConstraint
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ def friction_of(body: Body, joint: int) -> JointConstraint | None:
     return None
 
 
+@alone("world.lock")
 def set_friction(body: Body, joint: int, friction: float) -> None:
     """Set the friction of a joint [N m or N]; of a spherical one, that about each axis of the link.
 

@@ -64,9 +64,9 @@ def note_terms(change: Change, body: Body, joint: int, terms: Mapping[str, Any])
         change.set(body, "derived", {})
 
 
-def write_terms(body: Body, joint: int) -> None:
-    """Write the terms in `Body.dynamics` of a joint to the engine."""
-    _write_terms(body.world.arrays.model.numpy, body, joint, body.dynamics(joint))
+def note_all_terms(change: Change, body: Body, joint: int, dynamics: LinkDynamics) -> None:
+    """Write the terms in the dynamics that a joint will have to the engine, with a change."""
+    _write_terms(change.arrays(body.world.arrays.model.numpy), body, joint, dynamics)
 
 
 def _write_terms(model: Mapping[str, np.ndarray], body: Body, joint: int, dynamics: LinkDynamics) -> None:

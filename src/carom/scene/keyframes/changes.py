@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
+from carom.native.change import Change
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.keyframes.state import captured, changes, check_keyframe, keyframe_of
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def add_keyframe(body: Body, keyframe: BodyKeyframe | str) -> None:
     """Add a keyframe to a body, as `Body.add_keyframe` does."""
     world = world_of(body)
@@ -23,24 +26,24 @@ def add_keyframe(body: Body, keyframe: BodyKeyframe | str) -> None:
     check_keyframe(body, keyframe)
     if not keyframe.name or any(other.name == keyframe.name for other in body.spec.keyframes):
         raise DescriptionError(f"keyframe {keyframe.name!r}: each one of a body needs a name of its own")
+    # One assignment.
     body.spec = replace(body.spec, keyframes=(*body.spec.keyframes, keyframe))
 
 
-def reset(bodies: Sequence[Body], name: str) -> float:
-    """Reset bodies of a world to their keyframes of a name.
-
-    Returns:
-        The time of the keyframes.
-    """
-    time = 0.0
-    for body in bodies:
-        keyframe = keyframe_of(body, name)
-        check_keyframe(body, keyframe)
-        world, time = world_of(body), keyframe.time
-        state = world.arrays.state.numpy
-        for change in changes(body, keyframe):
-            state[change.field][0, change.rows] = change.values
-        world.contact_arrays.forget_warm_start()
-        body.update_link_poses()
-        body.update_link_velocities()
-    return time
+def reset(bodies: Sequence[Body], name: str, *, with_time: bool) -> None:
+    """Reset bodies of a world to their keyframes of a name, and if asked for its time, all at once."""
+    world = world_of(bodies[0])
+    with world.lock:
+        change = Change()
+        for body in bodies:
+            keyframe = keyframe_of(body, name)
+            check_keyframe(body, keyframe)
+            state = change.arrays(world_of(body).arrays.state.numpy)
+            for part in changes(body, keyframe):
+                state[part.field][0, part.rows] = part.values
+            world.note_link_poses(change, body)
+            world.note_link_velocities(change, body)
+            if with_time:
+                world.note_time(change, keyframe.time)
+        world.contact_arrays.note_cold_start(change)
+        change.commit()

@@ -9,7 +9,6 @@ import numpy as np
 
 from carom.checks import Array
 from carom.description.keyframe import BodyKeyframe
-from carom.scene.handles import world_of
 from carom.scene.keyframes.changes import reset
 from carom.scene.keyframes.state import keyframe_of
 
@@ -67,7 +66,7 @@ class Keyframe:
 
     def reset(self) -> None:
         """Reset the bodies to this state, and the time of their world to that of the keyframe."""
-        world_of(self.bodies[0]).time = reset(self.bodies, self.name)
+        reset(self.bodies, self.name, with_time=True)
 
     def _all(self, field: str, kind: str, unset: float) -> Array:
         parts: list[float] = []

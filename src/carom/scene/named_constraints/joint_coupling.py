@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY
 from carom.layouts.codes import UserConstraintKind
+from carom.native.gates import alone
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
 from carom.scene.user_constraints import UserConstraint
 
@@ -53,6 +54,7 @@ class JointCoupling(NamedConstraint):
         return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
+    @alone("_constraint.parent.world.lock")
     def error(self) -> float:
         """Position of the follower minus where it should be [rad or m]."""
         return float(self.follower.position) - self._wanted()[0]
@@ -68,6 +70,7 @@ class JointCoupling(NamedConstraint):
             wanted += factor * power
         return wanted, slope
 
+    @alone("_constraint.parent.world.lock")
     def place(self) -> None:
         """Set position and velocity of the follower to those that follow from the leader's."""
         wanted, slope = self._wanted()

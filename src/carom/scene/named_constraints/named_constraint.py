@@ -9,6 +9,7 @@ import numpy as np
 
 from carom.description.compliance import Compliance
 from carom.layouts.codes import UserConstraintKind
+from carom.native.gates import alone
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ class NamedConstraint:
             self._constraint.enabled = bool(value)
             self._constraint.parent.world.constraints_changed()
 
+    @alone("_constraint.parent.world.lock")
     def _forces(self, rows: int) -> np.ndarray:
         """Impulse of each row of the last substep per its duration [N or N m]; 0 while disabled."""
         world, result = self._constraint.parent.world, np.zeros(rows)

@@ -11,13 +11,14 @@ from carom.description.sensor import SensorKind, SensorSpec
 from carom.description.sensors import Sensor
 from carom.description.site import SiteShape, SiteSpec
 from carom.errors import DescriptionError
+from carom.model.actuator_rows import insert_rows
 from carom.native.change import Change
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.sensors.frames import object_frame, reference_frame
 from carom.scene.sensors.joints import actuator_of, joint_of
 from carom.scene.sensors.loads import loaded_frame
 from carom.scene.sensors.observer import SensorObserver
-from carom.scene.sensors.rows import insert_memory
 from carom.scene.tendons.making import tendon_of
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
 
 
+@alone("world.lock")
 def add_site(
     body: Body, name: str, link: int | str, pose: Pose, shape: SiteShape | str, size: Sequence[float]
 ) -> None:
@@ -43,8 +45,10 @@ def add_site(
     if not site.name or any(other.name == site.name for other in body.spec.sites):
         raise DescriptionError(f"site {site.name!r}: each one of a body needs a name of its own")
     world_of(body)
-    body.spec = replace(body.spec, sites=(*body.spec.sites, site))
-    body.__dict__.pop("sites", None)
+    change = Change()
+    change.set(body, "spec", replace(body.spec, sites=(*body.spec.sites, site)))
+    change.drop(body.__dict__, "sites")
+    change.commit()
 
 
 def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
@@ -52,19 +56,23 @@ def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
     put_sensor(body, sensor.spec(name))
 
 
+@alone("world.lock")
 def put_sensor(body: Body, spec: SensorSpec) -> None:
     """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
     world = world_of(body)
     check_sensor(world, body, spec)
     if not spec.name or any(other.name == spec.name for other in body.spec.sensors):
         raise DescriptionError(f"sensor {spec.name!r}: each one of a body needs a name of its own")
+    change = Change(world.change_scene)
     if spec.memory:
         others = [other.rows for other in world.bodies.values()]
-        insert_memory(world.arrays, body.rows, others, spec.memory)
-    body.spec = replace(body.spec, sensors=(*body.spec.sensors, spec))
-    body.__dict__.pop("sensors", None)
-    world.scene_changed()
-    switch_on(world, [body])
+        insert_rows(change, world.arrays, body.rows, others, "sensor", spec.memory)
+    if measure_load(change, body, spec):
+        note_watch(change, world)
+    change.set(body, "spec", replace(body.spec, sensors=(*body.spec.sensors, spec)))
+    change.drop(body.__dict__, "sensors")
+    world.change_scene(change)
+    change.commit()
 
 
 def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
@@ -86,11 +94,11 @@ def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
 
 def switch_on(world: World, bodies: Sequence[Body]) -> None:
     """Switch on what the sensors of bodies need: measurements of joints' forces, and of every step."""
-    if measure_loads(bodies):
-        change = Change()
+    change = Change()
+    if measure_loads(change, bodies):
         note_watch(change, world)
-        world.change_scene(change)
-        change.commit()
+    world.change_scene(change)
+    change.commit()
 
 
 def note_watch(change: Change, world: World) -> None:
@@ -99,18 +107,18 @@ def note_watch(change: Change, world: World) -> None:
         change.extend(world.observers, [SensorObserver(world)])
 
 
-def measure_loads(bodies: Sequence[Body]) -> bool:
+def measure_loads(change: Change, bodies: Sequence[Body]) -> bool:
     """Measure the forces of joints that sensors need; whether one needs measurements at every step."""
-    watched = False
-    for body in bodies:
-        for spec in body.spec.sensors:
-            watched = watched or spec.is_remembered
-            if spec.kind in _OF_LOADS:
-                link = object_frame(body, spec).link
-            elif spec.kind is SensorKind.JOINT_LIMIT_FORCE:
-                link = joint_of(body, spec)
-            else:
-                continue
-            if link >= 0:
-                body.measure_load(link)
-    return watched
+    return True in [measure_load(change, body, spec) for body in bodies for spec in body.spec.sensors]
+
+
+def measure_load(change: Change, body: Body, spec: SensorSpec) -> bool:
+    """Measure the force of the joint that a sensor needs; whether it needs measurements at every step."""
+    link = -1
+    if spec.kind in _OF_LOADS:
+        link = object_frame(body, spec).link
+    elif spec.kind is SensorKind.JOINT_LIMIT_FORCE:
+        link = joint_of(body, spec)
+    if link >= 0:
+        body.measure_load(change, link)
+    return spec.is_remembered

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.checks import Array
 from carom.description.sensor import SensorSpec
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.named import Named
 from carom.scene.sensors.lone_source import LoneSource
@@ -58,6 +59,7 @@ class BodySensor:
         """Bound of the absolute values; 0 for none."""
         return self.spec.cutoff
 
+    @alone("body.world.lock")
     def read(self) -> Array:
         """What it shows now, shape (dim,), in the units of its class in `carom.description.sensors`.
 
@@ -80,6 +82,7 @@ class BodySensors(Named[BodySensor]):
     def __repr__(self) -> str:
         return f"<Sensors of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
 
+    @alone("_body.world.lock")
     def read(self) -> dict[str, Array]:
         """What each shows now, by name; see `BodySensor.read`."""
         source = LoneSource(world_of(self._body))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.tendon import TendonSpec
 from carom.errors import DescriptionError
+from carom.native.gates import alone
 from carom.scene.handles import world_of
 from carom.scene.tendons.making import new_tendon, tendons_of
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from carom.scene.body import Body
 
 
+@alone("world.lock")
 def add_tendon(body: Body, spec: TendonSpec) -> None:
     """Add a tendon to a body, as `Body.add_tendon` does."""
     world = world_of(body)

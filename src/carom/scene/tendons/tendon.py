@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.actuator import Range
 from carom.layouts.codes import UserConstraintKind
+from carom.native.gates import alone
 from carom.scene.named import Named
 from carom.scene.named_constraints.named_constraint import NamedConstraint
 from carom.scene.sensors.lone_source import LoneSource
@@ -110,10 +111,12 @@ class BodyTendon(NamedConstraint):
     def friction(self, value: float) -> None:
         self._set(self._constraint.spring, (*self.range, _positive(value, "friction"), 0.0))
 
+    @alone("_constraint.parent.world.lock")
     def _measured(self) -> tuple[float, float]:
         length, velocity = measured(LoneSource(self.body.world), self.body, self._constraint.path)
         return float(length[0]), float(velocity[0])
 
+    @alone("_constraint.parent.world.lock")
     def _set_spring(
         self, stiffness: float | None = None, damping: float | None = None, rest: Range | None = None
     ) -> None:
@@ -125,6 +128,7 @@ class BodyTendon(NamedConstraint):
         d = before[1] if damping is None else _positive(damping, "damping")
         self._set((k, d, float(lower), float(upper)), self._constraint.range)
 
+    @alone("_constraint.parent.world.lock")
     def _set(
         self, spring: tuple[float, float, float, float], bounds: tuple[float, float, float, float]
     ) -> None:
@@ -163,6 +167,7 @@ class TendonCoupling(NamedConstraint):
         return (self._constraint.relative_position_target, *self._constraint.polynomial)
 
     @property
+    @alone("_constraint.parent.world.lock")
     def error(self) -> float:
         """Length of the tendon minus what it should be [m]."""
         it = self._constraint
