@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.quick_world import DAMPING, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
+from carom.layouts.quick_world import OF_BODY, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
 from carom.native.change import Change, blank
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
@@ -139,7 +139,7 @@ class QuickScene:
         """Set the addresses that depend on these structs only, and return their launch."""
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
         self.record.surface_names[:] = [id(name) for name in _NAMES]
-        self.record.damping[:] = [getattr(model, field).data for field in DAMPING.values()]
+        self.record.of_body[:] = [getattr(model, field).data for field in OF_BODY.values()]
         self.record.mass, self.record.inertia = model.link_mass.data, model.link_inertia.data
         self.record.mass_name, self.record.inertia_name = id(_MASS), id(_INERTIA)
         self.record.fixed_base_name = id(_FIXED_BASE)

@@ -56,7 +56,6 @@ SURFACE_FIELDS = {
     "contact_impedance": "link_impedance",
     "contact_mixing": "link_mixing",
     "anisotropic_friction": "link_anisotropy",
-    "contact_processing_threshold": "link_processing_threshold",
     "ccd_swept_sphere_radius": "shape_ccd_radius",
     "collision_margin": "shape_margin",
 }
