@@ -282,14 +282,8 @@ def test_states_of_all_kinds_of_joints_are_those_of_python(one: int) -> None:
             assert p.getJointState(body, joint, one) == states[joint]
 
 
-FRICTION = [
-    "lateralFriction",
-    "spinningFriction",
-    "rollingFriction",
-    "restitution",
-    "contactProcessingThreshold",
-]
-SOFTNESS = ["contactStiffness", "contactDamping"]
+FRICTION = ["lateralFriction", "spinningFriction", "rollingFriction", "restitution"]
+SOFTNESS = ["contactStiffness", "contactDamping", "contactProcessingThreshold"]
 DAMPING = ["linearDamping", "angularDamping", "maxJointVelocity"]
 
 

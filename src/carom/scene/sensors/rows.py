@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from carom.model.builder import TreeRows, WorldArrays
+    from carom.model.body_rows import TreeRows
+    from carom.model.builder import WorldArrays
 
 _AXIS = "sensor"
 
