@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
 from carom.layouts.quick_calls import CHANGE_DYNAMICS
-from carom.layouts.quick_world import OF_BODY
 from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
@@ -29,20 +29,21 @@ _ANY_SIZE = frozenset(
     {"joint_limit_force", "contact_processing_threshold", "max_joint_velocity", "sleep_threshold"}
 )
 # Parameters of the whole body.
-_OF_BODY = frozenset({*OF_BODY, "sleep_threshold", "activation_state", "collision_margin"})
-# Arguments in PyBullet's order, but for the limits of a joint, which are taken before the first vector.
+_OF_BODY = frozenset(
+    {"sleep_threshold", "linear_damping", "angular_damping"}
+    | {"activation_state", "max_joint_velocity", "collision_margin"}
+)
+# Arguments that are numbers, in PyBullet's order, after those that come first.
 _IN_ORDER = (
-    *("jointLimitForce", "sleepThreshold", "anisotropicFriction", "localInertiaDiagonal", "mass"),
-    *("lateralFriction", "spinningFriction", "rollingFriction", "linearDamping", "angularDamping"),
+    *("mass", "lateralFriction", "spinningFriction", "rollingFriction", "linearDamping", "angularDamping"),
     *("jointDamping", "restitution", "contactStiffness", "contactDamping", "frictionAnchor"),
     *("ccdSweptSphereRadius", "activationState", "contactProcessingThreshold", "maxJointVelocity"),
     "collisionMargin",
 )
-# Their parameters and kinds.
-_PARAMETERS = {
-    name: ({"localInertiaDiagonal": "inertia"}.get(name, re.sub("([A-Z])", r"_\1", name).lower()), kind)
-    for name in _IN_ORDER
-    for kind in CHANGE_DYNAMICS[name]
+_CONVERSIONS: dict[str, Callable[[Any, str], float]] = {"r": real, "i": integer}
+# Their parameters and conversions.
+_NUMBERS = {
+    name: (re.sub("([A-Z])", r"_\1", name).lower(), _CONVERSIONS[CHANGE_DYNAMICS[name]]) for name in _IN_ORDER
 }
 # Changes of these parameters make a whole `BodyAccess` outdated, or only its equations of motion.
 _LIMITS = {"joint_lower_limit", "joint_upper_limit"}
@@ -183,16 +184,21 @@ def changeDynamics(
     client = client_of(physicsClientId)
     named_link = integer(linkIndex, "linkIndex")
     changes = _Changes(named_link)
-    for name, (parameter, kind) in _PARAMETERS.items():
-        value = given[name]
-        if kind == "3":
-            if value is not None:
-                changes.take_vector(parameter, value, name)
-        elif value is not _UNCHANGED:
-            changes.take(parameter, real(value, name) if kind == "r" else integer(value, name))
-        if name == "sleepThreshold" and not (jointLowerLimit is _NO_LIMIT and jointUpperLimit is _UNCHANGED):
-            lower = real(jointLowerLimit, "jointLowerLimit")
-            changes.take_limits(lower, real(jointUpperLimit, "jointUpperLimit"))
+    # In PyBullet's order, see the docstring.
+    if jointLimitForce is not _UNCHANGED:
+        changes.take("joint_limit_force", real(jointLimitForce, "jointLimitForce"))
+    if sleepThreshold is not _UNCHANGED:
+        changes.take("sleep_threshold", real(sleepThreshold, "sleepThreshold"))
+    if jointLowerLimit is not _NO_LIMIT or jointUpperLimit is not _UNCHANGED:
+        lower = real(jointLowerLimit, "jointLowerLimit")
+        changes.take_limits(lower, real(jointUpperLimit, "jointUpperLimit"))
+    if anisotropicFriction is not None:
+        changes.take_vector("anisotropic_friction", anisotropicFriction, "anisotropicFriction")
+    if localInertiaDiagonal is not None:
+        changes.take_vector("inertia", localInertiaDiagonal, "localInertiaDiagonal")
+    for name, (parameter, convert) in _NUMBERS.items():
+        if given[name] is not _UNCHANGED:
+            changes.take(parameter, convert(given[name], name))
 
     if (contactStiffness >= 0.0) != (contactDamping >= 0.0):
         fail("Both contactStiffness and contactDamping needs to be set together.")

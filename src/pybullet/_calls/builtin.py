@@ -72,14 +72,10 @@ def exported(function: F) -> F:
 def exported_requiring(count: int) -> Callable[[F], F]:
     """As `exported`, for a function whose body may also be given as `bodyIndex`.
 
-    So its first `count` arguments have defaults, and the function refuses a call without them. Neither these
-    defaults nor the second name of the body are in the signature that is shown.
+    So it looks itself whether its first `count` arguments are given. Their defaults are not shown, nor is
+    `bodyIndex`.
     """
-
-    def export(function: F) -> F:
-        return exported_as(_plain_signature(function, count))(function)
-
-    return export
+    return lambda function: exported_as(_plain_signature(function, count))(function)
 
 
 def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable[[F], F]:
