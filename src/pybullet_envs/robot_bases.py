@@ -122,8 +122,8 @@ class XmlBasedRobot:
         states = np.empty((len(self.ordered_joints), 2))
         for body, places in self._places_by_body(self.ordered_joints).items():
             joints = [self.ordered_joints[place] for place in places]
-            told = self._p.getJointStates(body, [joint.jointIndex for joint in joints])
-            states[places] = [state[:2] for state in told]
+            found = self._p.getJointStates(body, [joint.jointIndex for joint in joints])
+            states[places] = [state[:2] for state in found]
         lower = np.array([joint.lowerLimit for joint in self.ordered_joints])
         upper = np.array([joint.upperLimit for joint in self.ordered_joints])
         relative = (2.0 * states[:, 0] - lower - upper) / (upper - lower)

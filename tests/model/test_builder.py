@@ -11,8 +11,9 @@ from tests.physics.robots import free_body, random_tree
 from carom.description import JointType, Pose
 from carom.description.pose import IDENTITY
 from carom.layouts.codes import JointCode
+from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.builder import TreeRows, WorldArrays
+from carom.model.builder import WorldArrays
 
 SPECS = [
     random_tree(0, 5, fixed_base=True),

@@ -30,8 +30,9 @@ from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.layouts.codes import ShapeKind
 from carom.layouts.flags import LoadFlags
+from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.builder import TreeRows, WorldArrays
+from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays
 from carom.scene.link_dynamics import LinkDynamics
 

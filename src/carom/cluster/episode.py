@@ -99,8 +99,8 @@ def info_of(row: int, infos: dict[str, Any]) -> dict[str, Any]:
     """The infos of one environment, from Gymnasium's infos of a vector environment."""
     found: dict[str, Any] = {}
     for name, values in infos.items():
-        told = infos.get(f"_{name}")
-        if name.startswith("_") or (told is not None and not told[row]):
+        given = infos.get(f"_{name}")
+        if name.startswith("_") or (given is not None and not given[row]):
             continue
         found[name] = info_of(row, values) if isinstance(values, dict) else values[row]
     return found

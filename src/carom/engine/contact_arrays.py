@@ -21,7 +21,8 @@ from carom.layouts.contacts import (
     Contacts,
     UserConstraints,
 )
-from carom.model.builder import TreeRows, WorldArrays
+from carom.model.body_rows import TreeRows
+from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays
 from carom.model.soft_arrays import SoftArrays
 from carom.native.change import Change

@@ -20,7 +20,8 @@ from carom.native.change import Change
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
-    from carom.model.builder import TreeRows, WorldArrays
+    from carom.model.body_rows import TreeRows
+    from carom.model.builder import WorldArrays
     from carom.native.tables import ArrayTable
 
 Mask = NDArray[np.bool_]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.quick_world import DAMPING, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
+from carom.layouts.quick_world import OF_BODY, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
 from carom.native.change import Change, blank
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
@@ -17,9 +17,7 @@ if TYPE_CHECKING:
     from ctypes import c_double
 
     from carom.engine.contact_arrays import ContactArrays
-    from carom.engine.engine import Engine
     from carom.engine.interpreter import Interpreter
-    from carom.engine.parameters import EngineParameters
     from carom.model.builder import WorldArrays
     from carom.native.launch import Launch as KernelLaunch
     from carom.queries.question import Question
@@ -27,8 +25,6 @@ if TYPE_CHECKING:
 
 # Names of attributes are interned.
 _NAMES = [intern(name) for name in SURFACE]
-# Without contacts, a step of so few links ends within some microseconds.
-_FEW_LINKS, _FEW_SWEEPS = 32, 100
 _MASS, _INERTIA, _FIXED_BASE = intern("mass"), intern("inertia"), intern("fixed_base")
 # Fields of the record without which the other addresses are not used.
 _OF_STEP = "step.run", "detection.run"
@@ -139,7 +135,7 @@ class QuickScene:
         """Set the addresses that depend on these structs only, and return their launch."""
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
         self.record.surface_names[:] = [id(name) for name in _NAMES]
-        self.record.damping[:] = [getattr(model, field).data for field in DAMPING.values()]
+        self.record.of_body[:] = [getattr(model, field).data for field in OF_BODY.values()]
         self.record.mass, self.record.inertia = model.link_mass.data, model.link_inertia.data
         self.record.mass_name, self.record.inertia_name = id(_MASS), id(_INERTIA)
         self.record.fixed_base_name = id(_FIXED_BASE)
@@ -150,25 +146,27 @@ class QuickScene:
         return TreeLaunch(forward_kinematics_kernel, KernelStructs(model=model, state=state))
 
     def set_step_addresses(
-        self, engine: Engine, time: c_double, observers: list[Any], parameters: EngineParameters
+        self,
+        step: tuple[int, int, int],
+        time: c_double,
+        observers: list[Any],
+        contacts: int | None,
+        keep: Any,
     ) -> None:
         """Set the addresses for steps of one substep.
 
         Args:
-            engine: The engine, prepared.
+            step: Those of the function, the status and the duration of a step.
             time: Simulated time [s], which steps advance.
-            observers: The objects that are told of each step; while there are any, Python performs steps.
-            parameters: Parameters of the world.
+            observers: While there are any, Python performs steps.
+            contacts: Address of the number of contacts; None if steps take long even without any.
+            keep: What these addresses point to.
         """
-        contacts = engine.contact_arrays.contacts.struct()
-        self._stepped = engine, time, observers, contacts
+        self._stepped = keep, time, observers
         self._is_empty = False
         record = self._step
-        run, record.status, record.duration = engine.step_addresses()
-        record.time, record.observers = addressof(time), id(observers)
-        sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations
-        is_small = engine.arrays.used["link"] <= _FEW_LINKS and not engine.contact_arrays.soft.bodies
-        record.contact_count = contacts.count_contacts.data if is_small and sweeps <= _FEW_SWEEPS else None
+        run, record.status, record.duration = step
+        record.time, record.observers, record.contact_count = addressof(time), id(observers), contacts
         # Last: without it the other addresses are not used.
         record.run = self._run = run
 

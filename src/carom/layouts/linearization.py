@@ -36,7 +36,7 @@ SHAPE_KINDS = 8
 # At most so many rows has a contact.
 ROWS_OF_CONTACT = 6
 # At least so many rows there is room for: of one, its response, changes of it, and of errors are noted.
-LEAST_ROWS = 3
+MIN_ROWS = 3
 
 
 @struct

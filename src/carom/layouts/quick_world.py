@@ -14,11 +14,16 @@ SURFACE = {
     "restitution": "link_restitution",
     "contact_stiffness": "link_stiffness",
     "contact_damping": "link_contact_damping",
+    "contact_processing_threshold": "link_processing_threshold",
 }
 """Fields of `LinkDynamics` that quick calls change, with the corresponding fields of `Shapes`."""
-DAMPING = {"linear_damping": "tree_linear_damping", "angular_damping": "tree_angular_damping"}
+OF_BODY = {
+    "linear_damping": "tree_linear_damping",
+    "angular_damping": "tree_angular_damping",
+    "max_joint_velocity": "tree_max_velocity",
+}
 """Parameters of bodies that quick calls change, with the corresponding fields of `Model`."""
-SURFACE_COUNT, DAMPING_COUNT = len(SURFACE), len(DAMPING)
+SURFACE_COUNT, OF_BODY_COUNT = len(SURFACE), len(OF_BODY)
 
 
 @c_record()
@@ -191,7 +196,7 @@ class Step:
     contact_count: Read[Int32]
 
 
-@c_record(surface=SURFACE_COUNT, surface_names=SURFACE_COUNT, damping=DAMPING_COUNT)
+@c_record(surface=SURFACE_COUNT, surface_names=SURFACE_COUNT, of_body=OF_BODY_COUNT)
 class Scene:
     """Data derived from the bodies and arrays of a world; functions are null if their data are missing.
 
@@ -202,9 +207,9 @@ class Scene:
         contact_warm_starts: Impulses at which the solver starts, one for each contact.
         contact_room: Number of contacts that fit.
         tree_resets: By row of tree, see `note_reset`.
-        surface: By row of link: friction, restitution, softness, in the order of `SURFACE`.
+        surface: By row of link: contact parameters, in the order of `SURFACE`.
         surface_names: Names of the attributes of `LinkDynamics`.
-        damping: By row of tree, in the order of `DAMPING`.
+        of_body: By row of tree: damping and maximum velocity, in the order of `OF_BODY`.
         mass: By row of link.
         inertia: By row of link, three numbers.
         mass_name: Name of the attribute of `LinkDynamics`.
@@ -220,7 +225,7 @@ class Scene:
     tree_resets: At[Int32]
     surface: At[Double]
     surface_names: Object
-    damping: At[Double]
+    of_body: At[Double]
     mass: At[Double]
     inertia: At[Double]
     mass_name: Object

@@ -13,7 +13,7 @@ from carom.layouts.codes import BASE_POSITIONS, ConstraintKind, UserConstraintKi
 from carom.layouts.linearization import (
     ALL_STAGES,
     EQUATIONS_STAGE,
-    LEAST_ROWS,
+    MIN_ROWS,
     RESUMED,
     ROWS_OF_CONTACT,
     ROWS_STAGE,
@@ -70,7 +70,7 @@ class StepKernels:
         singles = int(np.isin(kinds, _SINGLE_ROWS).sum())
         fixed_rows = _rows_of_joints(copies) + singles + _MAX_USER_ROWS * (users - singles)
         self._struct.most_of_joints = fixed_rows
-        self._fixed_rows = max(fixed_rows, LEAST_ROWS)
+        self._fixed_rows = max(fixed_rows, MIN_ROWS)
         self._contacts = 0
         self._made_for: list[Any] = []
         self._settings: Any = None

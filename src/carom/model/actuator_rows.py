@@ -11,7 +11,8 @@ from carom.errors import DescriptionError
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
-    from carom.model.builder import TreeRows, WorldArrays
+    from carom.model.body_rows import TreeRows
+    from carom.model.builder import WorldArrays
     from carom.native.change import Change
 
 _AXIS = "actuator"

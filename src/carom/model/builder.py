@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +28,7 @@ from carom.layouts.codes import (
 from carom.layouts.flags import LoadFlags
 from carom.layouts.model import Model, State
 from carom.model.actuator_rows import check_joint_ranges, join_actuators, write_actuator
+from carom.model.body_rows import BodyRows, TreeRows
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
 from carom.native.change import Change
 from carom.native.products import length, product
@@ -37,7 +37,6 @@ from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 
 if TYPE_CHECKING:
     from carom.description.fluid import FluidEllipsoid
-    from carom.model.body_rows import BodyRows
 
 DEFAULT_MAX_VELOCITY = 100.0
 DEFAULT_SLEEP_THRESHOLD = 0.05
@@ -79,15 +78,6 @@ def has_joint_terms(spec: BodySpec) -> bool:
         link.armature != 0.0 or link.stiffness != 0.0 or (link.damping != 0.0 and not spec.is_held)
         for link in spec.links
     )
-
-
-@dataclass(slots=True)
-class TreeRows:
-    """The rows of a body in the flat arrays."""
-
-    tree: int
-    first: dict[str, int] = field(default_factory=dict)
-    count: dict[str, int] = field(default_factory=dict)
 
 
 class WorldArrays:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -13,18 +13,15 @@ from carom.layouts.codes import Part, ShapeKind
 from carom.layouts.contacts import Shapes
 from carom.layouts.flags import LoadFlags
 from carom.layouts.quick_world import SURFACE
+from carom.model.body_rows import BodyRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
-from carom.model.builder import TreeRows
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
 from carom.native.change import Change
 from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
-
-if TYPE_CHECKING:
-    from carom.model.body_rows import BodyRows
 
 BREAKING_FRACTION = 0.02
 """Breaking distance of a contact, relative to the reach of the smaller shape."""
@@ -54,7 +51,6 @@ SURFACE_FIELDS = {
     "contact_impedance": "link_impedance",
     "contact_mixing": "link_mixing",
     "anisotropic_friction": "link_anisotropy",
-    "contact_processing_threshold": "link_processing_threshold",
     "ccd_swept_sphere_radius": "shape_ccd_radius",
     "collision_margin": "shape_margin",
 }

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.description.pose import Vector3
 from carom.layouts.soft import ANCHORS, BODIES, FREE, HELD, HELD_UNDAMPED, SoftModel
-from carom.model.builder import TreeRows
+from carom.model.body_rows import TreeRows
 from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
 from carom.native.change import Change
 from carom.native.products import determinants, inverses

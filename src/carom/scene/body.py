@@ -24,8 +24,8 @@ from carom.layouts.codes import (
     Activity,
 )
 from carom.layouts.magnitudes import UNIT_ROUNDING
+from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.builder import TreeRows
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.tables import NUMPY_REAL

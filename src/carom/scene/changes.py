@@ -137,7 +137,7 @@ def remove_body(world: World, body: Body) -> None:
 
 
 @alone("lock")
-def tie(world: World, constraint: UserConstraint) -> UserConstraint:
+def add_constraint(world: World, constraint: UserConstraint) -> UserConstraint:
     """Add a new user constraint, and return it."""
     with uninterrupted:
         change = Change()
@@ -149,7 +149,7 @@ def tie(world: World, constraint: UserConstraint) -> UserConstraint:
 
 
 @alone("lock")
-def untie(world: World, constraint: UserConstraint) -> None:
+def remove_constraint(world: World, constraint: UserConstraint) -> None:
     """Remove a user constraint."""
     with uninterrupted:
         change = Change()

@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.engine.presence import change_presence
 from carom.layouts.flags import ActivationChange, LoadFlags
-from carom.layouts.quick_world import DAMPING
+from carom.layouts.quick_world import OF_BODY
 from carom.model.body_spec import BASE
 from carom.model.inertia import collision_margin, margin_is_radius, mass_terms, moments_at
 from carom.model.shape_arrays import SURFACE_FIELDS
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from carom.scene.link_dynamics import LinkDynamics
 
 
-OF_BODY = {**DAMPING, "max_joint_velocity": "tree_max_velocity"}
 _SLEEP_THRESHOLD = "sleep_threshold"
 _ACTIVATION = "activation_state"
 _OF_JOINT = ("joint_damping", "joint_lower_limit", "joint_upper_limit")

@@ -58,8 +58,8 @@ class StableBaselinesEnv(VecEnv):
         """Start all episodes. Seeds set by `seed` are used once."""
         seeds: list[int | None] = list(self._seeds)
         # Lists of seeds are typed in Gymnasium's own vector environments only.
-        observations, told = self.env.reset(seed=seeds)  # type: ignore[arg-type]
-        self.reset_infos = [own_infos(told, world) for world in range(self.num_envs)]
+        observations, reported = self.env.reset(seed=seeds)  # type: ignore[arg-type]
+        self.reset_infos = [own_infos(reported, world) for world in range(self.num_envs)]
         self._reset_seeds()
         self._reset_options()
         return observations
@@ -70,9 +70,9 @@ class StableBaselinesEnv(VecEnv):
 
     def step_wait(self) -> Any:
         """Take a step; return observations, rewards, a mask of ended episodes, and a list of infos."""
-        observations, rewards, terminations, truncations, told = self.env.step(self._actions)
+        observations, rewards, terminations, truncations, reported = self.env.step(self._actions)
         over = terminations | truncations
-        infos = [own_infos(told, world) for world in range(self.num_envs)]
+        infos = [own_infos(reported, world) for world in range(self.num_envs)]
         for world in np.flatnonzero(over):
             last = infos[world]
             last.update(last.pop("final_info", {}))

@@ -275,19 +275,19 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
             self._begin(beginning)
         self._observations = self.observe()
         rewards, terminations, truncations = self.reward(values), self.terminated(), self.truncated()
-        told = self.infos()
+        reported = self.infos()
         if len(beginning):
             truncations[beginning] = False
-        truncations |= self._truncations(told)
+        truncations |= self._truncations(reported)
         stepped = np.ones(self.num_envs, dtype=bool)
         if len(beginning):
             rewards[beginning] = 0.0
             terminations[beginning] = False
             stepped[beginning] = False
         self._over = terminations | truncations
-        infos = batched_infos(told, self.num_envs, stepped)
+        infos = batched_infos(reported, self.num_envs, stepped)
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._over.any():
-            infos = self._begin_at_once(told, self._over.copy())
+            infos = self._begin_at_once(reported, self._over.copy())
         return deepcopy(self._observations), rewards, terminations, truncations, infos
 
     def render(self) -> tuple[np.ndarray, ...] | None:  # type: ignore[override]
@@ -344,15 +344,15 @@ class WorldsEnv(VectorEnv[Any, np.ndarray, np.ndarray]):
         self._over[worlds] = False
         self.begin(worlds)
 
-    def _begin_at_once(self, told: dict[str, Any], over: Mask) -> dict[str, Any]:
+    def _begin_at_once(self, reported: dict[str, Any], over: Mask) -> dict[str, Any]:
         """Begin the episodes after those that are over; returns the infos, with the last ones of these."""
         ended = np.flatnonzero(over)
-        infos = batched_infos(told, self.num_envs, ~over)
+        infos = batched_infos(reported, self.num_envs, ~over)
         last = np.full(self.num_envs, None, dtype=object)
         for world in ended.tolist():
             last[world] = own_observation(self._observations, world)
         infos["final_obs"], infos["_final_obs"] = last, over.copy()
-        infos["final_info"] = batched_infos(told, self.num_envs, over)
+        infos["final_info"] = batched_infos(reported, self.num_envs, over)
         infos["_final_info"] = over.copy()
         self._begin(ended)
         self._observe_again(ended)

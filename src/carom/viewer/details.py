@@ -213,18 +213,18 @@ def _dynamics(body: Body) -> dict[str, Any]:
 def _constraints(world: World) -> list[dict[str, Any]]:
     return [
         {
-            "constraint": tie.id,
-            "kind": tie.kind.name.lower(),
+            "constraint": constraint.id,
+            "kind": constraint.kind.name.lower(),
             "parent": {
-                "body": tie.parent.id,
-                "link": tie.parent_link + 1,
-                "position": tie.parent_frame.position,
+                "body": constraint.parent.id,
+                "link": constraint.parent_link + 1,
+                "position": constraint.parent_frame.position,
             },
             "child": {
-                "body": -1 if tie.child is None else tie.child.id,
-                "link": tie.child_link + 1,
-                "position": tie.child_frame.position,
+                "body": -1 if constraint.child is None else constraint.child.id,
+                "link": constraint.child_link + 1,
+                "position": constraint.child_frame.position,
             },
         }
-        for tie in world.user_constraints.all
+        for constraint in world.user_constraints.all
     ]

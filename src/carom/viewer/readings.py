@@ -151,11 +151,11 @@ def tendons(world: World) -> Columns:
     rows: list[tuple[float, ...]] = []
     source = LoneSource(world)
     for number, body in list(world.bodies.items()):
-        for tie in tendons_of(body):
-            if tie.path[0].kind is PathKind.SITE:
-                tendon = BodyTendon(tie)
-                values = (tendon.force, float(tendon.limit_force > 0.0))
-                rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tie.path)]
+        for tendon in tendons_of(body):
+            if tendon.path[0].kind is PathKind.SITE:
+                handle = BodyTendon(tendon)
+                values = (handle.force, float(handle.limit_force > 0.0))
+                rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tendon.path)]
     return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
 
 

@@ -9,9 +9,9 @@ from carom.description.pose import Pose
 from carom.description.transform import compose
 from carom.model.body_spec import BASE
 from carom.scene.named_constraints.base_friction import new_base_friction
+from carom.scene.named_constraints.connect import Connect, Weld, new_connection
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 from carom.scene.named_constraints.named_constraint import yield_as
-from carom.scene.named_constraints.tie import Connect, Weld, new_tie
 from carom.scene.tendons.tendon import TendonCoupling
 from carom.world.file_tendons import add_tendons
 
@@ -31,21 +31,21 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
     for it in model.couplings:
         body, follower = joints[it.follower]
         other, leader = (None, None) if it.leader is None else joints[it.leader]
-        tie = new_coupling(body, follower, leader, it.coefficients, it.name, other)
-        yield_as(tie, it.compliance)
-        _put(body, tie, enabled=it.enabled)
-        made.append(JointCoupling(tie))
+        constraint = new_coupling(body, follower, leader, it.coefficients, it.name, other)
+        yield_as(constraint, it.compliance)
+        _put(body, constraint, enabled=it.enabled)
+        made.append(JointCoupling(constraint))
     links = {body.spec.link(i).name: (body, i) for body in bodies for i in range(BASE, len(body.spec.links))}
-    for it in model.ties:
+    for it in model.connections:
         first, second, fixed = (*links[it.first], it.first_frame), None, it.second_frame
         if it.second == WORLD:
             fixed = compose(place, it.second_frame)
         else:
             second = (*links[it.second], it.second_frame)
-        tie = new_tie(it.name, first, second, fixed, is_weld=it.is_weld)
-        yield_as(tie, it.compliance)
-        _put(first[0], tie, enabled=it.enabled)
-        made.append(Weld(tie) if it.is_weld else Connect(tie))
+        constraint = new_connection(it.name, first, second, fixed, is_weld=it.is_weld)
+        yield_as(constraint, it.compliance)
+        _put(first[0], constraint, enabled=it.enabled)
+        made.append(Weld(constraint) if it.is_weld else Connect(constraint))
     free = {body.name: body for body in bodies}
     for it in model.frictions:
         _put(free[it.body], new_base_friction(free[it.body], it.friction, it.compliance), enabled=True)
@@ -54,6 +54,6 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
     return made
 
 
-def _put(body: Body, tie: UserConstraint, *, enabled: bool) -> None:
-    tie.enabled = enabled
-    body.world.add_constraint(tie)
+def _put(body: Body, constraint: UserConstraint, *, enabled: bool) -> None:
+    constraint.enabled = enabled
+    body.world.add_constraint(constraint)

@@ -39,11 +39,11 @@ def add_tendons(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> li
     made = []
     for it in model.tendon_couplings:
         leader = None if it.leader is None else tendons[it.leader]
-        tie = new_tendon_coupling(tendons[it.follower], leader, it.coefficients, it.name)
-        tie.enabled = it.enabled
-        yield_as(tie, it.compliance)
-        _put(tie.parent, tie)
-        made.append(TendonCoupling(tie))
+        constraint = new_tendon_coupling(tendons[it.follower], leader, it.coefficients, it.name)
+        constraint.enabled = it.enabled
+        yield_as(constraint, it.compliance)
+        _put(constraint.parent, constraint)
+        made.append(TendonCoupling(constraint))
     for body in bodies:
         for number, actuator in enumerate(body.spec.actuators):
             if not drives_joint(actuator):
@@ -67,8 +67,8 @@ def new_tendon_at_rest(body: Body, spec: TendonSpec) -> UserConstraint:
     return made
 
 
-def _put(body: Body, tie: UserConstraint) -> None:
-    body.world.add_constraint(tie)
+def _put(body: Body, constraint: UserConstraint) -> None:
+    body.world.add_constraint(constraint)
 
 
 def _links(body: Body) -> dict[str, int]:

@@ -128,14 +128,14 @@ class DescriptionLoading(BodyAdding):
             )
             return self._load_file(path, position, orientation, choices)
         from carom.formats.reading.ignored import IgnoredList
+        from carom.scene.named_constraints.connect import connections_of
         from carom.scene.named_constraints.joint_coupling import couplings_of
-        from carom.scene.named_constraints.tie import ties_of
         from carom.scene.tendons.tendon import tendon_couplings_of
         from carom.world.scene import Scene
 
         world, bodies = self._as_world(), self.load_saved(path)
         constraints = [
-            *couplings_of(world, bodies), *ties_of(world, bodies), *tendon_couplings_of(bodies)
+            *couplings_of(world, bodies), *connections_of(world, bodies), *tendon_couplings_of(bodies)
         ]  # fmt: skip
         return Scene(world, path, "saved world", bodies, IgnoredList(), constraints)
 

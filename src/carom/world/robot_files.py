@@ -185,9 +185,9 @@ def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
                 # The leader cannot move, so the follower is held where it wants it.
                 leader, factor = None, 0.0
             coefficients = (mimic.offset, factor, 0.0, 0.0, 0.0)
-            tie = new_coupling(body, follower, leader, coefficients, link.joint_name)
-            body.world.add_constraint(tie)
-            made.append(JointCoupling(tie))
+            constraint = new_coupling(body, follower, leader, coefficients, link.joint_name)
+            body.world.add_constraint(constraint)
+            made.append(JointCoupling(constraint))
     for coupling in made:
         # From the first leaders on: a follower may lead others.
         if coupling.leader is None or not any(other.follower is coupling.leader for other in made):

@@ -16,6 +16,7 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.engine.quick_scene import QuickScene
+from carom.engine.quick_steps import show_steps
 from carom.errors import SimulationError
 from carom.layouts.codes import UserConstraintKind
 from carom.layouts.status import STATUS, WELL
@@ -28,7 +29,7 @@ from carom.native.tables import ArrayTable
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
-from carom.scene.changes import add_bodies, free_base, remove_body, tie, untie
+from carom.scene.changes import add_bodies, add_constraint, free_base, remove_body, remove_constraint
 from carom.scene.faults import cause_in
 from carom.scene.joint_constraints import JointConstraints
 from carom.scene.observers import Observer, SubstepObserver
@@ -257,15 +258,15 @@ class World(
         """
         places = (parent, parent_link, child, child_link)
         frames = (axis, parent_frame, child_frame)
-        return tie(self, self.user_constraints.new(kind, *places, *frames, hidden=hidden))
+        return add_constraint(self, self.user_constraints.new(kind, *places, *frames, hidden=hidden))
 
     def add_constraint(self, constraint: UserConstraint) -> None:
         """Add a constraint that `user_constraints.new` has made for a body of this world."""
-        tie(self, constraint)
+        add_constraint(self, constraint)
 
     def untie(self, constraint: UserConstraint) -> None:
         """Remove a constraint made by `tie`."""
-        untie(self, constraint)
+        remove_constraint(self, constraint)
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Free the base of a body, or fix it in the world."""
@@ -587,7 +588,7 @@ class World(
             self.unspent_time = 0.0
             step = self.engine.run_prepared
             if not self._substep_observers:
-                self.quick.set_step_addresses(self.engine, self._clock, self.observers, self.parameters)
+                show_steps(self.engine, self.quick, self._clock, self.observers, self.parameters)
         self._derived.step = step
         return step
 

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 from carom.checks import Array
 from carom.engine.engine import Engine
 from carom.layouts.codes import ConstraintKind
-from carom.layouts.quick_world import SURFACE
+from carom.layouts.quick_world import OF_BODY, SURFACE
 from carom.model.body_spec import BASE
 from carom.scene.body import Body
-from carom.scene.dynamics_changes import OF_BODY, shape_inertia, unit_inertia
+from carom.scene.dynamics_changes import shape_inertia, unit_inertia
 from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS
 from carom.worlds.chosen import Chosen
 

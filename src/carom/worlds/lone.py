@@ -8,11 +8,10 @@ import numpy as np
 
 from carom.engine.engine import Engine
 from carom.layouts.codes import ABSENT, ConstraintKind
-from carom.layouts.quick_world import SURFACE
+from carom.layouts.quick_world import OF_BODY, SURFACE
 from carom.model.actuator_rows import read_actuator, write_actuator
 from carom.model.body_spec import BASE
 from carom.native.tables import ArrayTable
-from carom.scene.dynamics_changes import OF_BODY
 from carom.scene.joint_terms.implicit import OF_DOFS
 from carom.world.world import World
 

@@ -9,7 +9,7 @@ from struct import error as StructError
 from typing import TYPE_CHECKING, Any, overload
 
 from pybullet._calls.arguments import Vector, check_rotation, integer, numbers, one_body, required
-from pybullet._calls.builtin import exported, exported_as
+from pybullet._calls.builtin import exported, exported_requiring
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of, clients
 from pybullet._clients.lookup import body_of, link_of
@@ -58,7 +58,7 @@ def calculateInverseDynamics(
     objAccelerations: Vector,
     physicsClientId: int = 0,
 ) -> tuple[float, ...]: ...
-@exported_as("(bodyUniqueId, objPositions, objVelocities, objAccelerations, flags=0, physicsClientId=0)")
+@exported_requiring(4)
 def calculateInverseDynamics(
     bodyUniqueId: Any = None,
     objPositions: Any = None,

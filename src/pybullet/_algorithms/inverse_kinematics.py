@@ -22,7 +22,7 @@ from pybullet._calls.arguments import (
     sequence,
     vector3,
 )
-from pybullet._calls.builtin import exported, exported_as
+from pybullet._calls.builtin import exported, exported_requiring
 from pybullet._calls.constants import IK_DLS, IK_SDLS
 from pybullet._calls.errors import fail, warn_once
 from pybullet._clients.clients import client_of
@@ -80,11 +80,7 @@ def calculateInverseKinematics(
     jointDamping: Vector | None = None,
     physicsClientId: int = 0,
 ) -> tuple[float, ...]: ...
-@exported_as(
-    "(bodyUniqueId, endEffectorLinkIndex, targetPosition, targetOrientation=None, lowerLimits=None, "
-    "upperLimits=None, jointRanges=None, restPoses=None, jointDamping=None, solver=0, currentPositions=None, "
-    "maxNumIterations=-1, residualThreshold=-1, physicsClientId=0)"
-)
+@exported_requiring(3)
 def calculateInverseKinematics(
     bodyUniqueId: Any = None,
     endEffectorLinkIndex: Any = _MISSING,

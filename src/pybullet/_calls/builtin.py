@@ -64,6 +64,15 @@ def exported(function: F) -> F:
     return exported_as(_plain_signature(function))(function)
 
 
+def exported_requiring(count: int) -> Callable[[F], F]:
+    """As `exported`, for a function whose body may also be given as `bodyIndex`.
+
+    So it looks itself whether its first `count` arguments are given. Their defaults are not shown, nor is
+    `bodyIndex`.
+    """
+    return lambda function: exported_as(_plain_signature(function, count))(function)
+
+
 def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable[[F], F]:
     """As `exported`, but `help` and `inspect.signature` show the given signature, parentheses included.
 
@@ -82,20 +91,21 @@ def exported_as(signature: str, usual_form: UsualForm | None = None) -> Callable
     return export
 
 
-def _plain_signature(function: Callable[..., Any]) -> str:
+def _plain_signature(function: Callable[..., Any], required: int = 0) -> str:
     """The signature without annotations, which the text signature of a builtin cannot contain.
 
     The result is that of `inspect.signature`, in a tenth of the time: there are so many functions that this
-    matters for the import of the module.
+    matters for the import of the module. For `required` see `exported_requiring`.
     """
     assert isinstance(function, FunctionType)
     code = function.__code__
-    by_place, by_name = code.co_argcount, code.co_kwonlyargcount
+    by_place, by_name = code.co_argcount, 0 if required else code.co_kwonlyargcount
     names = code.co_varnames
     shown = list(names[:by_place])
     defaults = function.__defaults__ or ()
     for place, value in enumerate(defaults, by_place - len(defaults)):
-        shown[place] += f"={value!r}"
+        if place >= required:
+            shown[place] += f"={value!r}"
     after = by_place + by_name
     if code.co_flags & _TAKES_MORE_BY_PLACE:
         shown.append(f"*{names[after]}")

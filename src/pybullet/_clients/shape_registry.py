@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
-from carom.description import Collision, Visual
+from carom.description import Collision, Robot, Visual
 from carom.native.change import Change
-
-if TYPE_CHECKING:
-    from pybullet._loading.kept_descriptions import KeptDescription
 
 Shape = TypeVar("Shape")
 
@@ -55,6 +52,20 @@ class ShapeTable(Generic[Shape]):
         change.drop(self._shapes, number)
         change.set(self, "_free", [*self._free, number])
         change.commit()
+
+
+class KeptDescription(NamedTuple):
+    """A description with what it was made from.
+
+    Attributes:
+        robot: The description.
+        collisions: The contents of the collision shapes in it, by number; None for -1.
+        visuals: Those of the visual shapes.
+    """
+
+    robot: Robot
+    collisions: dict[int, Any]
+    visuals: dict[int, Any]
 
 
 class ShapeRegistry:

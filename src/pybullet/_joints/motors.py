@@ -24,7 +24,7 @@ from pybullet._calls.arguments import (
     required,
     sequence,
 )
-from pybullet._calls.builtin import exported_as
+from pybullet._calls.builtin import exported_as, exported_requiring
 from pybullet._calls.constants import POSITION_CONTROL, TORQUE_CONTROL, VELOCITY_CONTROL
 from pybullet._calls.errors import error, fail
 from pybullet._clients.clients import client_of
@@ -69,10 +69,7 @@ def setJointMotorControl2(
     maxVelocity: float = -1,
     physicsClientId: int = 0,
 ) -> None: ...
-@exported_as(
-    "(bodyUniqueId, jointIndex, controlMode, targetPosition=0.0, targetVelocity=0.0, force=100000.0, "
-    "positionGain=0.1, velocityGain=1.0, maxVelocity=-1, physicsClientId=0)"
-)
+@exported_requiring(3)
 def setJointMotorControl2(
     bodyUniqueId: Any = None,
     jointIndex: Any = None,
@@ -168,10 +165,7 @@ def setJointMotorControlArray(
     velocityGains: Vector | None = None,
     physicsClientId: int = 0,
 ) -> None: ...
-@exported_as(
-    "(bodyUniqueId, jointIndices, controlMode, targetPositions=None, targetVelocities=None, forces=None, "
-    "positionGains=None, velocityGains=None, physicsClientId=0)"
-)
+@exported_requiring(3)
 def setJointMotorControlArray(
     bodyUniqueId: Any = None,
     jointIndices: Any = None,

@@ -5,30 +5,15 @@ from __future__ import annotations
 import pickle
 from collections.abc import Iterable
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from carom.description import Robot
-    from pybullet._clients.shape_registry import CollisionShape, ShapeRegistry
+from carom.description import Robot
+from pybullet._clients.shape_registry import CollisionShape, KeptDescription, ShapeRegistry
 
 # Number of descriptions that a client keeps.
 _KEPT = 64
-
-
-class KeptDescription(NamedTuple):
-    """A description with what it was made from.
-
-    Attributes:
-        robot: The description.
-        collisions: The contents of the collision shapes in it, by number; None for -1.
-        visuals: Those of the visual shapes.
-    """
-
-    robot: Robot
-    collisions: dict[int, Any]
-    visuals: dict[int, Any]
 
 
 class _NotNumbers(Exception):

@@ -27,12 +27,11 @@ from pybullet._calls.constants import JOINT_FIXED, JOINT_PRISMATIC, JOINT_REVOLU
 from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_pose
 from pybullet._clients.clients import Client, client_of
-from pybullet._clients.shape_registry import ShapeTable
+from pybullet._clients.shape_registry import KeptDescription, ShapeTable
 from pybullet._loading.new_bodies import add_bodies, warn_of_coordinates, with_flags_of_colours
 
 if TYPE_CHECKING:
     from carom.model.body_spec import BodySpec
-    from pybullet._loading.kept_descriptions import KeptDescription
 
 __all__ = ["createMultiBody"]
 
@@ -178,6 +177,7 @@ def createMultiBody(
         >>> p.getNumJoints(pendulum)
         1
     """
+    lists = {name: values for name, values in locals().items() if name.startswith("link")}
     client = client_of(physicsClientId)
     maximal, bits = integer(useMaximalCoordinates, "useMaximalCoordinates"), integer(flags, "flags")
     pose = optional_pose(basePosition, baseOrientation, _FAILED, "base")
@@ -188,18 +188,6 @@ def createMultiBody(
         baseInertialFramePosition,
         baseInertialFrameOrientation,
     )
-    lists = {
-        "linkMasses": linkMasses,
-        "linkCollisionShapeIndices": linkCollisionShapeIndices,
-        "linkVisualShapeIndices": linkVisualShapeIndices,
-        "linkPositions": linkPositions,
-        "linkOrientations": linkOrientations,
-        "linkInertialFramePositions": linkInertialFramePositions,
-        "linkInertialFrameOrientations": linkInertialFrameOrientations,
-        "linkParentIndices": linkParentIndices,
-        "linkJointTypes": linkJointTypes,
-        "linkJointAxis": linkJointAxis,
-    }
     from pybullet._loading.kept_descriptions import kept_description, key_of
 
     key = key_of((*base, *lists.values()))

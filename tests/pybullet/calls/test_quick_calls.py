@@ -22,8 +22,7 @@ from tests.fuzz.values import spoiled
 
 import pybullet as p
 import pybullet_data
-from carom.layouts.quick_world import DAMPING as OF_BODY
-from carom.layouts.quick_world import SURFACE
+from carom.layouts.quick_world import OF_BODY, SURFACE
 from pybullet._calls import quick
 from pybullet._calls.builtin import exports
 from pybullet._clients.clients import clients
@@ -284,8 +283,8 @@ def test_states_of_all_kinds_of_joints_are_those_of_python(one: int) -> None:
 
 
 FRICTION = ["lateralFriction", "spinningFriction", "rollingFriction", "restitution"]
-SOFTNESS = ["contactStiffness", "contactDamping"]
-DAMPING = ["linearDamping", "angularDamping"]
+SOFTNESS = ["contactStiffness", "contactDamping", "contactProcessingThreshold"]
+DAMPING = ["linearDamping", "angularDamping", "maxJointVelocity"]
 
 
 def _dynamics(client: int) -> list[Any]:
@@ -334,7 +333,10 @@ def test_dynamics_are_changed_as_python_changes_them(
 
 def test_friction_and_damping_need_no_python(one: int) -> None:
     p.resetBaseVelocity(1, [0, 0, 0], physicsClientId=one)
-    for changes in ({"lateralFriction": 0.5, "restitution": 1}, {"linearDamping": 0.0, "angularDamping": 0}):
+    for changes in (
+        {"lateralFriction": 0.5, "restitution": 1, "contactProcessingThreshold": 0.1},
+        {"linearDamping": 0.0, "angularDamping": 0, "maxJointVelocity": 50},
+    ):
         assert _takes_no_python("changeDynamics", 1, -1, **changes, physicsClientId=one)
 
 

@@ -30,7 +30,7 @@ from carom.layouts import (
     table_rows,
 )
 from carom.layouts.quick_calls import CHANGE_DYNAMICS, NUMBERS_OF_KIND
-from carom.layouts.quick_world import DAMPING, SURFACE
+from carom.layouts.quick_world import OF_BODY, SURFACE
 from carom.layouts.records import CType, Record
 
 HEADER = "layouts.h"
@@ -125,8 +125,12 @@ def _change_dynamics() -> Iterator[str]:
     for name, kind in CHANGE_DYNAMICS.items():
         yield f"constexpr int {_in_capitals(name)} = {place};"
         place += NUMBERS_OF_KIND[kind]
-    for group, names in {"OF_SURFACE": SURFACE, "OF_BODY": DAMPING}.items():
-        yield f"constexpr int {group}[] = {{{', '.join(map(str.upper, names))}}};"
+    surface, of_body = [[name.upper() for name in names] for names in (SURFACE, OF_BODY)]
+    numbers = [_in_capitals(name) for name, kind in CHANGE_DYNAMICS.items() if kind in "ri"]
+    handled = {"LINK_INDEX", "MASS", *surface, *of_body}
+    others = [name for name in numbers if name not in handled]
+    for group, names in {"OF_SURFACE": surface, "OF_BODY": of_body, "OTHERS": others}.items():
+        yield f"constexpr int {group}[] = {{{', '.join(names)}}};"
 
 
 def _in_capitals(name: str) -> str:

@@ -23,9 +23,9 @@ struct Mask {
 struct Lane {
     Numbers numbers;
 
-    Lane() : numbers(0.0) { }
-    Lane(double number) : numbers(number) { }
-    explicit Lane(Numbers numbers) : numbers(numbers) { }
+    Lane() : numbers(0.0) {}
+    Lane(double number) : numbers(number) {}
+    explicit Lane(Numbers numbers) : numbers(numbers) {}
 
     Lane& operator+=(Lane other) { return numbers += other.numbers, *this; }
     Lane& operator-=(Lane other) { return numbers -= other.numbers, *this; }
@@ -64,8 +64,12 @@ inline Lane div(Lane a, Lane b) { return a / b; }
 inline Lane neg(Lane a) { return -a; }
 inline Lane abs(Lane a) { return Lane(__builtin_elementwise_abs(a.numbers)); }
 inline Lane sqrt(Lane a) { return Lane(__builtin_elementwise_sqrt(a.numbers)); }
-inline Lane sin(Lane a) { return each([](double x) { return wp::sin(x); }, a); }
-inline Lane cos(Lane a) { return each([](double x) { return wp::cos(x); }, a); }
+inline Lane sin(Lane a) {
+    return each([](double x) { return wp::sin(x); }, a);
+}
+inline Lane cos(Lane a) {
+    return each([](double x) { return wp::cos(x); }, a);
+}
 inline Mask unot(Mask a) { return !a; }
 
 inline Lane atan2(Lane y, Lane x) {
@@ -100,8 +104,10 @@ inline vec_t<N, lanes::Lane> where(lanes::Mask mask, vec_t<N, lanes::Lane> a, co
 }
 
 inline quat_t<lanes::Lane> where(lanes::Mask mask, const quat_t<lanes::Lane>& a, const quat_t<lanes::Lane>& b) {
-    return {lanes::chosen(mask, a.x, b.x), lanes::chosen(mask, a.y, b.y), lanes::chosen(mask, a.z, b.z),
-            lanes::chosen(mask, a.w, b.w)};
+    return {
+        lanes::chosen(mask, a.x, b.x), lanes::chosen(mask, a.y, b.y), lanes::chosen(mask, a.z, b.z),
+        lanes::chosen(mask, a.w, b.w)
+    };
 }
 
 }  // namespace wp

@@ -16,5 +16,5 @@ inline int _wp_isfinite(double x) { return __builtin_isfinite(x); }
 inline int _wp_isnan(double x) { return __builtin_isnan(x); }
 inline int _wp_isinf(double x) { return __builtin_isinf(x); }
 // Warp asserts that slices have no step of 0; kernels have no such slices.
-inline void _wp_assert(const char*, const char*, unsigned int) { }
+inline void _wp_assert(const char*, const char*, unsigned int) {}
 }

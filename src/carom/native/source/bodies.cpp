@@ -97,7 +97,8 @@ CAROM_QUICK(place_base) {
     const Quaternion q = quaternion_at(in + 4);
     const double squared = dot(q, q);
     // A pose that was read and is written back stays exactly the same.
-    const double scale = __builtin_fabs(squared - 1.0) < magnitudes::UNIT_ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
+    const double scale =
+        __builtin_fabs(squared - 1.0) < magnitudes::UNIT_ROUNDING ? 1.0 : 1.0 / __builtin_sqrt(squared);
     for (int i = 0; i < SPATIAL_NUMBERS; ++i)
         body.velocity[i] = 0.0;
     double before[POSE_NUMBERS];
@@ -139,7 +140,8 @@ namespace {
 bool prepare_links(const Call& call, bool with_velocity, bool with_poses) {
     const Body& body = *call.body;
     const Scene& scene = *call.client->scene;
-    if (!body.links || (with_velocity && !scene.find_twists.call.function) || (with_poses && !scene.find_poses.call.function))
+    if (!body.links || (with_velocity && !scene.find_twists.call.function) ||
+        (with_poses && !scene.find_poses.call.function))
         return false;
     if (with_poses)
         run(scene.find_poses, body.tree);

@@ -10,31 +10,31 @@
 
 // Those functions of Python that this file uses, in a table that `carom.native.change` fills. It is no part of the
 // table `python`, which waits for the first connection.
-#define CAROM_CHANGE_FUNCTIONS(F)                                     \
-    F(PyObject*, PyObject_GenericGetAttr, (PyObject*, PyObject*))     \
-    F(int, PyObject_GenericSetAttr, (PyObject*, PyObject*, PyObject*)) \
-    F(PyObject*, PyTuple_GetItem, (PyObject*, intptr_t))              \
-    F(intptr_t, PyList_Size, (PyObject*))                             \
-    F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))               \
-    F(int, PyList_SetItem, (PyObject*, intptr_t, PyObject*))          \
+#define CAROM_CHANGE_FUNCTIONS(F)                                       \
+    F(PyObject*, PyObject_GenericGetAttr, (PyObject*, PyObject*))       \
+    F(int, PyObject_GenericSetAttr, (PyObject*, PyObject*, PyObject*))  \
+    F(PyObject*, PyTuple_GetItem, (PyObject*, intptr_t))                \
+    F(intptr_t, PyList_Size, (PyObject*))                               \
+    F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                 \
+    F(int, PyList_SetItem, (PyObject*, intptr_t, PyObject*))            \
     F(int, PyList_SetSlice, (PyObject*, intptr_t, intptr_t, PyObject*)) \
     F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**)) \
-    F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))     \
-    F(int, PyDict_SetItem, (PyObject*, PyObject*, PyObject*))         \
-    F(int, PyDict_DelItem, (PyObject*, PyObject*))                    \
-    F(void, PyDict_Clear, (PyObject*))                                \
-    F(int, PyDict_Update, (PyObject*, PyObject*))                     \
-    F(int, PyBytes_AsStringAndSize, (PyObject*, char**, intptr_t*))   \
-    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))           \
-    F(void, PyBuffer_Release, (PyBuffer*))                            \
-    F(void*, PyMem_Malloc, (uintptr_t))                                  \
-    F(void, PyMem_Free, (void*))                                      \
-    F(PyObject*, PyErr_NoMemory, ())                                  \
-    F(PyObject*, PyErr_Occurred, ())                                  \
-    F(void, PyErr_Clear, ())                                          \
-    F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))        \
-    F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))         \
-    F(void, Py_IncRef, (PyObject*))                                   \
+    F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))       \
+    F(int, PyDict_SetItem, (PyObject*, PyObject*, PyObject*))           \
+    F(int, PyDict_DelItem, (PyObject*, PyObject*))                      \
+    F(void, PyDict_Clear, (PyObject*))                                  \
+    F(int, PyDict_Update, (PyObject*, PyObject*))                       \
+    F(int, PyBytes_AsStringAndSize, (PyObject*, char**, intptr_t*))     \
+    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
+    F(void, PyBuffer_Release, (PyBuffer*))                              \
+    F(void*, PyMem_Malloc, (uintptr_t))                                 \
+    F(void, PyMem_Free, (void*))                                        \
+    F(PyObject*, PyErr_NoMemory, ())                                    \
+    F(PyObject*, PyErr_Occurred, ())                                    \
+    F(void, PyErr_Clear, ())                                            \
+    F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))          \
+    F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))           \
+    F(void, Py_IncRef, (PyObject*))                                     \
     F(void, Py_DecRef, (PyObject*))
 
 struct ChangeFunctions {
@@ -229,7 +229,10 @@ struct Buffers {
             int axes = target.axes;
             for (; axes && target.strides[axes - 1] == size; --axes)
                 size *= target.shape[axes - 1];
-            spread(static_cast<const char*>(buffers[i + 1].memory), static_cast<char*>(target.memory), target, 0, axes, size);
+            spread(
+                static_cast<const char*>(buffers[i + 1].memory), static_cast<char*>(target.memory), target, 0, axes,
+                size
+            );
         }
     }
 };

@@ -11,10 +11,19 @@ enum { MAX_CONTACTS = 64 };
 
 Contact contact_at(const ContactColumns& found, int32_t i) {
     return {
-        found.body_a[i], found.body_b[i], found.link_a[i], found.link_b[i],
-        vector_at(found.point_a + 3 * i), vector_at(found.point_b + 3 * i), vector_at(found.normal + 3 * i),
-        vector_at(found.direction1 + 3 * i), vector_at(found.direction2 + 3 * i),
-        found.distance[i], found.force[i], found.force1[i], found.force2[i],
+        found.body_a[i],
+        found.body_b[i],
+        found.link_a[i],
+        found.link_b[i],
+        vector_at(found.point_a + 3 * i),
+        vector_at(found.point_b + 3 * i),
+        vector_at(found.normal + 3 * i),
+        vector_at(found.direction1 + 3 * i),
+        vector_at(found.direction2 + 3 * i),
+        found.distance[i],
+        found.force[i],
+        found.force1[i],
+        found.force2[i]
     };
 }
 

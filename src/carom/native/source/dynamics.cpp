@@ -1,4 +1,4 @@
-// Changing contact properties and masses of links, and the damping of bodies: a kernel of quick calls.
+// Changing contact parameters and masses of links, and parameters of bodies: a kernel of quick calls.
 
 #include "export.h"
 #include "quick_calls.h"
@@ -9,17 +9,12 @@ using namespace change_dynamics;
 
 bool is_given(double number) { return number == number; }
 
-// Whether an argument has its default.
-bool is_left_out(const double* in, int place) {
-    return !is_given(in[place]) || in[place] == (place == JOINT_LOWER_LIMIT ? 1.0 : -1.0);
-}
-
 // Whether an argument is given that only Python handles.
 bool has_others(const double* in) {
-    for (int place = FRICTION_ANCHOR; place <= SLEEP_THRESHOLD; ++place)
-        if ((place < LOCAL_INERTIA_DIAGONAL || place > LOCAL_INERTIA_DIAGONAL + 2) && !is_left_out(in, place))
+    for (int place : OTHERS)
+        if (in[place] != (place == JOINT_LOWER_LIMIT ? 1.0 : -1.0))
             return true;
-    return false;
+    return is_given(in[ANISOTROPIC_FRICTION]);
 }
 
 // Whether any of some arguments is given.
@@ -99,9 +94,9 @@ bool change(const double* in, const Client& client, const Body& body, PyObject* 
     const Lock lock(client);
     if (!lock.is_held || !scene.find_poses.call.function)
         return false;
-    for (int i = 0; i < DAMPING_COUNT; ++i)
+    for (int i = 0; i < OF_BODY_COUNT; ++i)
         if (in[OF_BODY[i]] >= 0.0)
-            scene.damping[i][body.tree] = in[OF_BODY[i]];
+            scene.of_body[i][body.tree] = in[OF_BODY[i]];
     const int64_t link = static_cast<int64_t>(in[LINK_INDEX]);
     PyObject* dynamics = python.PyList_GetItem(body.dynamics, link + 1);
     if (moments && !change_mass(in, scene, body, dynamics, moments))
@@ -117,8 +112,8 @@ bool change(const double* in, const Client& client, const Body& body, PyObject* 
 
 }  // namespace
 
-// Arguments: those of `changeDynamics`. Python handles all but masses, moments of inertia, friction, restitution,
-// contact stiffness and damping, and calls that change properties of a link together with damping of the body.
+// Arguments: those of `changeDynamics`. Python handles those in `OTHERS`, anisotropic friction, and calls that change
+// parameters of a link together with those of the body.
 extern "C" CAROM_EXPORT int carom_change_dynamics(const double* in, double* out, const Call* call) {
     const bool of_mass = in[MASS] >= 0.0 || is_given(in[LOCAL_INERTIA_DIAGONAL]), of_body = has_one(in, OF_BODY);
     if (has_others(in) || ((of_mass || has_one(in, OF_SURFACE)) && of_body))

@@ -222,7 +222,9 @@ extern "C" CAROM_EXPORT void carom_meet_host(PyObject* begin, PyObject* end, PyO
 }
 
 // The methods of a lock: `acquire`, with the arguments of Python's locks, and `release`, which as `__exit__` takes any.
-extern "C" CAROM_EXPORT PyObject* carom_gate_acquire(PyObject* self, Arguments arguments, intptr_t count, PyObject* names) {
+extern "C" CAROM_EXPORT PyObject* carom_gate_acquire(
+    PyObject* self, Arguments arguments, intptr_t count, PyObject* names
+) {
     Gate& gate = gate_at(self);
     const intptr_t named = names ? python.PyTuple_Size(names) : 0;
     if (!count && !named) {

@@ -19,9 +19,7 @@ Outcome enter(Gate& gate, PyObject* arguments);
 void leave(Gate& gate);
 
 // Whether another thread is in a call.
-inline bool is_closed(const Gate& gate) {
-    return gate.owner && gate.owner != python.PyThread_get_thread_ident();
-}
+inline bool is_closed(const Gate& gate) { return gate.owner && gate.owner != python.PyThread_get_thread_ident(); }
 
 // An error of Python, put aside while others may occur.
 struct PutAside {
@@ -36,6 +34,4 @@ struct PutAside {
 };
 
 // Calls a Python function, alone in the world that it names.
-PyObject* call_alone(
-    Guard& guard, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names
-);
+PyObject* call_alone(Guard& guard, PyObject* function, PyObject* const* arguments, intptr_t count, PyObject* names);

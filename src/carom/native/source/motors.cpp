@@ -42,9 +42,7 @@ void aim(const Body& body, const Joint& joint, const Targets& to, double seconds
     double* motor = motor_row(body, joint);
     motor[codes::MOTOR_TARGET_W] = to.position[3];
     for (int axis = 0; axis < 3; ++axis, motor += MOTOR_NUMBERS) {
-        write_target(
-            motor, to.position[axis], to.velocity[axis], to.kp[axis], to.kd[axis], to.force[axis] * seconds
-        );
+        write_target(motor, to.position[axis], to.velocity[axis], to.kp[axis], to.kd[axis], to.force[axis] * seconds);
         motor[codes::MOTOR_DAMPING] = to.damping[axis];
         limit_speed(motor, to.clamp);
     }
@@ -74,8 +72,13 @@ void command(const Body& body, const Joint& joint, double mode, const Command& t
         // A single number is not an orientation; as in PyBullet, it is used as x of the quaternion.
         const double f = to.force, kp = to.kp, kd = to.kd, x = to.position == 0.0 ? 0.0 : to.position;
         aim(body, joint,
-            {{x, 0.0, 0.0, x == 0.0 ? 1.0 : 0.0}, {to.velocity, 0.0, 0.0}, {f, f, f}, {kp, kp, kp}, {kd, kd, kd},
-             {1.0, 1.0, 1.0}, to.clamp},
+            {{x, 0.0, 0.0, x == 0.0 ? 1.0 : 0.0},
+             {to.velocity, 0.0, 0.0},
+             {f, f, f},
+             {kp, kp, kp},
+             {kd, kd, kd},
+             {1.0, 1.0, 1.0},
+             to.clamp},
             seconds);
     }
 }
@@ -259,7 +262,8 @@ extern "C" CAROM_EXPORT int carom_command_joints_by_lists(const double* in, doub
         return 0;
     for (int k = 0; k < 5; ++k)
         if (PyObject* given = call->sequences[k + 1])
-            if (length_of_list(given) != count || (k > 2 && !read_numbers(given, static_cast<int>(count), gains[k - 3])))
+            if (length_of_list(given) != count ||
+                (k > 2 && !read_numbers(given, static_cast<int>(count), gains[k - 3])))
                 return 0;
     for (intptr_t i = 0; i < count; ++i) {
         Targets& to = targets[i] = not_given(NO_CLAMP);

@@ -69,7 +69,8 @@ int find_pairs(const Placement& at, Range a, Range b, Pair* pairs) {
                 for (int32_t n = 0; n < at.link_shapes[k]; ++n) {
                     if (count == MAX_PAIRS)
                         return -1;
-                    const int32_t link_a = static_cast<int32_t>(i - a.begin), link_b = static_cast<int32_t>(k - b.begin);
+                    const int32_t link_a = static_cast<int32_t>(i - a.begin),
+                                  link_b = static_cast<int32_t>(k - b.begin);
                     pairs[count++] = {at.first_shape[i] + m, at.first_shape[k] + n, link_a, link_b};
                 }
     return count;
@@ -122,7 +123,9 @@ extern "C" CAROM_EXPORT PyObject* carom_closest_points(const double* in, const C
     Candidate points[MAX_PAIRS];
     if (count) {
         const TemporaryValue<int32_t> asked(nearest.count, count);
-        const TemporaryValue<double> reach(nearest.max_distance, in[2] < magnitudes::MAX_DISTANCE ? in[2] : magnitudes::MAX_DISTANCE);
+        const TemporaryValue<double> reach(
+            nearest.max_distance, in[2] < magnitudes::MAX_DISTANCE ? in[2] : magnitudes::MAX_DISTANCE
+        );
         run(nearest.search);
         for (found = 0; found < *nearest.found; ++found) {
             of[found] = nearest.pairs[found];

@@ -65,7 +65,8 @@ void take_through_steps(const Run& run, int world) {
     int32_t* status = status_of(run, world);
     if (!run.resumed)
         status[status::STEPS_DONE] = 0;
-    for (int step = status[status::STEPS_DONE]; step < run.step_count && take_step(run, world, step); ++step) { }
+    for (int step = status[status::STEPS_DONE]; step < run.step_count && take_step(run, world, step); ++step) {
+    }
 }
 
 // Whether worlds from one of a list on follow each other, so many that they move at once, and begin their steps.
@@ -82,8 +83,8 @@ bool move_at_once(const Run& run, int from, int end) {
 bool finish_step(const Run& run, const LaneWorld& lane, const WorldCall& solve, int world, int step) {
     const int32_t* status = status_of(run, world);
     perform(solve, world, 1);
-    const bool well = !status[status::STATUS]
-        && perform(lane.program, run.lanes->solving, lane.program.part_ends[END], world, 1, status);
+    const bool well = !status[status::STATUS] &&
+                      perform(lane.program, run.lanes->solving, lane.program.part_ends[END], world, 1, status);
     return end_step(run, lane.program, world, step, 1, well);
 }
 

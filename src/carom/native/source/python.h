@@ -24,38 +24,38 @@ struct PyBuffer {
 };
 
 // Result, name and arguments of each function.
-#define CAROM_PYTHON_FUNCTIONS(F)                                                     \
-    F(PyObject*, PyTuple_New, (intptr_t))                                             \
-    F(intptr_t, PyTuple_Size, (PyObject*))                                            \
-    F(PyObject*, PyTuple_GetItem, (PyObject*, intptr_t))                              \
-    F(int, PyTuple_SetItem, (PyObject*, intptr_t, PyObject*))                         \
-    F(intptr_t, PyList_Size, (PyObject*))                                             \
-    F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                               \
-    F(intptr_t, PyDict_Size, (PyObject*))                                             \
-    F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))                     \
-    F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**))               \
-    F(intptr_t, PySequence_Size, (PyObject*))                                         \
-    F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))                           \
-    F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))                            \
-    F(int, PyObject_SetAttr, (PyObject*, PyObject*, PyObject*))                       \
-    F(PyObject*, PyFloat_FromDouble, (double))                                        \
-    F(double, PyFloat_AsDouble, (PyObject*))                                          \
-    F(PyObject*, PyLong_FromLong, (long))                                             \
-    F(double, PyLong_AsDouble, (PyObject*))                                           \
-    F(intptr_t, PyNumber_AsSsize_t, (PyObject*, PyObject*))                           \
-    F(int, PyUnicode_CompareWithASCIIString, (PyObject*, const char*))                \
-    F(PyObject*, PyErr_Occurred, ())                                                  \
-    F(void, PyErr_Clear, ())                                                          \
-    F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))                        \
-    F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))                         \
-    F(unsigned long, PyThread_get_thread_ident, ())                                   \
-    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))                           \
-    F(void, PyBuffer_Release, (PyBuffer*))                                            \
-    F(void, Py_IncRef, (PyObject*))                                                   \
-    F(void, Py_DecRef, (PyObject*))                                                   \
-    F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))                         \
-    F(void*, PyEval_SaveThread, ())                                                   \
-    F(void, PyEval_RestoreThread, (void*))                                            \
+#define CAROM_PYTHON_FUNCTIONS(F)                                       \
+    F(PyObject*, PyTuple_New, (intptr_t))                               \
+    F(intptr_t, PyTuple_Size, (PyObject*))                              \
+    F(PyObject*, PyTuple_GetItem, (PyObject*, intptr_t))                \
+    F(int, PyTuple_SetItem, (PyObject*, intptr_t, PyObject*))           \
+    F(intptr_t, PyList_Size, (PyObject*))                               \
+    F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                 \
+    F(intptr_t, PyDict_Size, (PyObject*))                               \
+    F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))       \
+    F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**)) \
+    F(intptr_t, PySequence_Size, (PyObject*))                           \
+    F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))             \
+    F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))              \
+    F(int, PyObject_SetAttr, (PyObject*, PyObject*, PyObject*))         \
+    F(PyObject*, PyFloat_FromDouble, (double))                          \
+    F(double, PyFloat_AsDouble, (PyObject*))                            \
+    F(PyObject*, PyLong_FromLong, (long))                               \
+    F(double, PyLong_AsDouble, (PyObject*))                             \
+    F(intptr_t, PyNumber_AsSsize_t, (PyObject*, PyObject*))             \
+    F(int, PyUnicode_CompareWithASCIIString, (PyObject*, const char*))  \
+    F(PyObject*, PyErr_Occurred, ())                                    \
+    F(void, PyErr_Clear, ())                                            \
+    F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))          \
+    F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))           \
+    F(unsigned long, PyThread_get_thread_ident, ())                     \
+    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
+    F(void, PyBuffer_Release, (PyBuffer*))                              \
+    F(void, Py_IncRef, (PyObject*))                                     \
+    F(void, Py_DecRef, (PyObject*))                                     \
+    F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))           \
+    F(void*, PyEval_SaveThread, ())                                     \
+    F(void, PyEval_RestoreThread, (void*))                              \
     F(PyObject*, PyObject_Vectorcall, (PyObject*, PyObject* const*, intptr_t, PyObject*))
 
 // Singletons.

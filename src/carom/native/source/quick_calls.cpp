@@ -189,8 +189,7 @@ bool read_all(
         while (place < made.parameter_count && made.parameters[place].name != name)
             ++place;
         // A name that is not found is misspelt, or given twice.
-        if (place == made.parameter_count ||
-            !take(made, arrangement, place, arguments[count + k], numbers, call))
+        if (place == made.parameter_count || !take(made, arrangement, place, arguments[count + k], numbers, call))
             return false;
         given |= 1u << place;
     }

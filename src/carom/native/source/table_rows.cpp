@@ -7,7 +7,8 @@
 // Put rows into unused places. `data` has the rows of each field in turn, as in a table without other rows; `first` and
 // `count` say for each axis where they go and how many there are. Each world gets the same.
 extern "C" CAROM_EXPORT void carom_put_rows(
-    const RowTable* table, const char* data, const int64_t* first, const int64_t* count) {
+    const RowTable* table, const char* data, const int64_t* first, const int64_t* count
+) {
     for (int64_t i = 0; i < table->column_count; ++i) {
         const RowField& field = table->columns[i];
         const int64_t bytes = count[field.axis] * field.row_bytes;

@@ -46,12 +46,14 @@ CAROM_TURNS(quaternion_from_euler) {
     const double sr = sin(in[0] / 2.0), cr = cos(in[0] / 2.0);
     const double sp = sin(in[1] / 2.0), cp = cos(in[1] / 2.0);
     const double sy = sin(in[2] / 2.0), cy = cos(in[2] / 2.0);
-    return only(out, unit({
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
-    }));
+    return only(
+        out, unit({
+                 sr * cp * cy - cr * sp * sy,
+                 cr * sp * cy + sr * cp * sy,
+                 cr * cp * sy - sr * sp * cy,
+                 cr * cp * cy + sr * sp * sy,
+             })
+    );
 }
 
 CAROM_TURNS(euler_from_quaternion) {
@@ -123,17 +125,17 @@ CAROM_TURNS(quaternion_slerp) {
     const double sign = cosine < 0.0 ? -1.0 : 1.0, angle = acos(sign * cosine);
     const double from_a = sin((1.0 - fraction) * angle) / sin(angle);
     const double from_b = sin(sign * fraction * angle) / sin(angle);
-    return only(out, Quaternion{
-        a.x * from_a + b.x * from_b,
-        a.y * from_a + b.y * from_b,
-        a.z * from_a + b.z * from_b,
-        a.w * from_a + b.w * from_b,
-    });
+    return only(
+        out, Quaternion{
+                 a.x * from_a + b.x * from_b,
+                 a.y * from_a + b.y * from_b,
+                 a.z * from_a + b.z * from_b,
+                 a.w * from_a + b.w * from_b,
+             }
+    );
 }
 
-CAROM_TURNS(difference_quaternion) {
-    return only(out, difference(quaternion_at(in), quaternion_at(in + 4)));
-}
+CAROM_TURNS(difference_quaternion) { return only(out, difference(quaternion_at(in), quaternion_at(in + 4))); }
 
 // In single precision and the order of operations of PyBullet: near a pitch of 90 degrees rounding decides.
 CAROM_TURNS(axis_difference_quaternion) {
@@ -153,9 +155,13 @@ CAROM_TURNS(axis_difference_quaternion) {
         return only(out, Vector{atan2(xy - wz, 1.0f - (xx + zz)), HALF_PI, 0.0});
     if (sine <= -1.0f)
         return only(out, Vector{-atan2(xy - wz, 1.0f - (xx + zz)), -HALF_PI, 0.0});
-    return only(out, Vector{
-        atan2(-(yz + wx), 1.0f - (xx + yy)), asin(sine), atan2(-(xy + wz), 1.0f - (yy + zz)),
-    });
+    return only(
+        out, Vector{
+                 atan2(-(yz + wx), 1.0f - (xx + yy)),
+                 asin(sine),
+                 atan2(-(xy + wz), 1.0f - (yy + zz)),
+             }
+    );
 }
 
 // Declines if the duration is too short for a finite velocity.

@@ -126,7 +126,7 @@ def new_coupling(
         if joint is not None and each.velocity_count[joint] != _SINGLE_DOF:
             raise ValueError(f"joint {each.spec.links[joint].joint_name!r} is neither revolute nor prismatic")
     constant, first, second, third, fourth = coefficients
-    tie = body.world.user_constraints.new(
+    constraint = body.world.user_constraints.new(
         UserConstraintKind.COUPLING,
         body,
         follower,
@@ -136,7 +136,7 @@ def new_coupling(
         IDENTITY,
         IDENTITY,
     )
-    tie.relative_position_target, tie.polynomial = constant, (first, second, third, fourth)
-    tie.erp, tie.name = 1.0, name
-    tie.max_impulse = tie.max_force = UNBOUNDED
-    return tie
+    constraint.relative_position_target, constraint.polynomial = constant, (first, second, third, fourth)
+    constraint.erp, constraint.name = 1.0, name
+    constraint.max_impulse = constraint.max_force = UNBOUNDED
+    return constraint

@@ -13,7 +13,7 @@ from carom.vector.managers.terms import Observation, shaped
 from carom.vector.random import RandomSources
 
 if TYPE_CHECKING:
-    from carom.vector.managers.manager_env import ManagerEnv
+    from carom.vector.worlds_env import WorldsEnv
 
 
 class Observer(Attributes):
@@ -31,7 +31,7 @@ class Observer(Attributes):
         ValueError: The result of a term has a wrong shape, or there are no terms.
     """
 
-    def __init__(self, env: ManagerEnv, terms: Mapping[str, Observation]) -> None:
+    def __init__(self, env: WorldsEnv, terms: Mapping[str, Observation]) -> None:
         if not terms:
             raise ValueError("a task needs at least one observation")
         self._terms = dict(terms)
@@ -72,7 +72,7 @@ class Observer(Attributes):
         for line in self._lines.values():
             line.start(worlds, random)
 
-    def __call__(self, env: ManagerEnv) -> np.ndarray:
+    def __call__(self, env: WorldsEnv) -> np.ndarray:
         """The observations, (num_envs, size)."""
         values = []
         for name, term in self._terms.items():
@@ -95,7 +95,7 @@ class Observer(Attributes):
         self._step[:] = env.episode_steps
         return found
 
-    def _add_noise(self, env: ManagerEnv, values: list[np.ndarray]) -> None:
+    def _add_noise(self, env: WorldsEnv, values: list[np.ndarray]) -> None:
         if not self._noise.any():
             return
         noise = env.random.uniform(np.arange(env.num_envs), -1.0, 1.0, len(self._noise)) * self._noise

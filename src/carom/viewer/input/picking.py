@@ -36,7 +36,7 @@ class _Hand:
         link: Index of the link; -1 is the base.
         point: The pulled point of the link, in the link's inertial frame [m].
         target: The position of the mouse pointer, in the world [m].
-        tie: The constraint; None until it is made.
+        constraint: The constraint; None until it is made.
         moved: Whether the target has changed since the constraint was updated.
     """
 
@@ -44,7 +44,7 @@ class _Hand:
     link: int
     point: Vector3
     target: Vector3
-    tie: UserConstraint | None = None
+    constraint: UserConstraint | None = None
     moved: bool = False
 
 
@@ -78,12 +78,14 @@ class Picking:
     def release(self, page: int) -> None:
         """Ends the pull of a page."""
         hand = self._picking.pop(page, None)
-        if hand is not None and hand.tie is not None:
-            self._released.append(hand.tie)
+        if hand is not None and hand.constraint is not None:
+            self._released.append(hand.constraint)
 
     def apply(self, patience: float = _PATIENCE) -> None:
         """Makes, moves and removes the constraints; if no step ends in `patience` [s], at the next call."""
-        if not self._released and not any(hand.moved or hand.tie is None for hand in self._picking.values()):
+        if not self._released and not any(
+            hand.moved or hand.constraint is None for hand in self._picking.values()
+        ):
             return
         if not self._world_lock.acquire(timeout=patience):
             return
@@ -97,10 +99,10 @@ class Picking:
 
     def _remove_released(self) -> None:
         constraints = self._world.user_constraints
-        for tie in self._released:
+        for constraint in self._released:
             # The constraint is gone if its body has been removed in the meantime.
-            if constraints.get(tie.id) is tie:
-                self._world.untie(tie)
+            if constraints.get(constraint.id) is constraint:
+                self._world.untie(constraint)
         self._released.clear()
 
     def _carry(self, hand: _Hand) -> None:
@@ -117,10 +119,10 @@ class Picking:
     def _hold(self, hand: _Hand) -> bool:
         """Updates the constraint of a pull; false if the body or link no longer exists."""
         world = self._world
-        if hand.tie is not None:
-            if world.user_constraints.get(hand.tie.id) is not hand.tie:
+        if hand.constraint is not None:
+            if world.user_constraints.get(hand.constraint.id) is not hand.constraint:
                 return False
-            hand.tie.child_frame = Pose(hand.target, _NO_TURN)
+            hand.constraint.child_frame = Pose(hand.target, _NO_TURN)
             world.user_constraints.write(world.contact_arrays, world.arrays.state)
             if hand.moved and self._paused():
                 self._carry(hand)
@@ -135,7 +137,7 @@ class Picking:
             return True
         if not moving_links(body)[hand.link - BASE]:
             return False
-        hand.tie = world.tie(
+        hand.constraint = world.tie(
             UserConstraintKind.POINT_TO_POINT,
             body,
             hand.link,
@@ -146,8 +148,8 @@ class Picking:
             hidden=True,
         )
         mass = sum(body.dynamics(link).mass for link in range(BASE, body.joint_count))
-        hand.tie.max_force = max(_MIN_FORCE, _FORCE_BY_MASS * mass)
-        hand.tie.max_impulse = hand.tie.max_force * world.parameters.substep_time
+        hand.constraint.max_force = max(_MIN_FORCE, _FORCE_BY_MASS * mass)
+        hand.constraint.max_impulse = hand.constraint.max_force * world.parameters.substep_time
         return True
 
 

@@ -107,7 +107,7 @@ export class App {
     this.cameraToTell = false;
     /** Number of the picture that the script waits for, null if none; and of the last picture asked for. */
     this.awaited = null;
-    this.told = 0;
+    this.lastAwaited = 0;
     document.addEventListener("visibilitychange", () => this.tellVisibility());
     for (const section of document.querySelectorAll("details")) {
       section.addEventListener("toggle", () => {
@@ -204,7 +204,7 @@ export class App {
     for (const part of [this.readings, this.overlays, this.handles, this.timeline, this.player]) part.clear();
     for (const part of [this.past, this.part, this.plots]) part.clear();
     this.bodies.select(null);
-    [this.awaited, this.told] = [null, 0];
+    [this.awaited, this.lastAwaited] = [null, 0];
     this.viewpoint.begin();
     this.gamepads.begin();
     this.tellVisibility();
@@ -257,7 +257,7 @@ export class App {
     this.panel.showTime(header);
     this.overlays.time = header.time;
     if (element("bodies", HTMLDetailsElement).open) this.bodies.show();
-    if (!header.past && header.picture !== undefined && header.picture !== this.told) this.awaited = this.told = header.picture;
+    if (!header.past && header.picture !== undefined && header.picture !== this.lastAwaited) this.awaited = this.lastAwaited = header.picture;
     if (header.time > SETTLED && this.viewpoint.fitted) this.viewpoint.undecided = false;
     if (this.viewpoint.lookAtFirst()) this.cameraToTell = true;
   }

@@ -5,7 +5,7 @@ const RETRY_MS = 700;
 /** How long a socket may take to open before polling is tried [ms]. */
 const PATIENCE_MS = 4000;
 /** Maximum number of characters of the messages in one request; servers limit request lines to 8,192. */
-const MAX_TOLD = 6000;
+const MAX_QUERY = 6000;
 
 export class Connection {
   /**
@@ -17,7 +17,7 @@ export class Connection {
     this.changed = changed;
     this.folder = location.pathname.replace(/[^/]*$/, "");
     this.socket = null;
-    this.untold = null;
+    this.unsent = null;
     this.hadSocket = false;
     this.open();
   }
@@ -49,12 +49,12 @@ export class Connection {
     if (this.hadSocket || !new URLSearchParams(location.search).has("token")) return;
     const name = Math.random().toString(36).slice(2);
     let number = null;
-    this.untold = [];
+    this.unsent = [];
     /** The name under which the page polls now; null to stop. */
     this.asked = name;
     try {
       for (;;) {
-        const answer = await fetch(`${this.folder}poll${location.search}&page=${name}${this.takeUntold()}`, { cache: "no-store" });
+        const answer = await fetch(`${this.folder}poll${location.search}&page=${name}${this.takeUnsent()}`, { cache: "no-store" });
         if (!answer.ok) break;
         const buffer = await answer.arrayBuffer();
         const view = new DataView(buffer);
@@ -72,18 +72,18 @@ export class Connection {
       // A request fails when the simulation has ended or was never there.
       if (!(problem instanceof TypeError)) throw problem;
     } finally {
-      this.untold = null;
+      this.unsent = null;
     }
   }
 
   /** Takes as many waiting messages as fit into one request, as part of its query. */
-  takeUntold() {
+  takeUnsent() {
     let text = "";
-    while (this.untold.length > 0) {
-      const next = `&told=${encodeURIComponent(this.untold[0])}`;
-      if (text && text.length + next.length > MAX_TOLD) break;
+    while (this.unsent.length > 0) {
+      const next = `&told=${encodeURIComponent(this.unsent[0])}`;
+      if (text && text.length + next.length > MAX_QUERY) break;
       text += next;
-      this.untold.shift();
+      this.unsent.shift();
     }
     return text;
   }
@@ -97,7 +97,7 @@ export class Connection {
   /** @param {MessageFromPage} message */
   send(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
-    else this.untold?.push(JSON.stringify(message));
+    else this.unsent?.push(JSON.stringify(message));
   }
 }
 

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
-if TYPE_CHECKING:
-    from carom.viewer.viewer import Viewer
+
+class Pausing(Protocol):
+    """What holds steps up: the viewer.
+
+    Attributes:
+        lock: Held during each step.
+        held: Whether steps have to wait.
+    """
+
+    lock: Any
+    held: bool
+
+    def wait_for_turn(self) -> object:
+        """Wait until a step may begin."""
+        ...
 
 
 class StepLock:
@@ -14,7 +27,7 @@ class StepLock:
     So pages can pause, pull bodies and go back in time while a script calls `World.step`.
     """
 
-    def __init__(self, viewer: Viewer) -> None:
+    def __init__(self, viewer: Pausing) -> None:
         self._viewer = viewer
         self._lock: Any = viewer.lock
         self._held = False

@@ -10,8 +10,8 @@ from carom.description import Collision
 from carom.description.pose import IDENTITY
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.formats.mjcf.compiled.camera import read_camera
-from carom.formats.mjcf.compiled.compiler import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.contact import read_contact
+from carom.formats.mjcf.compiled.context import ALWAYS, NEVER
 from carom.formats.mjcf.compiled.elements import Elements, Scope
 from carom.formats.mjcf.compiled.inertia import BodyInertia, bounded, inertia_of
 from carom.formats.mjcf.compiled.joint import FREE, first_number, joint_type, read_joint

@@ -2,50 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from carom.formats.mjcf.context import CompilerOptions
+from carom.formats.mjcf.compiled.context import ALWAYS, AUTO, NEVER, CompiledContext
 from carom.formats.robot.context import shown
 from carom.formats.xml_element import Element
-
-if TYPE_CHECKING:
-    from carom.formats.mjcf.compiled.context import CompiledContext
-
-AUTO, ALWAYS, NEVER = "auto", "true", "false"
-_LAST_GROUP = 5
-
-
-@dataclass
-class Compiler(CompilerOptions):
-    """The options of `<compiler>`, with MuJoCo's defaults.
-
-    Attributes:
-        from_geoms: `auto`: bodies without `<inertial>` get their inertia from geoms; `true`: all do; `false`:
-            none does.
-        group_range: First and last group of geoms that have mass.
-        balance: Moments that no body has become their mean.
-        least_mass: Lower bound of masses of bodies [kg].
-        least_inertia: Lower bound of principal moments [kg m²].
-        total_mass: Mass to which that of all bodies is scaled [kg]; None for as it is.
-        fit_bounds: Primitive geoms are fitted to the bounds of a mesh, not to its inertia.
-        texture_directory: Prefix of the file names of textures.
-        strip_path: Only the last parts of file names count.
-        align_free: Frames of free bodies are put at their centres of mass.
-    """
-
-    degrees: bool = True
-    auto_limits: bool = True
-    from_geoms: str = AUTO
-    group_range: tuple[int, int] = (0, _LAST_GROUP)
-    balance: bool = False
-    least_mass: float = 0.0
-    least_inertia: float = 0.0
-    total_mass: float | None = None
-    fit_bounds: bool = False
-    texture_directory: str = ""
-    strip_path: bool = False
-    align_free: bool = False
 
 
 def read_compiler(context: CompiledContext, element: Element) -> None:

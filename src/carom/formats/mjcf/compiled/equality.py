@@ -14,9 +14,9 @@ from carom.formats.mjcf.compiled.elements import Scope
 from carom.formats.mjcf.compiled.model import (
     CompiledBody,
     CompiledModel,
+    FileConnection,
     FileCoupling,
     FileTendonCoupling,
-    FileTie,
 )
 from carom.formats.mjcf.compiled.names import Names, full, section_attributes
 from carom.formats.mjcf.compiled.softness import read_compliance
@@ -75,7 +75,9 @@ class EqualityReader:
                     self._read_tendons(copy, element, attributes, a, b)
                 elif what == "site":
                     one, other = self.model.sites[a], self.model.sites[b]
-                    self._add_tie(copy, element, attributes, (one.body, one.frame), (other.body, other.frame))
+                    self._add_connection(
+                        copy, element, attributes, (one.body, one.frame), (other.body, other.frame)
+                    )
                 else:
                     self._read_bodies(copy, element, attributes, a, b or _WORLD)
 
@@ -144,7 +146,7 @@ class EqualityReader:
         x, y, z = (0.0, 0.0, 0.0) if text is None else context.numbers(element, "anchor", text, 3, 3)
         if element.tag == "connect":
             on_a = Pose((x, y, z))
-            self._add_tie(scope, element, attributes, (a, on_a), (b, compose(inverse(between), on_a)))
+            self._add_connection(scope, element, attributes, (a, on_a), (b, compose(inverse(between), on_a)))
             return
         text = attributes.get("relpose")
         if text is not None:
@@ -153,9 +155,9 @@ class EqualityReader:
             if size > 0.0:
                 between = Pose((px, py, pz), (i / size, j / size, k / size, w / size))
         on_b = Pose((x, y, z))
-        self._add_tie(scope, element, attributes, (a, compose(between, on_b)), (b, on_b))
+        self._add_connection(scope, element, attributes, (a, compose(between, on_b)), (b, on_b))
 
-    def _add_tie(
+    def _add_connection(
         self,
         scope: Scope,
         element: Element,
@@ -174,7 +176,9 @@ class EqualityReader:
         linear, angular = (sum(values) for values in zip(*weights, strict=True))
         compliance = read_compliance(scope, element, attributes)
         compliance = replace(compliance, inverse_mass=linear, inverse_inertia=angular)
-        self.model.ties.append(FileTie(name, element.tag == "weld", *first, *second, enabled, compliance))
+        self.model.connections.append(
+            FileConnection(name, element.tag == "weld", *first, *second, enabled, compliance)
+        )
 
     def _name(self, scope: Scope, element: Element) -> str:
         number, name = self.model.equality_count, scope.name(element)

@@ -30,7 +30,7 @@ def switch_off(model: CompiledModel) -> None:
     if "frictionloss" in off:
         model.frictions = []
     if "equality" in off:
-        model.ties = [replace(it, enabled=False) for it in model.ties]
+        model.connections = [replace(it, enabled=False) for it in model.connections]
         model.couplings = [replace(it, enabled=False) for it in model.couplings]
         model.tendon_couplings = [replace(it, enabled=False) for it in model.tendon_couplings]
     for name, tendon in model.tendons.items():

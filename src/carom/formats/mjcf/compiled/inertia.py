@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from carom.description.eigen import principal_axes
 from carom.description.pose import IDENTITY, Pose
 from carom.description.transform import rotation_matrix
-from carom.formats.mjcf.compiled.compiler import Compiler
+from carom.formats.mjcf.compiled.context import Compiler
 from carom.formats.mjcf.compiled.shapes.solids import MassShape
 from carom.native.products import dots, turned_tensor
 

@@ -206,7 +206,7 @@ class FileCoupling:
 
 
 @dataclass(frozen=True, slots=True)
-class FileTie:
+class FileConnection:
     """A frame on a body that coincides with one on another, or, unless it is a weld, its origin.
 
     Attributes:
@@ -337,7 +337,7 @@ class CompiledModel:
         keyframes: By name.
         actuators: In the order of `ctrl`.
         couplings: Of joints, by `<equality>`.
-        ties: Of bodies, by `<equality>`.
+        connections: Of bodies, by `<equality>`.
         frictions: Of free bodies.
         equality_count: Number of all constraints in `<equality>`.
         tendons: By name; those that are not simulated have no robot.
@@ -361,7 +361,7 @@ class CompiledModel:
     keyframes: dict[str, FileKeyframe] = field(default_factory=dict)
     actuators: list[FileActuator] = field(default_factory=list)
     couplings: list[FileCoupling] = field(default_factory=list)
-    ties: list[FileTie] = field(default_factory=list)
+    connections: list[FileConnection] = field(default_factory=list)
     frictions: list[FileFriction] = field(default_factory=list)
     equality_count: int = 0
     sensors: list[SensorSpec] = field(default_factory=list)

@@ -14,15 +14,15 @@ export class Gamepads {
 
   /** Begins with a simulation that knows of no gamepads. */
   begin() {
-    this.told = "[]";
+    this.sent = "[]";
   }
 
   /** Tells what has changed; called for each picture, because browsers have no events for axes and buttons. */
   tell() {
     const gamepads = document.hidden ? [] : connected().map(state);
     const text = JSON.stringify(gamepads);
-    if (text === this.told) return;
-    this.told = text;
+    if (text === this.sent) return;
+    this.sent = text;
     this.send({ type: FromPage.GAMEPADS, gamepads });
   }
 }

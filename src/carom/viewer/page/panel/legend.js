@@ -30,8 +30,8 @@ export class Legend {
       if (row.hidden) return;
       const amount = niceScale((amounts[index] * MIN_PIXELS) / metre);
       bar.style.width = `${(amount / amounts[index]) * metre}px`;
-      const told = `${amount} ${units[index]}`;
-      if (text.textContent !== told) text.textContent = told;
+      const shown = `${amount} ${units[index]}`;
+      if (text.textContent !== shown) text.textContent = shown;
     });
   }
 }

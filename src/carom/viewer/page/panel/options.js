@@ -58,7 +58,7 @@ export class Options {
     this.shadowIntensity = 0.85;
     this.shadowResolution = 2048;
     this.shadowWorldSize = null;
-    this.told = {};
+    this.received = {};
     /** Increases when the script sets options. */
     this.version = 0;
   }
@@ -96,7 +96,7 @@ export class Options {
     this.version += 1;
     for (const [name, flag] of Object.entries(FLAG)) {
       const value = message.flags?.[flag];
-      if (value !== undefined && value !== this.told[name]) this[name] = this.told[name] = value;
+      if (value !== undefined && value !== this.received[name]) this[name] = this.received[name] = value;
     }
     this.colours = new Map((message.colours ?? []).map(([body, link, colour]) => [`${body},${link}`, colour]));
     if (message.names !== undefined) this.names = message.names;

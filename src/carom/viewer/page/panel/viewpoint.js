@@ -30,7 +30,7 @@ export class Viewpoint {
     /** Whether the page fits the scene into view, because neither script nor user has set the camera. */
     this.undecided = true;
     /** The first camera that the script has set in this run, as a text; null if it has not. */
-    this.told = null;
+    this.scripted = null;
     const presets = document.getElementById("presets");
     for (const name of Object.keys(PRESETS)) {
       const button = Object.assign(document.createElement("button"), { textContent: name });
@@ -46,7 +46,7 @@ export class Viewpoint {
   begin() {
     this.undecided = true;
     this.fitted = null;
-    this.told = null;
+    this.scripted = null;
   }
 
   /**
@@ -55,24 +55,24 @@ export class Viewpoint {
    */
   take(header) {
     const { distance, yaw, pitch, target, chosen, script } = header;
-    const first = script && this.told === null;
-    if (first) this.told = JSON.stringify([distance, yaw, pitch, target]);
+    const first = script && this.scripted === null;
+    if (first) this.scripted = JSON.stringify([distance, yaw, pitch, target]);
     if (chosen) this.undecided = false;
-    if (first && this.recall(this.told)) return true;
+    if (first && this.recall(this.scripted)) return true;
     this.camera.set(header);
     return false;
   }
 
   /** Keeps the camera that the user has moved. */
   remember() {
-    const over = this.told ?? this.memory.get("camera")?.over ?? null;
+    const over = this.scripted ?? this.memory.get("camera")?.over ?? null;
     this.memory.put("camera", { over, view: this.camera.state() });
   }
 
   /** Shows the camera that the user has moved from the script's camera, or without one; false if there is none. */
-  recall(told) {
+  recall(scripted) {
     const kept = this.memory.get("camera");
-    if (!kept || kept.over !== told) return false;
+    if (!kept || kept.over !== scripted) return false;
     this.camera.set(kept.view);
     return true;
   }

@@ -25,8 +25,8 @@ export async function encoded(history, facts, removal) {
   const tellUntil = (moment) => {
     for (; at < events.length && events[at].moment <= moment; at++) {
       const { header, payload, name } = events[at];
-      const told = header ?? removal(name);
-      records.push({ message: told, bytes: payload?.byteLength ?? 0 });
+      const message = header ?? removal(name);
+      records.push({ message, bytes: payload?.byteLength ?? 0 });
       if (payload?.byteLength) parts.push(new Uint8Array(payload));
     }
   };

@@ -24,7 +24,7 @@ const PULL = [0.95, 0.62, 0.1];
 const BOUNDS = [0.9, 0.45, 0.1];
 const MASS = [0.75, 0.1, 0.6];
 const INERTIA = [0.55, 0.2, 0.75];
-const TIE = [0.1, 0.65, 0.6];
+const CONSTRAINT = [0.1, 0.65, 0.6];
 const HIT = [0.95, 0.25, 0.15];
 const MISS = [0.2, 0.75, 0.3];
 const BEYOND = [0.6, 0.65, 0.7];
@@ -158,14 +158,14 @@ export class Overlays {
   }
 
   addConstraints() {
-    for (const tie of this.constraints) {
-      const [a, b] = [tie.parent, tie.child].map(({ body, link, position }) => {
+    for (const constraint of this.constraints) {
+      const [a, b] = [constraint.parent, constraint.child].map(({ body, link, position }) => {
         const pose = this.scene.inertialPose(body, link);
         return pose && add(pose.position, turned(pose.orientation, position));
       });
       if (!a || !b) continue;
-      this.lines.line(a, b, TIE, 2.5);
-      for (const end of [a, b]) this.lines.star(end, 0.02, TIE);
+      this.lines.line(a, b, CONSTRAINT, 2.5);
+      for (const end of [a, b]) this.lines.star(end, 0.02, CONSTRAINT);
     }
   }
 

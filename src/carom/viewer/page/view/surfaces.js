@@ -18,7 +18,7 @@ export class Surfaces {
     this.features = features;
     this.uniforms = uniforms;
     /** The programs whose uniforms are set. */
-    this.told = new Set();
+    this.programsSet = new Set();
     this.present = null;
   }
 
@@ -26,8 +26,8 @@ export class Surfaces {
   use(textured) {
     const program = this.program(textured ? ["TEXTURED", ...this.features] : this.features);
     if (program === this.present) return;
-    program.use(this.told.has(program) ? {} : this.uniforms);
-    this.told.add(program);
+    program.use(this.programsSet.has(program) ? {} : this.uniforms);
+    this.programsSet.add(program);
     this.present = program;
   }
 

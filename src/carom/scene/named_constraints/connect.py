@@ -1,4 +1,4 @@
-"""Named ties between two links, or a link and the world: connected at a point, or welded."""
+"""Named constraints between two links, or a link and the world: connected at a point, or welded."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _centre_frame(body: Body, link: int) -> Pose:
     return Pose((x, y, z), (i, j, k, w))
 
 
-def new_tie(
+def new_connection(
     name: str,
     first: tuple[Body, int, Pose],
     second: tuple[Body, int, Pose] | None,
@@ -102,7 +102,7 @@ def new_tie(
     *,
     is_weld: bool,
 ) -> UserConstraint:
-    """The constraint that ties two links, to be put into their world.
+    """The constraint between two links, to be put into their world.
 
     Args:
         name: Its name.
@@ -116,12 +116,12 @@ def new_tie(
     child, child_link, child_frame = (None, -1, fixed_frame)
     if second is not None:
         child, child_link, child_frame = second[0], second[1], _from_centre(*second)
-    tie = body.world.user_constraints.new(
+    constraint = body.world.user_constraints.new(
         kind, body, link, child, child_link, (0.0, 0.0, 0.0), _from_centre(body, link, frame), child_frame
     )
-    tie.name = name
-    tie.max_impulse = tie.max_force = UNBOUNDED
-    return tie
+    constraint.name = name
+    constraint.max_impulse = constraint.max_force = UNBOUNDED
+    return constraint
 
 
 def _from_centre(body: Body, link: int, frame: Pose) -> Pose:
@@ -129,7 +129,11 @@ def _from_centre(body: Body, link: int, frame: Pose) -> Pose:
     return compose(inverse(body.link_inertial_frame(link)), frame)
 
 
-def ties_of(world: World, bodies: Sequence[Body]) -> list[Connect]:
-    """The named ties of some bodies of a world."""
+def connections_of(world: World, bodies: Sequence[Body]) -> list[Connect]:
+    """The named connections of some bodies of a world."""
     kinds = {UserConstraintKind.FIXED: Weld, UserConstraintKind.POINT_TO_POINT: Connect}
-    return [kinds[tie.kind](tie) for tie in constraints_of(world, bodies, tuple(kinds)) if tie.name]
+    return [
+        kinds[constraint.kind](constraint)
+        for constraint in constraints_of(world, bodies, tuple(kinds))
+        if constraint.name
+    ]
