@@ -151,6 +151,7 @@ lint: $(VENV)/dev
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) tools/page/lint.py
+	$(RUN) tools/cpp_layout.py
 
 # What is done is noted in build/thorough; parts and their pieces are in tools/thorough/parts.py.
 thorough: $(VENV)/dev

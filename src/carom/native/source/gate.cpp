@@ -143,7 +143,9 @@ PyObject* read(Gate& gate, PyObject* function, Arguments arguments, intptr_t cou
 }
 
 // A lock of Python is a float: the address of its gate.
-Gate& gate_at(PyObject* lock) { return *reinterpret_cast<Gate*>(static_cast<uintptr_t>(python.PyFloat_AsDouble(lock))); }
+Gate& gate_at(PyObject* lock) {
+    return *reinterpret_cast<Gate*>(static_cast<uintptr_t>(python.PyFloat_AsDouble(lock)));
+}
 
 PyObject* truth(bool value) {
     PyObject* object = value ? python.True : python.False;
