@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from numpy.testing import assert_allclose
 
@@ -23,7 +25,7 @@ _SPINNING, _ROLLING = {"spinningFriction": 0.1}, {"rollingFriction": 0.05}
         (1, _SPINNING | _ROLLING, [0.4666015, -0.08842648, -0.00001826]),
     ],
 )
-def test_a_ball_spins_as_recorded(cone: int, dynamics: dict[str, float], expected: list[float]) -> None:
+def test_a_ball_spins_as_recorded(cone: int, dynamics: dict[str, Any], expected: list[float]) -> None:
     p.setGravity(1, -2, -9.8)
     p.setPhysicsEngineParameter(enableConeFriction=cone)
     p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
