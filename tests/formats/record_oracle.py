@@ -17,8 +17,8 @@ from typing import Any
 from load_cases import CASES, DATA, LIMITS, REFUSED, LoadCase
 from recording import is_refused, plain
 
-ANSWERS = Path(__file__).with_name("oracle.json")
-LIMITS_ANSWERS = Path(__file__).with_name("limits_oracle.json")
+ANSWERS = Path(__file__).parent / "answers" / "oracle.json"
+LIMITS_ANSWERS = Path(__file__).parent / "answers" / "limits_oracle.json"
 
 
 def ask(pybullet: Any, case: LoadCase) -> dict[str, Any]:

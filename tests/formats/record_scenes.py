@@ -17,7 +17,7 @@ from typing import Any
 from recording import is_refused
 from scene_cases import CASES, DATA, REFUSED_SDF, SceneCase, ask
 
-ANSWERS = Path(__file__).with_name("scenes_oracle.json")
+ANSWERS = Path(__file__).parent / "answers" / "scenes_oracle.json"
 
 
 def ask_anew(case: SceneCase) -> Any:

@@ -16,7 +16,7 @@ from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
 
-ANSWERS = json.loads(Path(__file__).with_name("oracle.json").read_text(encoding="utf-8"))
+ANSWERS = json.loads((Path(__file__).parent / "answers" / "oracle.json").read_text(encoding="utf-8"))
 
 
 def load(case: LoadCase) -> BodySpec:

@@ -12,7 +12,7 @@ from tests.differences import differences
 
 import pybullet as p
 
-ANSWERS = json.loads(Path(__file__).with_name("scenes_oracle.json").read_text(encoding="utf-8"))
+ANSWERS = json.loads((Path(__file__).parent / "answers" / "scenes_oracle.json").read_text(encoding="utf-8"))
 
 
 @pytest.fixture

@@ -288,7 +288,9 @@ def test_errors_name_file_line_element_and_reason(
     assert str(error) == f"{error.file}:{line}: {error.element}: {error.reason}"
 
 
-LIMITS_OF_PYBULLET = json.loads(Path(__file__).with_name("limits_oracle.json").read_text(encoding="utf-8"))
+LIMITS_OF_PYBULLET = json.loads(
+    (Path(__file__).parent / "answers" / "limits_oracle.json").read_text(encoding="utf-8")
+)
 
 
 @pytest.mark.parametrize("case", LIMITS)

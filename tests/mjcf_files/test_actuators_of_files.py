@@ -4,14 +4,14 @@ import json
 from pathlib import Path
 
 import pytest
-from driven_cases import ACTUATED, arm
 from numpy.testing import assert_allclose
+from tests.mjcf_files.cases.driven import ACTUATED, arm
 
 from carom import World, Worlds
 from carom.description.actuator import Motor
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads(Path(__file__).with_name("driven_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "driven_answers.json").read_text())
 
 
 def load(world, folder, text):

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from compiled_cases import CASES
 from numpy.testing import assert_allclose
+from tests.mjcf_files.cases.compiled import CASES
 
 from carom import World
 from carom.description.transform import rotation_matrix
 
-ANSWERS = json.loads(Path(__file__).with_name("mujoco_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "mujoco_answers.json").read_text())
 
 
 def load(world, folder, name):

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from driven_cases import TIED
 from numpy.testing import assert_allclose
+from tests.mjcf_files.cases.driven import TIED
 
 from carom import World
 from carom.description.transform import rotation_matrix
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads(Path(__file__).with_name("driven_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "driven_answers.json").read_text())
 
 
 @pytest.fixture

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from soft_cases import PAIRS, STEPS, pair_of
+from tests.mjcf_files.cases.soft import PAIRS, STEPS, pair_of
 
 from carom import World, Worlds
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads(Path(__file__).with_name("soft_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "soft_answers.json").read_text())
 # Contacts that yield here do not part for sliding, so balls roll a little farther.
 ALONG = {"pair with a margin": 0.03}
 OF_GEOMS = """<mujoco><default><geom solimp=".8 .9 .002"/></default><option timestep=".001"

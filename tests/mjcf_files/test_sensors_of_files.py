@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from sensor_cases import SENSORS
+from tests.mjcf_files.cases.sensor import SENSORS
 
 from carom import World
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads(Path(__file__).with_name("sensor_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "sensor_answers.json").read_text())
 # Those that are means over the last step, or of its forces.
 OF_STEPS = ("ACC", "FORCE", "TORQUE", "ACTUATORFRC", "ACTFRC", "ACCELEROMETER")
 

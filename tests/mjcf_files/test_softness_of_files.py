@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from soft_cases import MOVED, STEPS, WEIGHED
+from tests.mjcf_files.cases.soft import MOVED, STEPS, WEIGHED
 
 from carom import World, Worlds
 from carom.formats.mjcf.compiled.reader import compile_mjcf
@@ -16,7 +16,7 @@ from carom.model.from_files import hull_triangles
 SPRINGS = ("springdamper", "damper off")
 # MuJoCo's contacts push apart what slides; here it comes to rest at the same place on another way.
 SLIDING = ("arm on a floor", "arm on a rough floor", "arm with round cones")
-ANSWERS = json.loads(Path(__file__).with_name("soft_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "soft_answers.json").read_text())
 
 
 def test_inverse_masses_at_the_reference_are_those_of_mujoco(tmp_path):

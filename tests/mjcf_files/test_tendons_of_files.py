@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tendon_cases import SENSED, TENDONS, file, path
+from tests.mjcf_files.cases.tendon import SENSED, TENDONS, file, path
 
 from carom import World
 from carom.errors import DescriptionError
 
-ANSWERS = json.loads(Path(__file__).with_name("tendon_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "tendon_answers.json").read_text())
 JOINTS = ("j", "k", "s")
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from term_cases import MOVED, STEPS
+from tests.mjcf_files.cases.term import MOVED, STEPS
 
 from carom import World, Worlds
 from carom.description.transform import rotation_matrix
@@ -18,7 +18,7 @@ ROUGHLY = {
     "free without terms": 5e-3,
     **dict.fromkeys(SPRINGS, 1e-2),
 }
-ANSWERS = json.loads(Path(__file__).with_name("term_answers.json").read_text())
+ANSWERS = json.loads((Path(__file__).parent / "cases" / "term_answers.json").read_text())
 
 
 @pytest.fixture

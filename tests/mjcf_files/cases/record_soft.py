@@ -1,10 +1,11 @@
-"""Records what MuJoCo makes of the files in `soft_cases.py`: python record_soft.py, with mujoco 4.0."""
+"""Records what MuJoCo makes of the files in `soft.py`: python record_soft.py, with mujoco 4.0."""
 
 import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
-from soft_cases import MOVED, PAIRS, STEPS, WEIGHED
+
+from soft import MOVED, PAIRS, STEPS, WEIGHED
 
 
 def weighed(text: str) -> dict:

@@ -1,11 +1,11 @@
-"""Records what MuJoCo's sensors show in the files of `sensor_cases.py`: python record_sensors.py."""
+"""Records what MuJoCo's sensors show in the files of `sensor.py`: python record_sensors.py."""
 
 import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
-from sensor_cases import SENSORS
+from sensor import SENSORS
 
 
 def shown(text: str) -> dict:

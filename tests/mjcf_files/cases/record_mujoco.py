@@ -1,11 +1,11 @@
-"""Records what MuJoCo makes of the files in `compiled_cases.py`: python record_mujoco.py, with mujoco 4.0."""
+"""Records what MuJoCo makes of the files in `compiled.py`: python record_mujoco.py, with mujoco 4.0."""
 
 import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
-from compiled_cases import CASES
+from compiled import CASES
 
 
 def answer(text: str) -> dict:

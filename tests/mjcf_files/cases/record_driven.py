@@ -1,11 +1,11 @@
-"""Records what MuJoCo makes of the files in `driven_cases.py`: python record_driven.py, with mujoco 4.0."""
+"""Records what MuJoCo makes of the files in `driven.py`: python record_driven.py, with mujoco 4.0."""
 
 import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
-from driven_cases import ACTUATED, TIED
+from driven import ACTUATED, TIED
 
 
 def names(m):

@@ -1,11 +1,11 @@
-"""Records what MuJoCo makes of the files in `tendon_cases.py`: python record_tendons.py, with mujoco 4.0."""
+"""Records what MuJoCo makes of the files in `tendon.py`: python record_tendons.py, with mujoco 4.0."""
 
 import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
 import numpy as np
-from tendon_cases import TENDONS
+from tendon import TENDONS
 
 STATES = 4
 

@@ -1,10 +1,10 @@
-"""Records what MuJoCo makes of the files in `term_cases.py`: python record_terms.py, with mujoco 4.0."""
+"""Records what MuJoCo makes of the files in `term.py`: python record_terms.py, with mujoco 4.0."""
 
 import json
 from pathlib import Path
 
 import mujoco  # pyright: ignore[reportMissingImports]
-from term_cases import MOVED, STEPS
+from term import MOVED, STEPS
 
 
 def moved(text: str) -> list:
