@@ -10,12 +10,12 @@ in registers; for normals and friction, since compilers have to know the width o
 
 from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
 from carom.kernels.solver.rigid_manifolds import (
-    bounded_friction,
     bounded_normals,
     friction_alone,
     friction_residual,
     normal_residual,
     normals_alone,
+    relaxed_friction,
 )
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Index4, Int32, func, real
@@ -47,7 +47,7 @@ def relax_articulated_normals(
                 place[2 * side + 1],
             )  # fmt: skip
     pair_rows.manifold_block[world, manifold_block].normal_wanted = wanted
-    change = bounded_normals(pair_rows, world, manifold_block)
+    change = bounded_normals(pair_rows.manifold_block, world, manifold_block)
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[2] + 4 * place[1] * side
@@ -79,7 +79,7 @@ def relax_articulated_friction(
                 place[2 * side + 1],
             )  # fmt: skip
     pair_rows.manifold_block[world, manifold_block].friction_wanted = wanted
-    change = bounded_friction(settings, pair_rows, world, manifold_block)
+    change = relaxed_friction(settings, pair_rows, world, manifold_block)
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[3] + 8 * place[1] * side
