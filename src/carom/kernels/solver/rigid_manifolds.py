@@ -5,8 +5,8 @@ Delassus matrix. So the velocities of all rows are computed at once, then the im
 delta velocities of the trees are updated once per block. These are the same Gauss-Seidel steps as with
 single rows, with fewer reads and writes of memory.
 
-Entries beyond the last contact of a manifold block have effective mass 0, and nothing changes them. This module is for rigid bodies;
-`articulated_manifolds` does the same for articulated bodies.
+Entries beyond the last contact of a manifold block have effective mass 0, and nothing changes them. This
+module is for rigid bodies; `articulated_manifolds` does the same for articulated bodies.
 """
 
 from typing import Any
