@@ -22,6 +22,14 @@ _LEAST = real(1e-15)
 
 
 @func
+def raised(base: real, power: real) -> real:
+    """A number >= 0 to a power, most often 2, which files have unless they say otherwise."""
+    if power == 2.0:
+        return base * base
+    return wp.pow(base, power)
+
+
+@func
 def impedance_at(reference: Vector4, impedance: Vector4, size: real) -> real:
     """Impedance of a constraint whose error has this size."""
     first = within_bounds(impedance[0], _MIN_IMPEDANCE, _MAX_IMPEDANCE)
@@ -35,9 +43,9 @@ def impedance_at(reference: Vector4, impedance: Vector4, size: real) -> real:
     midpoint, power = within_bounds(reference[2], _MIN_IMPEDANCE, _MAX_IMPEDANCE), reference[3]
     if power > 1.0:
         if x <= midpoint:
-            y = midpoint * wp.pow(x / midpoint, power)
+            y = midpoint * raised(x / midpoint, power)
         else:
-            y = 1.0 - (1.0 - midpoint) * wp.pow((1.0 - x) / (1.0 - midpoint), power)
+            y = 1.0 - (1.0 - midpoint) * raised((1.0 - x) / (1.0 - midpoint), power)
     return first + y * (last - first)
 
 
@@ -68,7 +76,8 @@ def spring_and_damper(settings: Settings, reference: Vector4, impedance: Vector4
     if reference[0] > 0.0:
         time_constant = maximum(reference[0], 2.0 * settings.time_step)
         damping = 2.0 / (last * time_constant)
-        stiffness = 1.0 / maximum(_LEAST, wp.pow(last * time_constant * reference[1], real(2.0)))
+        frequency = last * time_constant * reference[1]
+        stiffness = 1.0 / maximum(_LEAST, frequency * frequency)
     return stiffness, damping
 
 

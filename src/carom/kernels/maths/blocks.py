@@ -8,12 +8,13 @@ not to vectorise across blocks, which would need shuffles.
 
 import warp as wp
 
-from carom.kernels.types import Int32, Vector4, Vector4Rows, Vector8, real
+from carom.kernels.types import Int32, Vector3, Vector4, Vector4Rows, Vector8, real
 
 __all__ = [
     "add_combination4",
     "add_combination8",
     "add_multiple",
+    "add_multiples",
     "combine4",
     "combine8",
     "dot_product",
@@ -56,6 +57,31 @@ def add_multiple(
     const auto* x = &wp::index(a, world, start_a);
     auto* y = &wp::index(b, world, start_b);
     #pragma clang loop vectorize(disable)
+    for (int i = 0; i < count; ++i) {
+        const auto own = x[i];
+        y[i] = wp::add(y[i], wp::mul(factors[0], own));
+        y[i + distance] = wp::add(y[i + distance], wp::mul(factors[1], own));
+        y[i + 2 * distance] = wp::add(y[i + 2 * distance], wp::mul(factors[2], own));
+    }
+""")
+def add_multiples(
+    b: Vector4Rows,
+    start_b: Int32,
+    distance: Int32,
+    factors: Vector3,
+    a: Vector4Rows,
+    start_a: Int32,
+    world: Int32,
+    count: Int32,
+):
+    """As `add_multiple`, to three runs of `b` that begin `distance` blocks apart, each with its factor."""
+    ...
+
+
+@wp.func_native("""
+    const auto* x = &wp::index(a, world, start_a);
+    auto* y = &wp::index(b, world, start_b);
+    #pragma clang loop vectorize(disable)
     for (int i = 0; i < count; ++i)
         y[i] = wp::mul(factor, x[i]);
 """)
@@ -81,23 +107,26 @@ def fill_zero(a: Vector4Rows, start: Int32, world: Int32, count: Int32):
     const auto* x = &wp::index(a, world, start_a);
     const auto* y = &wp::index(b, world, start_b);
     auto s0 = wp::mul(y[0][0], x[0]);
-    auto s1 = wp::mul(y[0][1], x[1]);
-    auto s2 = wp::mul(y[0][2], x[2]);
-    auto s3 = wp::mul(y[0][3], x[3]);
+    auto s1 = wp::mul(y[0][1], x[width]);
+    auto s2 = wp::mul(y[0][2], x[2 * width]);
+    auto s3 = wp::mul(y[0][3], x[3 * width]);
     #pragma clang loop vectorize(disable)
     for (int i = 1; i < count; ++i) {
-        x += 4;
+        x += 4 * width;
         s0 = wp::add(s0, wp::mul(y[i][0], x[0]));
-        s1 = wp::add(s1, wp::mul(y[i][1], x[1]));
-        s2 = wp::add(s2, wp::mul(y[i][2], x[2]));
-        s3 = wp::add(s3, wp::mul(y[i][3], x[3]));
+        s1 = wp::add(s1, wp::mul(y[i][1], x[width]));
+        s2 = wp::add(s2, wp::mul(y[i][2], x[2 * width]));
+        s3 = wp::add(s3, wp::mul(y[i][3], x[3 * width]));
     }
     return wp::add(wp::add(s0, s1), wp::add(s2, s3));
 """)
 def combine4(
-    a: Vector4Rows, start_a: Int32, b: Vector4Rows, start_b: Int32, world: Int32, count: Int32
+    a: Vector4Rows, start_a: Int32, width: Int32, b: Vector4Rows, start_b: Int32, world: Int32, count: Int32
 ) -> Vector4:
-    """Linear combination of vectors of `a`, with the entries of `count` blocks (at least 1) of `b`."""
+    """Linear combination of vectors of `a`, with the entries of `count` blocks (at least 1) of `b`.
+
+    The vectors are the first of every `width` blocks.
+    """
     ...
 
 
@@ -143,7 +172,7 @@ def combine8(
         y[i] = wp::add(y[i], wp::add(
             wp::add(wp::mul(factors[0], x[0]), wp::mul(factors[1], x[1])),
             wp::add(wp::mul(factors[2], x[2]), wp::mul(factors[3], x[3]))));
-        x += 4;
+        x += 4 * width;
     }
 """)
 def add_combination4(
@@ -152,10 +181,11 @@ def add_combination4(
     factors: Vector4,
     a: Vector4Rows,
     start_a: Int32,
+    width: Int32,
     world: Int32,
     count: Int32,
 ):
-    """Add to each of `count` blocks of `b` the next four blocks of `a`, each times its factor."""
+    """Add to each of `count` blocks of `b` the first four of the next 4 `width` of `a`, times its factors."""
     ...
 
 

@@ -1,11 +1,13 @@
 """Writing the rows of manifold blocks of articulated bodies; see `articulated_manifolds`."""
 
-from carom.kernels.maths.blocks import combine4, combine8, fill_zero
+import warp as wp
+
+from carom.kernels.maths.blocks import add_multiples, combine4, combine8, dot_product, fill_zero
 from carom.kernels.solver.articulated_manifolds import VECTORS_PER_BLOCK, matrix_parts
-from carom.kernels.solver.pair_rows import write_jacobians
-from carom.kernels.solver.rigid_manifold_rows import row_direction, write_row_numbers
+from carom.kernels.solver.pair_rows import tree_blocks
+from carom.kernels.solver.rigid_manifold_rows import write_row_numbers
 from carom.kernels.structs import ContactTerms, Model, PairRows, Scratch, Settings, Shapes, State
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Index4, Int32, Vector3, func, real
 
 
 @func
@@ -60,7 +62,7 @@ def write_normal_delassus(
     for side in range(2):
         if place[2 * side + 1] > 0:
             lowered += combine4(
-                pair_rows.matrix_block, part[0] + 4 * place[1] * side, pair_rows.jacobian_response,
+                pair_rows.matrix_block, part[0] + 4 * place[1] * side, 1, pair_rows.jacobian_response,
                 start + place[1] * side, world, place[2 * side + 1],
             )  # fmt: skip
     for i in range(4):
@@ -90,6 +92,76 @@ def write_friction_delassus(
 
 
 @func
+def write_contact_jacobians(
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    terms: ContactTerms,
+    world: Int32,
+    start: Int32,
+    distance: Int32,
+):
+    """Write the Jacobians of a contact's three rows and their responses, as `pair_rows.write_jacobians`.
+
+    They are stored from block `start` on, each `distance` blocks after the one before.
+
+    Returns:
+        Inverse masses and relative velocities of the rows.
+    """
+    inverse_mass = Vector3(0.0, 0.0, 0.0)
+    velocity = Vector3(0.0, 0.0, 0.0)
+    side = Int32(0)
+    while side < 2:
+        point = terms.point_a
+        sign = real(1.0)
+        if side == 1:
+            point = terms.point_b
+            sign = real(-1.0)
+            start += tree_blocks(model, terms.ends[0])
+        tree = terms.ends[2 * side]
+        blocks = tree_blocks(model, tree)
+        if blocks > 0:
+            for row in range(3):
+                fill_zero(pair_rows.jacobian_row, start + row * distance, world, blocks)
+                fill_zero(pair_rows.jacobian_response, start + row * distance, world, blocks)
+            arm = point - wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+            normal, lateral1, lateral2 = sign * terms.normal, sign * terms.lateral1, sign * terms.lateral2
+            moment0 = wp.cross(arm, normal) + 0.0 * normal
+            moment1 = wp.cross(arm, lateral1) + 0.0 * lateral1
+            moment2 = wp.cross(arm, lateral2) + 0.0 * lateral2
+            first = model.tree[tree].first_dof
+            matrix = model.tree[tree].first_block
+            own_velocity = Vector3(0.0, 0.0, 0.0)
+            dof = model.link[terms.ends[2 * side + 1]].nearest_dof
+            while dof >= 0:
+                linear = scratch.dof[world, dof].linear
+                angular = scratch.dof[world, dof].angular
+                shares = Vector3(
+                    wp.dot(linear, normal) + wp.dot(angular, moment0),
+                    wp.dot(linear, lateral1) + wp.dot(angular, moment1),
+                    wp.dot(linear, lateral2) + wp.dot(angular, moment2),
+                )
+                own_velocity += shares * state.dof_velocity[world, dof]
+                for row in range(3):
+                    entry = 4 * (start + row * distance) + dof - first
+                    pair_rows.entry_row[world, entry] = shares[row]
+                add_multiples(
+                    pair_rows.jacobian_response, start, distance, shares, scratch.block_inverse_mass,
+                    matrix + (dof - first) * blocks, world, blocks,
+                )  # fmt: skip
+                dof = model.dof[dof].parent
+            velocity += own_velocity
+            for row in range(3):
+                inverse_mass[row] += dot_product(
+                    pair_rows.jacobian_row, start + row * distance, pair_rows.jacobian_response,
+                    start + row * distance, world, blocks,
+                )  # fmt: skip
+        side += 1
+    return inverse_mass, velocity
+
+
+@func
 def write_articulated_contact(
     settings: Settings,
     model: Model,
@@ -106,16 +178,16 @@ def write_articulated_contact(
     """Write the three rows of a contact; blocks from `start` on, for rows over two trees, are workspace."""
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
+    distance = place[1] + place[3]
+    inverse_masses, velocities = write_contact_jacobians(
+        model, state, scratch, pair_rows, terms, world, start, distance
+    )
     row = Int32(0)
     while row < 3:
-        direction = row_direction(terms, row)
-        inverse_mass, velocity = write_jacobians(
-            model, state, scratch, pair_rows, world, terms.ends, terms.point_a, terms.point_b, direction,
-            0.0 * direction, start,
-        )  # fmt: skip
         mass = write_row_numbers(
-            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, velocity, inverse_mass
-        )
+            settings, shapes, pair_rows, terms, world, manifold_block, contact, row, velocities[row],
+            inverse_masses[row],
+        )  # fmt: skip
         line = 2 * contact + row - 1
         for side in range(2):
             # The parts of body b come after those of body a.
@@ -130,4 +202,5 @@ def write_articulated_contact(
             write_normal_delassus(pair_rows, world, manifold_block, contact, mass, start)
         else:
             write_friction_delassus(pair_rows, world, manifold_block, line, mass, start)
+        start += distance
         row += 1

@@ -10,15 +10,15 @@ in registers; for normals and friction, since compilers have to know the width o
 
 from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
 from carom.kernels.solver.rigid_manifolds import (
-    bounded_friction,
     bounded_normals,
     friction_alone,
     friction_residual,
     normal_residual,
     normals_alone,
+    relaxed_friction,
 )
 from carom.kernels.structs import PairRows, Scratch, Settings
-from carom.kernels.types import Index4, Int32, func, real
+from carom.kernels.types import Index4, Int32, Vector4, Vector8, func, real
 
 # Number of vectors, in all matrices of an articulated manifold block, per block of dofs of its trees.
 VECTORS_PER_BLOCK = 24
@@ -43,16 +43,16 @@ def relax_articulated_normals(
         if place[2 * side + 1] > 0:
             start = part[0] + 4 * place[1] * side
             wanted -= combine4(
-                pair_rows.matrix_block, start, scratch.delta_velocity, place[2 * side], world,
+                pair_rows.matrix_block, start, 1, scratch.delta_velocity, place[2 * side], world,
                 place[2 * side + 1],
             )  # fmt: skip
     pair_rows.manifold_block[world, manifold_block].normal_wanted = wanted
-    change = bounded_normals(pair_rows, world, manifold_block)
+    change = bounded_normals(pair_rows.manifold_block, world, manifold_block)
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[2] + 4 * place[1] * side
             add_combination4(
-                scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
+                scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, 1, world,
                 place[2 * side + 1],
             )  # fmt: skip
     return normal_residual(pair_rows, world, manifold_block, change, before)
@@ -71,20 +71,38 @@ def relax_articulated_friction(
     place = pair_rows.manifold_block[world, manifold_block].place
     part = matrix_parts(pair_rows.manifold_block[world, manifold_block].matrices, place)
     wanted = friction_alone(pair_rows, world, manifold_block)
+    # Two contacts have the first half of each vector.
+    halves = Int32(pair_rows.manifold_block[world, manifold_block].count <= 2)
+    first = Vector4(wanted[0], wanted[1], wanted[2], wanted[3])
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[1] + 8 * place[1] * side
-            wanted -= combine8(
-                pair_rows.matrix_block, start, scratch.delta_velocity, place[2 * side], world,
-                place[2 * side + 1],
-            )  # fmt: skip
+            if halves == 1:
+                first -= combine4(
+                    pair_rows.matrix_block, start, 2, scratch.delta_velocity, place[2 * side], world,
+                    place[2 * side + 1],
+                )  # fmt: skip
+            else:
+                wanted -= combine8(
+                    pair_rows.matrix_block, start, scratch.delta_velocity, place[2 * side], world,
+                    place[2 * side + 1],
+                )  # fmt: skip
+    if halves == 1:
+        wanted = Vector8(first[0], first[1], first[2], first[3], wanted[4], wanted[5], wanted[6], wanted[7])
     pair_rows.manifold_block[world, manifold_block].friction_wanted = wanted
-    change = bounded_friction(settings, pair_rows, world, manifold_block)
+    change = relaxed_friction(settings, pair_rows, world, manifold_block)
     for side in range(2):
         if place[2 * side + 1] > 0:
             start = part[3] + 8 * place[1] * side
-            add_combination8(
-                scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
-                place[2 * side + 1],
-            )  # fmt: skip
+            if halves == 1:
+                add_combination4(
+                    scratch.delta_velocity, place[2 * side],
+                    Vector4(change[0], change[1], change[2], change[3]), pair_rows.matrix_block, start, 2,
+                    world, place[2 * side + 1],
+                )  # fmt: skip
+            else:
+                add_combination8(
+                    scratch.delta_velocity, place[2 * side], change, pair_rows.matrix_block, start, world,
+                    place[2 * side + 1],
+                )  # fmt: skip
     return friction_residual(settings, pair_rows, world, manifold_block, change, before)

@@ -6,6 +6,7 @@ from carom.kernels.solver.articulated_manifold_rows import clear_matrices, write
 from carom.kernels.solver.contact_terms import keep_contact_impulse
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.rigid_manifold_rows import write_rigid_rows
+from carom.kernels.solver.rigid_manifolds import ManifoldBlocks
 from carom.kernels.solver.warm_starting import SOLVED, SOLVED_AND_HOLDS, holds
 from carom.kernels.structs import (
     Contacts,
@@ -21,7 +22,6 @@ from carom.kernels.warp_types import warp_type
 from carom.layouts import contacts as layouts
 from carom.layouts.types import Rows
 
-ManifoldBlocks = warp_type(Rows[layouts.ManifoldBlock])
 ManifoldSides = warp_type(Rows[layouts.ManifoldSide])
 
 

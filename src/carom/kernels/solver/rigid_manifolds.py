@@ -5,8 +5,8 @@ Delassus matrix. So the velocities of all rows are computed at once, then the im
 delta velocities of the trees are updated once per block. These are the same Gauss-Seidel steps as with
 single rows, with fewer reads and writes of memory.
 
-Entries beyond the last contact of a manifold block have effective mass 0. This module is for rigid bodies;
-`articulated_manifolds` does the same for articulated bodies.
+Entries beyond the last contact of a manifold block have effective mass 0, and nothing changes them. This
+module is for rigid bodies; `articulated_manifolds` does the same for articulated bodies.
 """
 
 from typing import Any
@@ -14,10 +14,15 @@ from typing import Any
 import warp as wp
 
 from carom.kernels.maths.equal_steps import equal_steps
-from carom.kernels.maths.min_max import INDEFINITE, later_maximum, maximum, within_bounds
+from carom.kernels.maths.min_max import INDEFINITE, later_maximum, maximum
 from carom.kernels.structs import PairRows, Scratch, Settings
-from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real, shared_func
+from carom.kernels.types import Int32, Matrix48, Vector4, Vector8, func, real
+from carom.kernels.warp_types import warp_type
+from carom.layouts import contacts as layouts
 from carom.layouts.codes import ISOTROPIC
+from carom.layouts.types import Rows
+
+ManifoldBlocks = warp_type(Rows[layouts.ManifoldBlock])
 
 
 @func
@@ -96,20 +101,31 @@ def friction_alone(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> 
     return pair_rows.manifold_block[world, manifold_block].friction_share - wp.cw_mul(softness, impulse)
 
 
-@func
-def bounded_normals(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector4:
-    """Update the normal impulses of a block by the wanted changes, clamped to >= 0; returns the changes."""
-    before = pair_rows.manifold_block[world, manifold_block].normal_impulse
-    wanted = pair_rows.manifold_block[world, manifold_block].normal_wanted
-    delassus = pair_rows.manifold_block[world, manifold_block].normal_delassus
-    change = Vector4(0.0, 0.0, 0.0, 0.0)
-    for i in range(4):
-        change[i] = wanted[i]
-        if change[i] < -before[i]:
-            change[i] = -before[i]
-        wanted -= change[i] * delassus[i]
-    pair_rows.manifold_block[world, manifold_block].normal_impulse = before + change
-    return change
+@wp.func_native("""
+    auto& own = wp::index(rows, world, row);
+    wp::float64 wanted[4];
+    for (int i = 0; i < 4; ++i)
+        wanted[i] = own.normal_wanted[i];
+    wp::vec_t<4, wp::float64> change;
+    #pragma clang loop unroll(full)
+    for (int i = 0; i < 4; ++i) {
+        if (i == own.count)
+            break;
+        const auto least = -own.normal_impulse[i];
+        change[i] = wanted[i] < least ? least : wanted[i];
+        for (int other = i + 1; other < 4; ++other)
+            wanted[other] -= change[i] * own.normal_delassus.data[i][other];
+    }
+    own.normal_impulse = wp::add(own.normal_impulse, change);
+    return change;
+""")
+def bounded_normals(rows: ManifoldBlocks, world: Int32, row: Int32) -> Vector4:
+    """Update the normal impulses of a block by the wanted changes, clamped to >= 0; returns the changes.
+
+    Each contact waits for those before it. So only the rows after a contact are told of its change, one by
+    one, which takes less time than to put vectors together.
+    """
+    ...
 
 
 @func
@@ -140,58 +156,83 @@ def normal_residual(
     return residual_of_block(pair_rows, world, manifold_block, velocity, stuck, before)
 
 
-@shared_func
-def scale_to_circle(square: real, bound: real) -> real:
-    """Factor that scales impulses of squared length `square` to the circle of radius `bound`.
+@func
+def steps_of_contacts(pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
+    """Factors of `equal_steps` for the friction rows of a block."""
+    inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass
+    steps = Vector8(0.0)
+    for i in range(4):
+        inverse1, inverse2 = inverse_mass[2 * i], inverse_mass[2 * i + 1]
+        lowered = pair_rows.manifold_block[world, manifold_block].friction_delassus[2 * i, 2 * i + 1]
+        both = equal_steps(inverse1, inverse2, lowered * inverse2)
+        steps[2 * i] = both[0]
+        steps[2 * i + 1] = both[1]
+    return steps
 
-    It is not inlined, so that square root and quotient are not computed for impulses within the circle, as
-    most are.
+
+@wp.func_native("""
+    auto& own = wp::index(rows, world, row);
+    const auto& lowered = own.friction_delassus.data;
+    wp::float64 wanted[8];
+    for (int i = 0; i < 8; ++i)
+        wanted[i] = own.friction_wanted[i];
+    wp::vec_t<8, wp::float64> change;
+    #pragma clang loop unroll(full)
+    for (int contact = 0; contact < 4; ++contact) {
+        if (contact == own.count)
+            break;
+        const int i = 2 * contact, j = i + 1;
+        const auto before1 = own.friction_impulse[i], before2 = own.friction_impulse[j];
+        const auto bound = own.friction[contact] * own.normal_impulse[contact];
+        auto change1 = wanted[i], change2 = wanted[j];
+        if (equal != 0) {
+            change1 *= steps[i];
+            change2 *= steps[j];
+        }
+        const auto first = before1 + change1;
+        auto second = before2 + change2;
+        if (cone != 0) {
+            const auto square = first * first + second * second;
+            if (square > bound * bound) {
+                const auto scale = bound == 0.0 ? 0.0 : bound / wp::sqrt(square);
+                change1 = first * scale - before1;
+                change2 = second * scale - before2;
+            }
+        } else if (bound > 0.0) {
+            change1 = (first < -bound ? -bound : first > bound ? bound : first) - before1;
+            second -= change1 * lowered[i][j];
+            change2 = (second < -bound ? -bound : second > bound ? bound : second) - before2;
+        } else {
+            change1 = change2 = 0.0;
+        }
+        change[i] = change1;
+        change[j] = change2;
+        for (int other = j + 1; other < 8; ++other)
+            wanted[other] -= change1 * lowered[i][other] + change2 * lowered[j][other];
+    }
+    own.friction_impulse = wp::add(own.friction_impulse, change);
+    return change;
+""")
+def bounded_friction(
+    rows: ManifoldBlocks, world: Int32, row: Int32, cone: Int32, equal: Int32, steps: Vector8
+) -> Vector8:
+    """Update the friction impulses of a block, within bounds by the normal impulses; returns the changes.
+
+    If `equal` is not 0, the wanted changes of each contact are multiplied by its `steps`.
     """
-    return 0.0 if bound == 0.0 else bound / wp.sqrt(square)
+    ...
 
 
 @func
-def bounded_friction(settings: Settings, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
-    """Update the friction impulses of a block, within bounds by the normal impulses; returns the changes."""
-    wanted = pair_rows.manifold_block[world, manifold_block].friction_wanted
-    before = pair_rows.manifold_block[world, manifold_block].friction_impulse
-    bounds = wp.cw_mul(
-        pair_rows.manifold_block[world, manifold_block].friction,
-        pair_rows.manifold_block[world, manifold_block].normal_impulse,
+def relaxed_friction(settings: Settings, pair_rows: PairRows, world: Int32, manifold_block: Int32) -> Vector8:
+    """As `bounded_friction`, bounded as the settings say."""
+    equal, steps = Int32(0), Vector8(1.0)
+    if settings.cone_friction == ISOTROPIC:
+        equal = Int32(1)
+        steps = steps_of_contacts(pair_rows, world, manifold_block)
+    return bounded_friction(
+        pair_rows.manifold_block, world, manifold_block, settings.cone_friction, equal, steps
     )
-    delassus = pair_rows.manifold_block[world, manifold_block].friction_delassus
-    change = Vector8(0.0)
-    for i in range(4):
-        bound = bounds[i]
-        first = before[2 * i] + wanted[2 * i]
-        second = before[2 * i + 1] + wanted[2 * i + 1]
-        change1 = wanted[2 * i]
-        change2 = wanted[2 * i + 1]
-        if settings.cone_friction == ISOTROPIC:
-            inverse1 = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[2 * i]
-            inverse2 = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[2 * i + 1]
-            steps = equal_steps(inverse1, inverse2, delassus[2 * i, 2 * i + 1] * inverse2)
-            change1 *= steps[0]
-            change2 *= steps[1]
-            first = before[2 * i] + change1
-            second = before[2 * i + 1] + change2
-        if settings.cone_friction != 0:
-            square = first * first + second * second
-            if square > bound * bound:
-                scale = scale_to_circle(square, bound)
-                change1 = first * scale - before[2 * i]
-                change2 = second * scale - before[2 * i + 1]
-        elif bound > 0.0:
-            change1 = within_bounds(first, -bound, bound) - before[2 * i]
-            second -= change1 * delassus[2 * i, 2 * i + 1]
-            change2 = within_bounds(second, -bound, bound) - before[2 * i + 1]
-        else:
-            change1, change2 = real(0.0), real(0.0)
-        change[2 * i] = change1
-        change[2 * i + 1] = change2
-        wanted -= change1 * delassus[2 * i] + change2 * delassus[2 * i + 1]
-    pair_rows.manifold_block[world, manifold_block].friction_impulse = before + change
-    return change
 
 
 @func
@@ -244,7 +285,7 @@ def relax_rigid_normals(
             weighted = pair_rows.side[world, 2 * manifold_block + body].normal_weighted
             moved = combination(weighted, body_change(scratch, world, place[2 * body]))
             pair_rows.manifold_block[world, manifold_block].normal_wanted -= moved
-    change = bounded_normals(pair_rows, world, manifold_block)
+    change = bounded_normals(pair_rows.manifold_block, world, manifold_block)
     for body in range(2):
         if place[2 * body + 1] > 0:
             response = pair_rows.side[world, 2 * manifold_block + body].normal_response
@@ -271,7 +312,7 @@ def relax_rigid_friction(
             weighted = pair_rows.side[world, 2 * manifold_block + body].friction_weighted
             moved = combination(weighted, body_change(scratch, world, place[2 * body]))
             pair_rows.manifold_block[world, manifold_block].friction_wanted -= moved
-    change = bounded_friction(settings, pair_rows, world, manifold_block)
+    change = relaxed_friction(settings, pair_rows, world, manifold_block)
     for body in range(2):
         if place[2 * body + 1] > 0:
             response = pair_rows.side[world, 2 * manifold_block + body].friction_response
