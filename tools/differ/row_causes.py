@@ -85,16 +85,6 @@ def drives_before_restoring(seen: Seen) -> bool:
     return False
 
 
-def changes_the_breaking_distance(seen: Seen) -> bool:
-    """Whether `contactBreakingThreshold` was set after bounds of bodies may have met."""
-    met = False
-    for call in seen.before:
-        if met and call["f"] == "setPhysicsEngineParameter" and "contactBreakingThreshold" in call["k"]:
-            return True
-        met |= call["f"] in ("stepSimulation", "performCollisionDetection")
-    return False
-
-
 def leaves_inertia_to_mjcf(seen: Seen) -> bool:
     """Whether a file of MJCF that states no inertia was loaded with the flag that takes it from there."""
     return any(
