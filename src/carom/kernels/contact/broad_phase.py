@@ -42,7 +42,8 @@ def nearness_to_plane(
 ) -> Int32:
     """The nearness of a plane and a shape: they meet if the shape reaches below it or into its margin.
 
-    `breaking` is the breaking distance of their manifold [m]. The bounds of a new shape overlap those of the plane in any case; new are all but the first `known` ones.
+    `breaking` is the breaking distance of their manifold [m]. The bounds of a new shape overlap those of the
+    plane in any case; new are all but the first `known` ones.
     """
     normal = pairs.shape_frame[world, plane] * shapes.shape_size[plane]
     along = wp.abs(normal)

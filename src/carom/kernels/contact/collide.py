@@ -150,7 +150,8 @@ def add_manifold(
 ) -> Int32:
     """Write the contacts of a pair from its candidates; contacts beyond the capacity are only counted.
 
-    `far` is the breaking distance of its manifold [m], `found` and `count` are the results of `find_candidates`, [first, last) the previous contacts of the pair,
+    `far` is the breaking distance of its manifold [m], `found` and `count` are the results of
+    `find_candidates`, [first, last) the previous contacts of the pair,
     and `wanted` is the number of contacts of the earlier pairs. Returns the number with those of this pair.
     """
     sides = in_order_of_sides(shapes, pair)

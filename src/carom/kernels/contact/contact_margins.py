@@ -1,8 +1,8 @@
 """Contact margins: the maximum distance of two shapes in contact, as in Bullet.
 
-A contact ends when its points are further apart than the *breaking distance* of its manifold. This is the smaller
-one of the two shapes when the manifold is made, and stays as it is.
-Most pairs of shapes also begin a contact at this distance, so that it can slow them in time.
+A contact ends when its points are further apart than the *breaking distance* of its manifold. This
+is the smaller one of the two shapes when the manifold is made, and stays as it is. Most pairs of shapes
+also begin a contact at this distance, so that it can slow them in time.
 """
 
 import warp as wp

@@ -33,7 +33,7 @@ AT_ONCE = wp.constant(-1)
 
 @func
 def gathers_nothing(kind_a: Int32, kind_b: Int32) -> bool:
-    """Whether manifolds of two kinds of shapes gather no points: of two spheres, and of what has triangles."""
+    """Whether manifolds of these kinds of shapes gather no points: of two spheres, or with triangles."""
     return (kind_a == SPHERE and kind_b == SPHERE) or kind_a >= TRIANGLES or kind_b >= TRIANGLES
 
 

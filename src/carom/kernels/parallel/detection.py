@@ -133,6 +133,7 @@ def world_contacts_kernel(
         else:
             wanted = add_manifold(
                 shapes, state, contacts, pairs_with_candidates(pairs, pair_work, i), world, pair,
-                pairs.pair_breaking[world, i], result.new_points, result.candidates, result.first, result.end, wanted,
+                pairs.pair_breaking[world, i], result.new_points, result.candidates, result.first, result.end,
+                wanted,
             )  # fmt: skip
     accept_contacts(state, contacts, world, wanted)
