@@ -32,8 +32,8 @@ def kept_rows(contacts: ArrayTable, lost: Sequence[int], world: int = 0) -> Rows
     # Most bodies touch nothing: then only row numbers can change.
     changed = ("contact_shapes", "contact_warm_start") if stays.all() else fields
     rows = {name: fields[name][:there][stays] for name in changed}
-    overlaps = (numpy[name][world, : counts[OVERLAPS]] for name in _OVERLAPS)
-    rows.update(zip(_OVERLAPS, without_overlaps(*overlaps, lost), strict=True))
+    pairs, places, manifolds, breaking = (numpy[name][world, : counts[OVERLAPS]] for name in _OVERLAPS)
+    rows.update(zip(_OVERLAPS, without_overlaps(pairs, places, manifolds, breaking, lost), strict=True))
     return rows
 
 
