@@ -101,6 +101,10 @@ def height_field(heights, spacing=(1.0, 1.0), **options):
     return Shape(ShapeKind.HEIGHTFIELD, (0, 0, 0), polyhedron=grid, columns=columns, static=True, **options)
 
 
+NEAR = 0.04
+"""Gap between bounds up to which they overlap, where nobody has set `contactBreakingThreshold` [m]."""
+
+
 class Scene:
     """A world of shapes, each its own link and tree."""
 
@@ -122,6 +126,7 @@ class Scene:
         self.grow_scratch(count, pair_room)
         self.settings = Settings()
         self.settings.shape_count = count
+        self.settings.near = NEAR
         self._used = {"vertex": 0, "face": 0, "corner": 0, "node": 0}
         for row, shape in enumerate(shapes):
             self._write(row, shape)

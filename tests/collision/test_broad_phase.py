@@ -37,6 +37,7 @@ def test_pairs_are_those_whose_bounds_meet(seed, count, spread, sizes, flat):
     radii = rng.uniform(*sizes, size=count)
     shapes = [sphere(r, position=p, breaking=0.1) for r, p in zip(radii, positions, strict=True)]
     scene = Scene(shapes, pair_room=count * count)
+    scene.settings.near = 0.1
     scene.collide()
     assert scene.pairs == brute_force_pairs(scene, count, 0.1)
 
@@ -48,6 +49,7 @@ def test_pairs_do_not_depend_on_those_of_the_step_before(seed, count):
     scene = Scene(
         [sphere(0.5, breaking=0.1) for _ in range(count)], pair_room=count * count, contact_room=4000
     )
+    scene.settings.near = 0.1
     for _ in range(6):
         for row in range(count):
             scene.place(row, rng.uniform(-2, 2, size=3))

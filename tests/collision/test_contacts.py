@@ -160,14 +160,14 @@ def test_impulses_follow_a_sliding_contact():
     assert_allclose(scene.contacts("warm_start"), scene.contacts("impulse")[:, 0])
 
 
-@pytest.mark.parametrize(("far", "kept"), [(0.01, 1.0), (0.05, 0.0)])
+@pytest.mark.parametrize(("far", "kept"), [(0.01, [1.0]), (0.05, [1.0, 0.0])])
 def test_impulses_stay_behind_where_a_contact_is_elsewhere_on_both_bodies(far, kept):
     scene = Scene([plane(), sphere(0.5, position=(0, 0, 0.5))])
     scene.collide()
     scene.contacts("impulse")[:] = 1.0
     scene.place(1, (far, 0, 0.5), turned(far / 0.5, (0, 1, 0)))
     scene.collide()
-    assert_allclose(scene.contacts("impulse"), [[kept] * 3])
+    assert_allclose(scene.contacts("impulse"), [[impulse] * 3 for impulse in kept])
 
 
 def test_a_new_contact_starts_from_nothing():

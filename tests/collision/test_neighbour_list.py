@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.collision.scene import Scene, box, plane, sphere
+from tests.collision.scene import NEAR, Scene, box, plane, sphere
 from tests.physics.contact_scenes import HALF, add_ball, add_box, add_floor, earth
 from tests.thorough.profiles import cases
 
-from carom.layouts.contacts import FEW_SHAPES, KNOWN, LIST_AGE, LIST_KIND, LISTED, NEAR, PAIRS
+from carom.layouts.contacts import FEW_SHAPES, KNOWN, LIST_AGE, LIST_KIND, LISTED, PAIRS
 
 SLACK = 0.02
 

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.collision.scene import NEAR
 from tests.physics.contact_scenes import HALF, add_box, add_floor, earth
 
 from carom import World
-from carom.layouts.contacts import NEAR, OVERLAPS
+from carom.layouts.contacts import OVERLAPS
 from carom.model.overlap_order import without_overlaps
 
 Pair = tuple[int, int]
@@ -151,16 +152,16 @@ def test_orders_are_those_of_a_pair_cache_however_boxes_come_and_go(seed: int):
 
 def test_overlaps_that_remain_keep_their_order():
     overlaps = np.array(
-        [[0, 1, 0, 3], [0, 2, 3, 1], [0, 3, 1, 0], [1, 2, 2, 2]],
+        [[0, 1, 0, 3, 5], [0, 2, 3, 1, 6], [0, 3, 1, 0, 7], [1, 2, 2, 2, 8]],
         dtype=np.int32,
     )
-    columns = overlaps[:, :2], overlaps[:, 2], overlaps[:, 3]
+    columns = overlaps[:, :2], overlaps[:, 2], overlaps[:, 3], overlaps[:, 4]
 
     def left(*shapes: int) -> list[list[int]]:
         return np.column_stack(without_overlaps(*columns, shapes)).tolist()
 
     # Pair cache: 01 03 12 02; without those of 1: 02 03. Manifolds: 03 02 12 01; without those of 1: 03 02.
-    assert left(1) == [[0, 2, 0, 1], [0, 3, 1, 0]]
+    assert left(1) == [[0, 2, 0, 1, 6], [0, 3, 1, 0, 7]]
     assert left(4, 5) == overlaps.tolist()
     assert left() == overlaps.tolist()
 

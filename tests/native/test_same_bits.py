@@ -14,11 +14,11 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "11d0e4789a276aec",
+    "stack": "b9e579029fe552ba",
     "tied": "064ac2b19117a7d3",
     "questions": "54d8874ff3d1bde4",
     "images": "fe6e4b42c0953681",
-    "robots": "c9c1650622f92f83",
+    "robots": "82189aac0ab184bd",
     "meshes": "14f94aab95169ce5",
     "soft": "0db4d81ba8ec3d09",
 }

@@ -63,7 +63,6 @@ from tools.differ.compare import Difference
 from tools.differ.pose_causes import looks_from_within, starts_half_a_turn_away
 from tools.differ.programs import Call
 from tools.differ.row_causes import (
-    changes_the_breaking_distance,
     drives_before_restoring,
     fixes_what_touches_itself,
     leaves_inertia_to_mjcf,
@@ -211,14 +210,6 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "Which way a link turns that is exactly half a turn from its target",
         lambda seen: seen.differs("@reach worse") and starts_half_a_turn_away(seen),
-    ),
-    Known(
-        "A new `contactBreakingThreshold` holds at once",
-        lambda seen: (
-            seen.difference.phase == "contact"
-            and seen.differs("@probe")
-            and changes_the_breaking_distance(seen)
-        ),
     ),
     Known(
         "joints that turn no inertia",

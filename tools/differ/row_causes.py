@@ -10,6 +10,22 @@ from tools.differ.programs import Call
 
 _ROBOTS = 2
 _INERTIA_FROM_FILE = 2
+# Files whose mass matrices lack full rank with this flag: in PyBullet the least eigenvalue is at most 1e-16
+# of the greatest. Those of ant, hopper, walker2d, reacher and the pendulums have full rank.
+_DEPENDENT = tuple(
+    f"mjcf/{name}.xml"
+    for name in (
+        "half_cheetah",
+        "humanoid",
+        "humanoid_fixed",
+        "humanoid_symmetric",
+        "humanoid_symmetric_no_ground",
+        "pusher",
+        "striker",
+        "swimmer",
+        "thrower",
+    )
+)
 
 
 def shares_with_a_limit(seen: Seen) -> bool:
@@ -85,18 +101,11 @@ def drives_before_restoring(seen: Seen) -> bool:
     return False
 
 
-def changes_the_breaking_distance(seen: Seen) -> bool:
-    """Whether `contactBreakingThreshold` was set after bounds of bodies may have met."""
-    met = False
-    for call in seen.before:
-        if met and call["f"] == "setPhysicsEngineParameter" and "contactBreakingThreshold" in call["k"]:
-            return True
-        met |= call["f"] in ("stepSimulation", "performCollisionDetection")
-    return False
-
-
 def leaves_inertia_to_mjcf(seen: Seen) -> bool:
-    """Whether a file of MJCF that states no inertia was loaded with the flag that takes it from there."""
+    """Whether a file whose joints move in one direction together was loaded without inertia about centres."""
     return any(
-        call["f"] == "loadMJCF" and call["k"].get("flags", 0) & _INERTIA_FROM_FILE for call in seen.before
+        call["f"] == "loadMJCF"
+        and call["a"][0] in _DEPENDENT
+        and call["k"].get("flags", 0) & _INERTIA_FROM_FILE
+        for call in seen.before
     )

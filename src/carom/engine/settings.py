@@ -115,6 +115,7 @@ def _values(
         "filter_count": contact_arrays.shapes.filter_count,
         "has_pair_contacts": int(contact_arrays.shapes.filters.has_contacts),
         "looks_ahead": int(contact_arrays.shapes.looks_ahead),
+        "near": 2.0 * parameters.contact_breaking_threshold,
         "filter_both": int(parameters.collision_filter_mode == 0),
     }
 

@@ -67,11 +67,11 @@ CONTACT_COLUMNS = 6
 MANY_RESETS, MAX_RESETS = 2**30, 2**31 - 1
 # Place among manifolds of overlaps without a manifold.
 NO_MANIFOLD = -1
+# Breaking distance of manifolds that an older file tells nothing about: that of their shapes.
+AS_SHAPES = -1.0
 # How near two shapes are: far; close, so that Bullet takes their bounds for overlapping, without and with a
 # manifold; so near that their contacts are looked for.
 FAR, CLOSE, CLOSE_WITH_MANIFOLD, MEETING = -1, 0, 1, 2
-# Gap between the bounds of two shapes up to which Bullet takes them for overlapping: it widens both [m].
-NEAR = 0.04
 # Value of `Contacts.contact_warm_start` for contacts whose manifold held in the last step; others have at
 # most 1.
 HOLDING = 2.0
@@ -173,6 +173,7 @@ class Overlap:
     pair: Index2
     place: Int32
     manifold: Int32
+    breaking: real
 
 
 @struct
@@ -184,6 +185,7 @@ class NewOverlap:
     wanted: Int32  # 1 if there is to be a manifold, else 0
     place: Int32  # as in `Overlap`
     manifold: Int32
+    breaking: real
 
 
 @struct
@@ -219,6 +221,7 @@ class Pairs:
 
     pair_shapes: Index2Rows  # the lower and the higher shape row; sorted
     pair_nearness: IntRows  # CLOSE, CLOSE_WITH_MANIFOLD or MEETING
+    pair_breaking: RealRows  # breaking distance of its manifold, see `contact_margins` [m]
     # Neighbour list, see `kernels.contact.neighbour_list`: shapes as in `pair_shapes`.
     listed_shapes: Index2Rows
     listed_found: Index2Rows  # in the order in which they were found
@@ -290,6 +293,7 @@ class Contacts:
     overlap_shapes: Index2Rows  # the lower and the higher shape row; sorted
     overlap_place: IntRows  # in the pair cache
     overlap_manifold: IntRows  # place among manifolds, or NO_MANIFOLD
+    overlap_breaking: RealRows  # breaking distance with which the manifold was made, or AS_SHAPES [m]
     overlap_sorted: IntRows  # the overlaps of trees that can move, in the order of relaxation
     count_contacts: IntRows  # columns: THERE to RESETS_SEEN
 

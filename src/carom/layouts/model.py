@@ -61,6 +61,7 @@ class Settings:
     filter_count: Int32  # entries of `Shapes.filter_link_a`
     has_pair_contacts: Int32  # 1: some pair of links has contacts of its own, see `Shapes.filter_impedance`
     looks_ahead: Int32  # 1: some shape has a swept sphere, see `kernels.contact.bounds`
+    near: real  # gap between bounds up to which Bullet takes them for overlapping: it widens both [m]
     filter_both: Int32  # 1: both masks must let the other's group pass; 0: one is enough
 
 

@@ -13,8 +13,8 @@ from carom.layouts.contacts import NO_MANIFOLD
 
 
 def without_overlaps(
-    pairs: np.ndarray, places: np.ndarray, manifolds: np.ndarray, shapes: Iterable[int]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    pairs: np.ndarray, places: np.ndarray, manifolds: np.ndarray, breaking: np.ndarray, shapes: Iterable[int]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The overlaps that remain when some shapes lose all of theirs.
 
     As in Bullet, one shape after the other loses its overlaps, in the order of the pair cache, and the last
@@ -24,13 +24,14 @@ def without_overlaps(
         pairs: `Contacts.overlap_shapes` of a world, shape (n, 2).
         places: `Contacts.overlap_place`, shape (n,).
         manifolds: `Contacts.overlap_manifold`, shape (n,).
+        breaking: `Contacts.overlap_breaking`, shape (n,) [m].
         shapes: The rows of these shapes.
 
     Returns:
-        The same three without the overlaps that are lost.
+        The same four without the overlaps that are lost.
     """
     lost = [np.flatnonzero((pairs == shape).any(axis=1)).tolist() for shape in shapes]
-    left = pairs.copy(), places.copy(), manifolds.copy()
+    left = pairs.copy(), places.copy(), manifolds.copy(), breaking.copy()
     if not any(lost):
         return left
     cache, order = np.argsort(places).tolist(), np.argsort(manifolds).tolist()
@@ -41,7 +42,7 @@ def without_overlaps(
     left[1][cache] = np.arange(len(cache))
     left[2][order] = np.arange(len(order))
     kept = sorted(cache)
-    return left[0][kept], left[1][kept], left[2][kept]
+    return left[0][kept], left[1][kept], left[2][kept], left[3][kept]
 
 
 def _remove_rows(doomed: set[int], cache: list[int], manifolds: list[int]) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.contacts import CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
+from carom.layouts.contacts import AS_SHAPES, CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.native.change import Change
 from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_rows, layout, return_to, take
@@ -68,6 +68,7 @@ def read_state(reader: Reader, data: Any) -> Snapshot:
             arrays["state"].setdefault(name, np.zeros(len(arrays["state"]["dof_velocity"])))
     split_impulses(arrays["contacts"])
     add_overlaps(arrays["contacts"])
+    add_breaking_distances(arrays["contacts"])
     add_resets(arrays["state"], arrays["contacts"])
     # Nor do files from the first versions with soft bodies have this array; the next step computes it.
     arrays["state"].setdefault("node_push", np.zeros_like(arrays["state"]["node_position"]))
@@ -101,6 +102,12 @@ def add_overlaps(contacts: dict[str, np.ndarray]) -> None:
         contacts["overlap_shapes"] = np.zeros((0, 2), dtype=np.int32)
         for name in ("overlap_place", "overlap_manifold", "overlap_sorted"):
             contacts[name] = np.zeros(0, dtype=np.int32)
+
+
+def add_breaking_distances(contacts: dict[str, np.ndarray]) -> None:
+    """Add the breaking distances of manifolds that older files do not have: those of their shapes."""
+    if "overlap_shapes" in contacts and "overlap_breaking" not in contacts:
+        contacts["overlap_breaking"] = np.full(len(contacts["overlap_shapes"]), AS_SHAPES)
 
 
 def add_resets(state: dict[str, np.ndarray], contacts: dict[str, np.ndarray]) -> None:

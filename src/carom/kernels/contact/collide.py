@@ -7,7 +7,6 @@ repeated with larger arrays, from the contacts before it, before any contact is 
 import warp as wp
 
 from carom.kernels.contact.contact_margins import (
-    breaking_distance,
     contact_margin,
     meets_beside,
     region_margin,
@@ -99,15 +98,22 @@ def make_contacts(
             wanted += last - first
             first = last
             continue
-        found, count = find_candidates(shapes, pairs, world, pair, first, last)
-        wanted = add_manifold(shapes, state, contacts, pairs, world, pair, found, count, first, last, wanted)
+        far = pairs.pair_breaking[world, i]
+        found, count = find_candidates(shapes, pairs, world, pair, far, first, last)
+        wanted = add_manifold(
+            shapes, state, contacts, pairs, world, pair, far, found, count, first, last, wanted
+        )
         first = last
     return wanted
 
 
 @func
-def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index2, first: Int32, last: Int32):
+def find_candidates(
+    shapes: Shapes, pairs: Pairs, world: Int32, pair: Index2, far: real, first: Int32, last: Int32
+):
     """Write the candidates of a pair, whose contacts of the last substep are [first, last).
+
+    `far` is the breaking distance of its manifold [m].
 
     Returns:
         The result of `find_new_points`, and the number of candidates if that result is `AT_ONCE`, else 0.
@@ -117,12 +123,12 @@ def find_candidates(shapes: Shapes, pairs: Pairs, world: Int32, pair: Index2, fi
         and meets_beside(shapes, pairs, world, pair[1], pair[0])
     ):
         return Int32(AT_ONCE), Int32(0)
-    max_distance = contact_margin(shapes, pairs, world, pair[0], pair[1], last > first)
+    max_distance = contact_margin(shapes, pairs, world, pair[0], pair[1], far, last > first)
     sides = in_order_of_sides(shapes, pair)
     found = find_new_points(shapes, pairs, world, sides, max_distance, first, last)
     count = Int32(0)
     if found == AT_ONCE:
-        around = region_margin(shapes, pairs, world, pair[0], pair[1], last > first)
+        around = region_margin(pairs, world, pair[0], pair[1], far, last > first)
         count = collide_shapes(shapes, pairs, world, sides[0], sides[1], max_distance, around)
     return found, count
 
@@ -135,6 +141,7 @@ def add_manifold(
     pairs: Pairs,
     world: Int32,
     pair: Index2,
+    far: real,
     found: Int32,
     count: Int32,
     first: Int32,
@@ -143,11 +150,11 @@ def add_manifold(
 ) -> Int32:
     """Write the contacts of a pair from its candidates; contacts beyond the capacity are only counted.
 
-    `found` and `count` are the results of `find_candidates`, [first, last) the previous contacts of the pair,
+    `far` is the breaking distance of its manifold [m], `found` and `count` are the results of
+    `find_candidates`, [first, last) the previous contacts of the pair,
     and `wanted` is the number of contacts of the earlier pairs. Returns the number with those of this pair.
     """
     sides = in_order_of_sides(shapes, pair)
-    far = breaking_distance(shapes, pair[0], pair[1])
     if found != AT_ONCE:
         return gather(shapes, state, contacts, pairs, world, wanted, sides, found, first, last, far)
     if count == 0:

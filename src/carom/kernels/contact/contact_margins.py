@@ -1,21 +1,22 @@
 """Contact margins: the maximum distance of two shapes in contact, as in Bullet.
 
-A contact ends when its points are further apart than the smaller *breaking distance* of the two shapes.
-Most pairs of shapes also begin a contact at this distance, so that it can slow them in time.
+A contact ends when its points are further apart than the *breaking distance* of its manifold. This
+is the smaller one of the two shapes when the manifold is made, and stays as it is. Most pairs of shapes
+also begin a contact at this distance, so that it can slow them in time.
 """
 
 import warp as wp
 
 from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
 from carom.kernels.maths.min_max import maximum, minimum
-from carom.kernels.structs import Pairs, Shapes
+from carom.kernels.structs import Pairs, Settings, Shapes
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import ALONE, BOX, PLANE, SPHERE, TRIANGLES
 
 
 @func
 def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
-    """Distance at which a contact of two shapes ends [m]."""
+    """Breaking distance of a manifold of two shapes that is made now [m]."""
     return minimum(shapes.shape_breaking[a], shapes.shape_breaking[b])
 
 
@@ -38,17 +39,20 @@ def stated_margin(shapes: Shapes, world: Int32, a: Int32, b: Int32) -> real:
 
 
 @func
-def bounds_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32) -> real:
+def bounds_margin(
+    shapes: Shapes, settings: Settings, pairs: Pairs, world: Int32, a: Int32, b: Int32, breaking: real
+) -> real:
     """Largest gap between the bounds of two shapes that can be in contact [m].
 
     Bullet widens the bounds of bodies, but not the bounds of the parts of a compound. The bounds of a plane
-    are infinite, so every shape meets them.
+    are infinite, so every shape meets them. `breaking` is the breaking distance of the pair [m].
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     on_plane = shapes.shape_kind[a] == PLANE or shapes.shape_kind[b] == PLANE
     if not on_plane and (is_part_of_compound(shapes, a) or is_part_of_compound(shapes, b)):
         return ahead
-    return maximum(maximum(ahead, breaking_distance(shapes, a, b)), stated_margin(shapes, world, a, b))
+    reach = breaking if on_plane else minimum(breaking, settings.near)
+    return maximum(maximum(ahead, reach), stated_margin(shapes, world, a, b))
 
 
 @func
@@ -89,19 +93,21 @@ def meets_beside(shapes: Shapes, pairs: Pairs, world: Int32, part: Int32, other:
 
 
 @func
-def region_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
+def region_margin(pairs: Pairs, world: Int32, a: Int32, b: Int32, breaking: real, in_contact: bool) -> real:
     """Distance from a shape's bounds within which triangles of a mesh or height field are tested [m].
 
     Bullet tests the triangles that meet the bounds, and keeps existing contacts up to the breaking distance.
     """
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     if in_contact:
-        return maximum(ahead, breaking_distance(shapes, a, b))
+        return maximum(ahead, breaking)
     return ahead
 
 
 @func
-def contact_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, in_contact: bool) -> real:
+def contact_margin(
+    shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int32, breaking: real, in_contact: bool
+) -> real:
     """Contact margin: largest distance of two shapes in contact [m].
 
     Zero for two spheres and for two boxes without a contact so far; the breaking distance for other pairs.
@@ -111,11 +117,11 @@ def contact_margin(shapes: Shapes, pairs: Pairs, world: Int32, a: Int32, b: Int3
     ahead = pairs.shape_motion[world, a] + pairs.shape_motion[world, b]
     stated = stated_margin(shapes, world, a, b)
     if stated > 0.0:
-        return maximum(maximum(ahead, breaking_distance(shapes, a, b)), stated)
+        return maximum(maximum(ahead, breaking), stated)
     kind_a = shapes.shape_kind[a]
     kind_b = shapes.shape_kind[b]
     if kind_a == SPHERE and kind_b == SPHERE:
         return ahead
     if kind_a == BOX and kind_b == BOX and not in_contact:
         return ahead
-    return maximum(ahead, breaking_distance(shapes, a, b))
+    return maximum(ahead, breaking)

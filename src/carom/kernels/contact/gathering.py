@@ -12,7 +12,7 @@ What is at rest keeps exactly the points it has. Contacts that yield gather no p
 import warp as wp
 
 from carom.kernels.contact.candidates import add_candidate
-from carom.kernels.contact.narrow_phase import collide_boxes
+from carom.kernels.contact.narrow_phase import collide_boxes, collide_shapes
 from carom.kernels.maths.min_max import greatest_entry
 from carom.kernels.queries.closest import nearest
 from carom.kernels.shapes.bullet_gjk import FOUND, TOO_FAR, nearest_as_in_bullet
@@ -32,10 +32,9 @@ AT_ONCE = wp.constant(-1)
 
 
 @func
-def is_single_sided(shapes: Shapes, shape: Int32) -> bool:
-    """Whether a shape is a sphere or consists of triangles, so that its manifolds gather no points."""
-    kind = shapes.shape_kind[shape]
-    return kind == SPHERE or kind >= TRIANGLES
+def gathers_nothing(kind_a: Int32, kind_b: Int32) -> bool:
+    """Whether manifolds of these kinds of shapes gather no points: of two spheres, or with triangles."""
+    return (kind_a == SPHERE and kind_b == SPHERE) or kind_a >= TRIANGLES or kind_b >= TRIANGLES
 
 
 @func
@@ -127,7 +126,9 @@ def find_new_points(
         gather its points.
     """
     a, b = sides[0], sides[1]
-    if is_single_sided(shapes, a) or is_single_sided(shapes, b):
+    kind_a = shapes.shape_kind[a]
+    kind_b = shapes.shape_kind[b]
+    if gathers_nothing(kind_a, kind_b):
         return AT_ONCE
     if pairs.shape_motion[world, a] + pairs.shape_motion[world, b] > 0.0:
         # A fast shape that is stopped at one point only would swing through the surface with its other end.
@@ -140,4 +141,7 @@ def find_new_points(
     if are_boxes(shapes, a, b):
         # Only points that touch are new; previous ones stay up to the breaking distance.
         return collide_boxes(shapes, pairs, world, a, b, 0.0)
+    if kind_a == SPHERE or kind_b == SPHERE:
+        # There is one point.
+        return collide_shapes(shapes, pairs, world, a, b, max_distance, 0.0)
     return nearest_as_bullet(shapes, pairs, world, a, b, max_distance)

@@ -24,7 +24,6 @@ from carom.layouts.contacts import (
     LIST_FILTER,
     LIST_KIND,
     LISTED,
-    NEAR,
     NO_LIST,
     PLANES,
 )
@@ -134,7 +133,7 @@ def walk_from(
     leaf_count = pairs.count_pairs[world, LEAVES]
     start = leaf_start(pairs, world, own_leaf)
     end = leaf_start(pairs, world, own_leaf + 1)
-    reach = real(NEAR)
+    reach = settings.near
     for place in range(start, end):
         reach = maximum(reach, shapes.shape_breaking[pairs.shape_order[world, place]])
         compare_in_leaf(shapes, model, settings, pairs, world, place, place + 1, end, slack)
@@ -188,7 +187,7 @@ def compare_in_leaf(
         if shapes.shape_tree[b] == avoided:
             continue
         gap = gap_between(lower, upper, pairs.shape_lower[world, b], pairs.shape_upper[world, b])
-        if gap <= slack + maximum(breaking + pairs.shape_motion[world, b], real(NEAR)):
+        if gap <= slack + maximum(breaking + pairs.shape_motion[world, b], settings.near):
             add_to_list(shapes, model, settings, pairs, world, a, b)
 
 

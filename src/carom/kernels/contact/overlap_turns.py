@@ -7,10 +7,12 @@ from carom.kernels.contact.bounds_tree import STAGES, sort_as_in_new_scene
 from carom.kernels.contact.resets import is_moved, list_resets
 from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, Vector3, func, real
-from carom.layouts.contacts import NEAR
 
-# How far Bullet widens the bounds of a body on each side, except when it is created [m].
-WIDENING = real(0.5 * NEAR)
+
+@func
+def widening_of(settings: Settings) -> real:
+    """How far Bullet widens the bounds of a body on each side, except when it is created [m]."""
+    return 0.5 * settings.near
 
 
 @func
@@ -90,14 +92,14 @@ def turn_of(
     # The bounds of a plane meet those of all others wherever they are.
     is_with_plane = not (is_bounded(shapes, pair[0]) and is_bounded(shapes, pair[1]))
     if b_is_new and (is_with_plane or not (moved_a or moved_b)):
-        widening = wp.where(a < known, WIDENING, real(0.0))
+        widening = wp.where(a < known, widening_of(settings), real(0.0))
         if meet_after(settings, shapes, model, state, pairs, world, b, a, widening, a >= known):
             return b
     if place_a >= 0 or place_b >= 0:
         if place_b >= 0 and (place_a < 0 or place_b < place_a):
             return turn_of_reset(settings, shapes, model, state, pairs, world, b, a, moved_a, known)
         return turn_of_reset(settings, shapes, model, state, pairs, world, a, b, moved_b, known)
-    widening = wp.where(b_is_new, WIDENING, real(NEAR))
+    widening = wp.where(b_is_new, widening_of(settings), settings.near)
     if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new):
         return 2 * settings.shape_count + a
     return 2 * settings.shape_count + b
@@ -120,7 +122,7 @@ def turn_of_reset(
     place = pairs.shape_reset_place[world, b]
     if not b_was_moved:
         b_is_new = b >= known
-        widening = wp.where(b_is_new, WIDENING, real(NEAR))
+        widening = wp.where(b_is_new, widening_of(settings), settings.near)
         if meet_after(settings, shapes, model, state, pairs, world, a, b, widening, b_is_new or place >= 0):
             return settings.shape_count + pairs.shape_reset_place[world, a]
     if place >= 0:
@@ -174,4 +176,4 @@ def sort_new(
                 pairs.queue_turn[world, place] = i
                 pairs.shape_pair_end[world, turn] = place + 1
     if known == 0:
-        sort_as_in_new_scene(settings, shapes, state, pairs, world, count, resets, WIDENING)
+        sort_as_in_new_scene(settings, shapes, state, pairs, world, count, resets, widening_of(settings))

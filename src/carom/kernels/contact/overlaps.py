@@ -14,10 +14,11 @@ then this takes one comparison of each overlap.
 import warp as wp
 
 from carom.kernels.contact.bounds import is_bounded
+from carom.kernels.contact.contact_margins import breaking_distance
 from carom.kernels.contact.overlap_turns import sort_new
 from carom.kernels.contact.resets import forget_resets
 from carom.kernels.structs import Contacts, Model, NewOverlap, Overlap, Pairs, Settings, Shapes, State
-from carom.kernels.types import Index2, Int32, func
+from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.contacts import (
     CLOSE,
     KNOWN,
@@ -61,6 +62,7 @@ def read_overlap(contacts: Contacts, world: Int32, row: Int32) -> Overlap:
     overlap.pair = contacts.overlap_shapes[world, row]
     overlap.place = contacts.overlap_place[world, row]
     overlap.manifold = contacts.overlap_manifold[world, row]
+    overlap.breaking = contacts.overlap_breaking[world, row]
     return overlap
 
 
@@ -70,6 +72,7 @@ def write_overlap(contacts: Contacts, world: Int32, row: Int32, overlap: Overlap
     contacts.overlap_shapes[world, row] = overlap.pair
     contacts.overlap_place[world, row] = overlap.place
     contacts.overlap_manifold[world, row] = overlap.manifold
+    contacts.overlap_breaking[world, row] = overlap.breaking
 
 
 @func
@@ -90,7 +93,47 @@ def as_overlap(pairs: Pairs, world: Int32, row: Int32) -> Overlap:
     overlap.pair = new.pair
     overlap.place = new.place
     overlap.manifold = new.manifold
+    overlap.breaking = new.breaking
     return overlap
+
+
+@func
+def overlap_from(contacts: Contacts, world: Int32, first: Int32, pair: Index2) -> Int32:
+    """The first overlap from row `first` on that does not come before a pair of shapes."""
+    row = first + 0
+    searching = row < contacts.count_contacts[world, OVERLAPS]
+    while searching:
+        shapes = contacts.overlap_shapes[world, row]
+        searching = is_before(shapes[0], shapes[1], pair[0], pair[1])
+        if searching:
+            row += 1
+            searching = row < contacts.count_contacts[world, OVERLAPS]
+    return row
+
+
+@func
+def present_breaking(shapes: Shapes, contacts: Contacts, world: Int32, row: Int32, pair: Index2) -> real:
+    """Breaking distance of the manifold of a pair, which is overlap `row` or none [m]."""
+    if row < contacts.count_contacts[world, OVERLAPS]:
+        old = contacts.overlap_shapes[world, row]
+        breaking = contacts.overlap_breaking[world, row]
+        has_one = contacts.overlap_manifold[world, row] != NO_MANIFOLD and breaking >= 0.0
+        if has_one and old[0] == pair[0] and old[1] == pair[1]:
+            return breaking
+    return breaking_distance(shapes, pair[0], pair[1])
+
+
+@func
+def make_manifold(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32, entry: Int32, place: Int32):
+    """Let an entry of `queue_entry` have a manifold from now on, at a place among manifolds."""
+    pairs.queue_manifold[world, place] = entry
+    set_manifold(contacts, pairs, world, entry, place)
+    if entry >= 0:
+        pair = contacts.overlap_shapes[world, entry]
+        contacts.overlap_breaking[world, entry] = breaking_distance(shapes, pair[0], pair[1])
+    else:
+        pair = pairs.queue_new[world, -1 - entry].pair
+        pairs.queue_new[world, -1 - entry].breaking = breaking_distance(shapes, pair[0], pair[1])
 
 
 @func
@@ -227,7 +270,9 @@ def remove_ended(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, m
 
 
 @func
-def visit_pairs(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, manifolds: Int32):
+def visit_pairs(
+    shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, manifolds: Int32
+):
     """Go through the pair cache: store places in it, make manifolds that are missing, remove others.
 
     Only parts of compounds have overlaps without manifolds.
@@ -248,8 +293,7 @@ def visit_pairs(contacts: Contacts, pairs: Pairs, world: Int32, count: Int32, ma
             if manifold != NO_MANIFOLD:
                 left = drop_manifold(contacts, pairs, world, manifold, left)
         elif manifold == NO_MANIFOLD:
-            pairs.queue_manifold[world, left] = entry
-            set_manifold(contacts, pairs, world, entry, left)
+            make_manifold(shapes, contacts, pairs, world, entry, left)
             left += 1
 
 
@@ -310,7 +354,7 @@ def update_overlaps(
     forget_resets(settings, state, contacts, world)
     manifolds = list_entries(contacts, pairs, world, fresh)
     manifolds = remove_ended(contacts, pairs, world, old_count + fresh, manifolds)
-    visit_pairs(contacts, pairs, world, count, manifolds)
+    visit_pairs(shapes, contacts, pairs, world, count, manifolds)
     merge(contacts, pairs, world, old_count, fresh)
     contacts.count_contacts[world, KNOWN] = settings.shape_count
     contacts.count_contacts[world, SORTED] = 0

@@ -98,7 +98,9 @@ def pair_candidates_kernel(
             end = kept + contacts.count_contacts[world, THERE]
             first = first_after(pairs, world, kept, end, pair, 0)
             last = first_after(pairs, world, first, end, pair, 1)
-            new_points, candidates = find_candidates(shapes, own, world, pair, first, last)
+            new_points, candidates = find_candidates(
+                shapes, own, world, pair, pairs.pair_breaking[world, i], first, last
+            )
             result = PairResult()
             result.first = first
             result.end = last
@@ -131,6 +133,7 @@ def world_contacts_kernel(
         else:
             wanted = add_manifold(
                 shapes, state, contacts, pairs_with_candidates(pairs, pair_work, i), world, pair,
-                result.new_points, result.candidates, result.first, result.end, wanted,
+                pairs.pair_breaking[world, i], result.new_points, result.candidates, result.first, result.end,
+                wanted,
             )  # fmt: skip
     accept_contacts(state, contacts, world, wanted)

@@ -14,7 +14,7 @@ from carom.kernels.solver.islands import unite, unite_tied
 from carom.kernels.structs import Contacts, Model, PairRows, Pairs, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, kernel, real
 from carom.layouts.codes import ABSENT, ACTIVE, ASLEEP, WANTS_SLEEP, WOKEN
-from carom.layouts.contacts import NEAR, PAIRS, THERE
+from carom.layouts.contacts import PAIRS, THERE
 from carom.layouts.status import STATUS, WELL
 
 # Time below the threshold after which a tree may fall asleep [s].
@@ -22,7 +22,9 @@ SLEEP_DELAY = real(2.0)
 
 
 @func
-def unite_neighbours(model: Model, state: State, shapes: Shapes, pairs: Pairs, world: Int32):
+def unite_neighbours(
+    settings: Settings, model: Model, state: State, shapes: Shapes, pairs: Pairs, world: Int32
+):
     """Put trees that are near each other, and may collide, into one island."""
     for i in range(pairs.count_pairs[world, PAIRS]):
         a = pairs.pair_shapes[world, i][0]
@@ -33,7 +35,7 @@ def unite_neighbours(model: Model, state: State, shapes: Shapes, pairs: Pairs, w
                 pairs.shape_upper[world, a],
                 pairs.shape_lower[world, b],
                 pairs.shape_upper[world, b],
-                real(NEAR),
+                settings.near,
             ):
                 unite(model, state, world, shapes.shape_tree[a], shapes.shape_tree[b])
 
@@ -72,7 +74,7 @@ def settle_kernel(
         state.tree_island[world, tree] = tree
         pair_rows.tree_awake[world, tree] = 0
     if touching != 0:
-        unite_neighbours(model, state, shapes, pairs, world)
+        unite_neighbours(settings, model, state, shapes, pairs, world)
         for contact in range(contacts.count_contacts[world, THERE]):
             pair = contacts.contact_shapes[world, contact]
             if link_moves(model, pair[2]) and link_moves(model, pair[3]):
