@@ -49,6 +49,7 @@ if TYPE_CHECKING:
 
 _NUMBER = np.dtype(NUMPY_REAL)
 _SPATIAL = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
+_NO_REACTION = (0.0,) * BASE_VELOCITIES
 
 
 class Outline:
@@ -333,7 +334,7 @@ class Body(Closed):
         scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
         first, change = self.first_position, Change()
         pose = *position, x * scale, y * scale, z * scale, w * scale
-        change.write(self.world.position[first : first + BASE_POSITIONS], pose)
+        change.write_numbers(self.world.position_memory[first : first + BASE_POSITIONS], pose)
         self.world.contact_arrays.note_cold_start(change)
         self.world.note_link_poses(change, self)
         change.commit()
@@ -377,10 +378,10 @@ class Body(Closed):
             if count == 4:
                 size = sum(component * component for component in position) ** 0.5
                 position = [component / size for component in position]
-            change.write(self.world.position[first : first + count], position)
+            change.write_numbers(self.world.position_memory[first : first + count], position)
         if velocity is not None and (count := self.velocity_count[joint]):
             first = self.velocity_index[joint]
-            change.write(self.world.velocity[first : first + count], velocity)
+            change.write_numbers(self.world.velocity_memory[first : first + count], velocity)
         return list(position or ())
 
     @alone("world.lock")
@@ -390,9 +391,9 @@ class Body(Closed):
         return self.world.position[first : first + count].tolist()
 
     def note_reset(self, *, moved: bool) -> None:
-        """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_reset`."""
+        """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_resets`."""
         change = Change()
-        self.world.contact_arrays.note_reset(change, self.rows.tree, moved=moved)
+        self.world.contact_arrays.note_resets(change, self.rows.tree, moved)
         change.commit()
 
     @alone("world.lock")
@@ -454,7 +455,13 @@ class Body(Closed):
 
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
-        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] & SENSED)
+        return bool(self.sensors[joint] & SENSED)
+
+    @property
+    def sensors(self) -> list[int]:
+        """What is measured of each joint: bits `SENSED` and `LOADED`."""
+        first = self.first_link + 1
+        return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
 
     @alone("world.lock")
     def set_sensor(self, joint: int, enabled: bool) -> None:
@@ -462,7 +469,7 @@ class Body(Closed):
         change = Change()
         self._note_sensor(change, joint, SENSED, on=enabled)
         if not enabled:
-            change.write(self.world.joint_reaction[self.first_link + 1 + joint], 0.0)
+            change.write_numbers(self.world.joint_reaction[self.first_link + 1 + joint], _NO_REACTION)
         change.commit()
 
     def measure_load(self, change: Change, joint: int) -> None:
@@ -473,7 +480,7 @@ class Body(Closed):
         model = change.arrays(self.world.arrays.model.numpy)
         sensors = model["link_sensor"][self.first_link : self.first_link + 1 + self.joint_count]
         sensors[1 + joint] = sensors[1 + joint] | kind if on else sensors[1 + joint] & ~kind
-        model["tree_sensor_count"][self.rows.tree] = int(np.count_nonzero(sensors))
+        model["tree_sensor_count"][self.rows.tree] = len(sensors) - sensors.tolist().count(0)
 
 
 def _body_of(world: World, number: int) -> Body:

@@ -217,11 +217,14 @@ class Joint:
     ) -> tuple[list[float], list[float]]:
         """The coordinates of a state for `reset`, checked as it does."""
         world_of(self.body)  # raises an error if the body has been removed
-        position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
+        given = (position,) if isinstance(position, float) else np.atleast_1d(position)
+        position = vector(given, self.body.position_count[self.index], "position")
         if self._has_quaternion and not position.any():
             raise ValueError("position must be a quaternion other than 0")
-        velocity = np.broadcast_to(finite(velocity, "velocity"), self.degrees_of_freedom)
-        return position.tolist(), velocity.tolist()
+        velocity = finite(velocity, "velocity")
+        if velocity.ndim == 0:
+            return position.tolist(), [float(velocity)] * self.degrees_of_freedom
+        return position.tolist(), np.broadcast_to(velocity, self.degrees_of_freedom).tolist()
 
     # Drive
 

@@ -14,6 +14,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.description.transform import inverse
+from carom.layouts.codes import SENSED
 from carom.layouts.quick_bodies import (
     MOTOR_NUMBERS,
     POSE_NUMBERS,
@@ -173,7 +174,7 @@ class QuickBodies:
 
 
 def _joint_records(body: SceneBody) -> Array[Joint]:
-    records = (Joint * body.joint_count)()
+    records, sensors = (Joint * body.joint_count)(), body.sensors
     for index, record in enumerate(records):
         dynamics = body.dynamics(index)
         lower, upper = dynamics.joint_lower_limit, dynamics.joint_upper_limit
@@ -181,7 +182,7 @@ def _joint_records(body: SceneBody) -> Array[Joint]:
         record.velocity = body.velocity_index[index] - body.first_velocity
         record.position_count = body.position_count[index]
         record.dof_count = body.velocity_count[index]
-        record.has_sensor = body.has_sensor(index)
+        record.has_sensor = sensors[index] & SENSED
         # Without limits the lower one is greater.
         record.lower, record.upper = (lower, upper) if lower <= upper else (-inf, inf)
     return records

@@ -356,7 +356,7 @@ def _reset(client: Client, body: Body, states: Sequence[_State]) -> None:
     """Resets joints, given by index, positions and velocities, all at once."""
     with client.lock:
         change, contacts = Change(), client.world.contact_arrays
-        positions: dict[int, list[float]] = {}
+        positions, moves = dict[int, list[float]](), list[bool]()
         for joint, position, velocity in states:
             count, freedoms = body.position_count[joint], body.velocity_count[joint]
             moved = False
@@ -366,7 +366,8 @@ def _reset(client: Client, body: Body, states: Sequence[_State]) -> None:
                 rates = velocity if len(velocity) == freedoms else (0.0,) * freedoms
                 positions[joint] = body.note_joint_state(change, joint, position, rates)
                 moved = positions[joint] != before
-            contacts.note_reset(change, body.rows.tree, moved=moved)
+            moves.append(moved)
+        contacts.note_resets(change, body.rows.tree, *moves)
         # As after any reset, the body is up to date.
         client.world.note_link_poses(change, body)
         change.commit()
