@@ -170,12 +170,14 @@ class ContactArrays:
         counts = self.contacts.numpy["count_contacts"][0, RESETS : RESETS_SEEN + 1]
         numbers = self._arrays.state.numpy["tree_reset"][0, tree : tree + 1]
         (count, seen), (number,) = counts.tolist(), numbers.tolist()
+        before = count, number
         for moves in moved:
             if moves or abs(number) <= seen:
                 count = min(count + 1, MAX_RESETS)
                 number = -count if moves else count
-        change.write_numbers(counts, (count, seen), "i")
-        change.write_numbers(numbers, (number,), "i")
+        if (count, number) != before:
+            change.write_numbers(counts, (count, seen), "i")
+            change.write_numbers(numbers, (number,), "i")
 
     def reserve(self) -> None:
         """Grow arrays to the capacity of the arrays with the same axes."""

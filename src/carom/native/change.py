@@ -233,7 +233,9 @@ class Change:
         )
 
 
-def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 | ctypes.c_double = _ZERO) -> bytes:
+def blank(
+    record: ctypes.Structure, path: str, value: ctypes.c_int64 | ctypes.c_int32 | ctypes.c_double = _ZERO
+) -> bytes:
     """The block that writes a value, 0 by default, to a field of a record; its path has points.
 
     The value has to be kept until it is written.

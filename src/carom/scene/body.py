@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from functools import cached_property
 from math import sqrt
@@ -50,6 +50,9 @@ if TYPE_CHECKING:
 _NUMBER = np.dtype(NUMPY_REAL)
 _SPATIAL = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 _NO_REACTION = (0.0,) * BASE_VELOCITIES
+
+JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
+"""A joint, its position coordinates, and its velocity coordinates; None keeps them."""
 
 
 class Outline:
@@ -361,28 +364,36 @@ class Body(Closed):
             velocity: All velocity coordinates of the joint; None keeps them.
         """
         change = Change()
-        self.note_joint_state(change, joint, position, velocity)
+        self.note_joint_states(change, [(joint, position, velocity)])
         self.world.note_link_poses(change, self)
         change.commit()
 
-    def note_joint_state(
-        self, change: Change, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
-    ) -> list[float]:
-        """Set the state of a joint with a change, as `set_joint_state`; poses of links stay.
+    def note_joint_states(self, change: Change, states: Iterable[JointReset]) -> list[bool]:
+        """Set the states of joints, in turn, with a change, as `set_joint_state`; poses of links stay.
 
         Returns:
-            The coordinates that are set.
+            Of each whether its coordinates change.
         """
-        if position is not None and (count := self.position_count[joint]):
-            first = self.position_index[joint]
-            if count == 4:
-                size = sum(component * component for component in position) ** 0.5
-                position = [component / size for component in position]
-            change.write_numbers(self.world.position_memory[first : first + count], position)
-        if velocity is not None and (count := self.velocity_count[joint]):
-            first = self.velocity_index[joint]
-            change.write_numbers(self.world.velocity_memory[first : first + count], velocity)
-        return list(position or ())
+        first, first_rate, moved = self.first_position, self.first_velocity, list[bool]()
+        place = self.world.position_memory[first : first + self.rows.count["position"]]
+        motion = self.world.velocity_memory[first_rate : first_rate + self.rows.count["dof"]]
+        coordinates, rates = list(place), list(motion)
+        for joint, position, velocity in states:
+            moves = False
+            if position is not None and (count := self.position_count[joint]):
+                if count == 4:
+                    size = sum(component * component for component in position) ** 0.5
+                    position = [component / size for component in position]
+                start = self.position_index[joint] - first
+                moves = coordinates[start : start + count] != [*position]
+                coordinates[start : start + count] = position
+            if velocity is not None and (count := self.velocity_count[joint]):
+                start = self.velocity_index[joint] - first_rate
+                rates[start : start + count] = velocity
+            moved.append(moves)
+        change.write_numbers(place, coordinates)
+        change.write_numbers(motion, rates)
+        return moved
 
     @alone("world.lock")
     def coordinates(self) -> list[float]:
@@ -455,10 +466,10 @@ class Body(Closed):
 
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
-        return bool(self.sensors[joint] & SENSED)
+        return bool(self.measured_joints[joint] & SENSED)
 
     @property
-    def sensors(self) -> list[int]:
+    def measured_joints(self) -> list[int]:
         """What is measured of each joint: bits `SENSED` and `LOADED`."""
         first = self.first_link + 1
         return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
@@ -467,10 +478,14 @@ class Body(Closed):
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         change = Change()
+        self.note_sensor(change, joint, enabled=enabled)
+        change.commit()
+
+    def note_sensor(self, change: Change, joint: int, *, enabled: bool) -> None:
+        """The same with a change."""
         self._note_sensor(change, joint, SENSED, on=enabled)
         if not enabled:
             change.write_numbers(self.world.joint_reaction[self.first_link + 1 + joint], _NO_REACTION)
-        change.commit()
 
     def measure_load(self, change: Change, joint: int) -> None:
         """Measure what a joint transmits after a change, for sensors of sites and of its limit."""

@@ -53,13 +53,14 @@ class BodyKernels:
 
     Attributes:
         record: The body's record.
+        joints: Those of its joints.
     """
 
-    __slots__ = ("_address", "_kept", "record")
+    __slots__ = ("_address", "_kept", "joints", "record")
 
-    def __init__(self, client: Client, record: Body, *kept: Any) -> None:
+    def __init__(self, client: Client, record: Body, joints: Array[Joint], *kept: Any) -> None:
         call = Call(client=addressof(client), body=addressof(record))
-        self.record = record
+        self.record, self.joints = record, joints
         self._kept = client, call, kept
         self._address = addressof(call)
 
@@ -138,7 +139,7 @@ class QuickBodies:
             handle=id(body),
             derived=id(body.derived),
         )
-        return BodyKernels(self.record, record, body, state, joints, body.all_dynamics, body.derived)
+        return BodyKernels(self.record, record, joints, body, state, body.all_dynamics, body.derived)
 
     def show(self, body: SceneBody, kernels: BodyKernels) -> None:
         """Give the record of a body to the native library, unless it is soft or its id is too high."""
@@ -174,7 +175,7 @@ class QuickBodies:
 
 
 def _joint_records(body: SceneBody) -> Array[Joint]:
-    records, sensors = (Joint * body.joint_count)(), body.sensors
+    records, sensors = (Joint * body.joint_count)(), body.measured_joints
     for index, record in enumerate(records):
         dynamics = body.dynamics(index)
         lower, upper = dynamics.joint_lower_limit, dynamics.joint_upper_limit
