@@ -57,11 +57,13 @@ def _mjcf(world: World, folder: Path) -> Callable[[], Any]:
     path.write_text(
         """<mujoco><worldbody>
         <body name="a" pos="0 0 1"><joint name="i"/><geom name="g" size="0.1"/>
-        <body name="b" pos="0 0 .3"><joint name="k" axis="1 0 0"/><geom name="h" size="0.1"/></body></body>
+        <body name="b" pos="0 0 .3"><joint name="k" axis="1 0 0"/><geom name="h" size="0.1"/>
+        <site name="tip" pos="0 0 .1"/></body></body>
         </worldbody><contact><exclude body1="a" body2="b"/></contact>
         <equality><joint joint1="i" joint2="k"/></equality>
         <tendon><fixed name="t"><joint joint="i" coef="1"/></fixed></tendon>
-        <sensor><jointpos joint="i" name="s"/></sensor></mujoco>"""
+        <sensor><jointpos joint="i" name="s"/></sensor>
+        <keyframe><key name="up" qpos="0.1 0.2"/></keyframe></mujoco>"""
     )
     return lambda: world.load(path)
 
@@ -189,7 +191,7 @@ def summary(world: World) -> tuple[Any, ...]:
         world.position[: world.arrays.used["position"]].tobytes(),
         world.link_pose[: world.arrays.used["link"]].tobytes(),
         [[(it.mass, it.lateral_friction) for it in body.all_dynamics] for body in bodies],
-        [(body.spec.actuators, body.spec.sites) for body in bodies],
+        [(body.spec.actuators, body.spec.sites, body.spec.sensors, body.spec.keyframes) for body in bodies],
         repr(world.parameters),
         world.arrays.model.numpy["link_sensor"][: world.arrays.used["link"]].tobytes(),
         sorted(world.contact_arrays.soft.anchors),
