@@ -118,6 +118,13 @@ def _spin_cloth(world: World, folder: Path) -> Callable[[], Any]:
     return lambda: cloth.set_base_velocity((0.0, 0.0, 3.0), (0.0, 0.6, 0.0))
 
 
+def _force(world: World, _: Path) -> Callable[[], Any]:
+    link = world.bodies[2].links.base
+    # Poses of links are brought up to date.
+    assert link.pose
+    return lambda: link.apply_force((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
+
+
 def _colour(world: World, _: Path) -> Callable[[], Any]:
     looks, body = appearance_of(world), world.bodies[1]
     looks.shapes(body, -1)
@@ -179,9 +186,7 @@ CHANGES: dict[str, Change] = {
         lambda: world.bodies[3].joints.movable[0].set_position_target(0.3, velocity=0.2, max_force=3.0)
     ),
     "disable a motor": lambda world, _: world.bodies[3].joints.movable[0].disable_motor,
-    "apply a force": lambda world, _: (
-        lambda: world.bodies[2].links.base.apply_force((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
-    ),
+    "apply a force": _force,
     "colour": _colour,
     "switch a coupling off": _coupling,
     "stiffen a tendon": _tendon,
