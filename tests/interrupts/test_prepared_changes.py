@@ -21,6 +21,7 @@ from carom.native import uninterrupted
 from carom.native.tables import ArrayTable
 from carom.render.appearance import appearance_of
 from carom.scene.keyframes.keyframe import Keyframe
+from carom.scene.soft_body import SoftBody
 
 _OURS = str(Path(carom.__path__[0]))
 # Of the lines of a call, about so many are tried, the same ones each time.
@@ -57,11 +58,13 @@ def _mjcf(world: World, folder: Path) -> Callable[[], Any]:
     path.write_text(
         """<mujoco><worldbody>
         <body name="a" pos="0 0 1"><joint name="i"/><geom name="g" size="0.1"/>
-        <body name="b" pos="0 0 .3"><joint name="k" axis="1 0 0"/><geom name="h" size="0.1"/></body></body>
+        <body name="b" pos="0 0 .3"><joint name="k" axis="1 0 0"/><geom name="h" size="0.1"/>
+        <site name="tip" pos="0 0 .1"/></body></body>
         </worldbody><contact><exclude body1="a" body2="b"/></contact>
         <equality><joint joint1="i" joint2="k"/></equality>
         <tendon><fixed name="t"><joint joint="i" coef="1"/></fixed></tendon>
-        <sensor><jointpos joint="i" name="s"/></sensor></mujoco>"""
+        <sensor><jointpos joint="i" name="s"/></sensor>
+        <keyframe><key name="up" qpos="0.1 0.2"/></keyframe></mujoco>"""
     )
     return lambda: world.load(path)
 
@@ -82,6 +85,50 @@ def _keyframe(world: World, _: Path) -> Callable[[], Any]:
     body = world.bodies[3]
     body.add_keyframe(BodyKeyframe("there", positions=(0.3, 0.4), time=2.0))
     return Keyframe("there", [body]).reset
+
+
+def _coupling(world: World, folder: Path) -> Callable[[], Any]:
+    coupling = next(iter(_mjcf(world, folder)().constraints.values()))
+    return lambda: setattr(coupling, "enabled", False)
+
+
+def _tendon(world: World, folder: Path) -> Callable[[], Any]:
+    tendon = _mjcf(world, folder)().tendons["t"]
+    return lambda: setattr(tendon, "stiffness", 3.0)
+
+
+def _cloth(world: World, _: Path) -> SoftBody:
+    cloth = world.load_cloth(size=(0.1, 0.1), cells=(1, 1), position=(0.0, 5.0, 1.0))
+    cloth.set_node_velocities(np.ones((4, 3)))
+    return cloth
+
+
+def _nodes(world: World, folder: Path) -> Callable[[], Any]:
+    cloth = _cloth(world, folder)
+    return lambda: cloth.set_nodes(cloth.nodes + 0.1)
+
+
+def _place_cloth(world: World, folder: Path) -> Callable[[], Any]:
+    cloth = _cloth(world, folder)
+    return lambda: cloth.set_base_pose((0.0, 0.0, 3.0), (0.0, 0.6, 0.0, 0.8))
+
+
+def _spin_cloth(world: World, folder: Path) -> Callable[[], Any]:
+    cloth = _cloth(world, folder)
+    return lambda: cloth.set_base_velocity((0.0, 0.0, 3.0), (0.0, 0.6, 0.0))
+
+
+def _force(world: World, _: Path) -> Callable[[], Any]:
+    link = world.bodies[2].links.base
+    # Poses of links are brought up to date.
+    assert link.pose
+    return lambda: link.apply_force((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
+
+
+def _colour(world: World, _: Path) -> Callable[[], Any]:
+    looks, body = appearance_of(world), world.bodies[1]
+    looks.shapes(body, -1)
+    return lambda: looks.change(body, -1, rgba=(1.0, 0.0, 0.0, 1.0), specular=(0.1, 0.2, 0.3))
 
 
 Change = Callable[[World, Path], Callable[[], Any]]
@@ -135,6 +182,17 @@ CHANGES: dict[str, Change] = {
     "place a base": lambda world, _: (
         lambda: world.bodies[1].set_base_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8))
     ),
+    "aim a motor": lambda world, _: (
+        lambda: world.bodies[3].joints.movable[0].set_position_target(0.3, velocity=0.2, max_force=3.0)
+    ),
+    "disable a motor": lambda world, _: world.bodies[3].joints.movable[0].disable_motor,
+    "apply a force": _force,
+    "colour": _colour,
+    "switch a coupling off": _coupling,
+    "stiffen a tendon": _tendon,
+    "move nodes": _nodes,
+    "place a cloth": _place_cloth,
+    "spin a cloth": _spin_cloth,
     "absent": lambda world, _: lambda: setattr(world.bodies[2], "present", False),
 }
 
@@ -189,12 +247,23 @@ def summary(world: World) -> tuple[Any, ...]:
         world.position[: world.arrays.used["position"]].tobytes(),
         world.link_pose[: world.arrays.used["link"]].tobytes(),
         [[(it.mass, it.lateral_friction) for it in body.all_dynamics] for body in bodies],
-        [(body.spec.actuators, body.spec.sites) for body in bodies],
+        [(body.spec.actuators, body.spec.sites, body.spec.sensors, body.spec.keyframes) for body in bodies],
         repr(world.parameters),
         world.arrays.model.numpy["link_sensor"][: world.arrays.used["link"]].tobytes(),
         sorted(world.contact_arrays.soft.anchors),
         len(world.observers),
+        [
+            rows[: world.arrays.used["dof"]].tobytes()
+            for rows in (world.motor, world.pd, world.link_force[: world.arrays.used["link"]])
+        ],
+        [(it.enabled, it.spring, it.range) for it in world.user_constraints.all],
+        [_rows_of_nodes(world, name) for name in ("node_position", "node_velocity")],
+        [repr(appearance_of(world)._looks.get(body)) for body in bodies],
     )
+
+
+def _rows_of_nodes(world: World, name: str) -> bytes:
+    return world.arrays.state.numpy[name][0, : world.arrays.used["node"]].tobytes()
 
 
 def at_lines(call: Callable[[], Any], at_line: Callable[[], None]) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from carom import Camera, World
+from carom import Camera, World, Worlds
 from carom.algorithms.inverse_dynamics import inverse_dynamics
 from carom.algorithms.inverse_kinematics import inverse_kinematics
 from carom.algorithms.jacobian import jacobian
@@ -212,3 +212,16 @@ def test_worlds_do_not_wait_for_each_other() -> None:
         thread.start()
         thread.join(10.0)
         assert not thread.is_alive()
+
+
+def test_calls_of_worlds_wait_for_each_other() -> None:
+    worlds, done = Worlds(made(), 3), list[str]()
+    thread = Thread(target=lambda: (worlds.step(), done.append("stepped")))
+    with worlds.lock:
+        thread.start()
+        thread.join(0.2)
+        assert not done
+        worlds.step()
+    thread.join()
+    assert done == ["stepped"]
+    assert worlds.times.tolist() == pytest.approx([2.0 / 240.0] * 3)

@@ -113,7 +113,7 @@ class ContactArrays:
         for links in parted:
             shapes = [row for link in links for row in range(first[link], first[link] + count[link])]
             lost += shapes
-            # As if they had been moved, see `note_reset`.
+            # As if they had been moved, see `note_resets`.
             counts[RESETS] = resets = min(int(counts[RESETS]) + 1, MAX_RESETS)
             for tree in {int(rows["shape_tree"][shape]) for shape in shapes}:
                 change.write(numbers[tree : tree + 1], -resets)
@@ -132,6 +132,10 @@ class ContactArrays:
         """Sort rows anew in the next step: movable trees, constraints or parameters may be others."""
         self.contacts.numpy["count_contacts"][:, SORTED] = 0
 
+    def note_order(self, change: Change) -> None:
+        """`forget_order` of a single world with a change."""
+        change.write_numbers(self.contacts.numpy["count_contacts"][0, SORTED : SORTED + 1], (0,), "i")
+
     def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
         """Do not warm start contacts in the next step, because a body was moved.
 
@@ -149,9 +153,10 @@ class ContactArrays:
 
     def note_cold_start(self, change: Change) -> None:
         """`forget_warm_start` of a single world with a change."""
-        change.write(self.contacts.numpy["contact_warm_start"][0, : self.contact_count], 0.0)
+        if count := self.contact_count:
+            change.write(self.contacts.numpy["contact_warm_start"][0, :count], 0.0)
 
-    def note_reset(self, change: Change, tree: int, *, moved: bool) -> None:
+    def note_resets(self, change: Change, tree: int, *moved: bool) -> None:
         """Note that a change resets a body of a single world, for the order in which contacts are relaxed.
 
         Only PyBullet's functions do so, since only there the order of calls is known to matter.
@@ -159,15 +164,20 @@ class ContactArrays:
         Args:
             change: The change.
             tree: Its tree.
-            moved: Whether it has another pose now; else only the first call after a step counts.
+            *moved: For each of its resets, whether it has another pose then; else only the first one after
+                a step counts.
         """
-        counts = change.arrays(self.contacts.numpy)["count_contacts"][0]
-        numbers = change.arrays(self._arrays.state.numpy)["tree_reset"][0]
-        if not moved and abs(numbers[tree]) > counts[RESETS_SEEN]:
-            return
-        count = min(int(counts[RESETS]) + 1, MAX_RESETS)
-        counts[RESETS] = count
-        numbers[tree] = -count if moved else count
+        counts = self.contacts.numpy["count_contacts"][0, RESETS : RESETS_SEEN + 1]
+        numbers = self._arrays.state.numpy["tree_reset"][0, tree : tree + 1]
+        (count, seen), (number,) = counts.tolist(), numbers.tolist()
+        before = count, number
+        for moves in moved:
+            if moves or abs(number) <= seen:
+                count = min(count + 1, MAX_RESETS)
+                number = -count if moves else count
+        if (count, number) != before:
+            change.write_numbers(counts, (count, seen), "i")
+            change.write_numbers(numbers, (number,), "i")
 
     def reserve(self) -> None:
         """Grow arrays to the capacity of the arrays with the same axes."""

@@ -14,8 +14,10 @@ from carom.layouts.model import Settings
 from carom.model.builder import WorldArrays
 from carom.native.change import Change
 
+# Parameters that are in arrays of the model, which launches read.
+_IN_ARRAYS = {"gravity", "fluid_density", "fluid_viscosity", "wind"}
 # Comparing the parameters takes a fifth of the time of what is derived from them.
-_PARAMETERS = attrgetter(*[known.name for known in fields(EngineParameters)])
+_PARAMETERS = attrgetter(*[known.name for known in fields(EngineParameters) if known.name not in _IN_ARRAYS])
 # Fields of `Model` in which the parameters of the fluid are.
 _FLUID = ("fluid_density", "fluid_viscosity", "fluid_wind")
 
@@ -32,6 +34,8 @@ class EngineSettings:
         self._written: dict[str, Any] = {}
         # The parameters and numbers that have been written.
         self._given: tuple[Any, ...] = ()
+        # Whether parameters have changed since.
+        self._is_outdated = False
         # Those of them that are numbers of constraints.
         self._constraint_counts = (0, 0)
         self._gravity = (0.0, 0.0, 0.0)
@@ -39,12 +43,12 @@ class EngineSettings:
 
     def note_change(self, change: Change) -> None:
         """Update the struct before it is used again: parameters change."""
-        change.set(self, "_given", ())
+        change.set(self, "_is_outdated", True)
 
     def has_counts(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
         """Whether the struct has the present numbers of constraints, and parameters."""
         counts = arrays.used["constraint"], contact_arrays.user_count
-        return bool(self._given) and counts == self._constraint_counts
+        return bool(self._given) and not self._is_outdated and counts == self._constraint_counts
 
     def update(
         self,
@@ -73,6 +77,7 @@ class EngineSettings:
         of_shapes = (shapes.shape_count, shapes.filter_count, shapes.filters.has_contacts, shapes.looks_ahead)
         given = (*_PARAMETERS(parameters), used["tree"], used["link"], *of_constraints, *of_shapes)
         if given == self._given:
+            self._is_outdated = False
             return
         self._given = ()
         for name, value in _values(parameters, arrays, contact_arrays).items():
@@ -81,7 +86,7 @@ class EngineSettings:
                 setattr(self.struct, name, value)
                 self._written[name] = value
         tell()
-        self._given, self._constraint_counts = given, of_constraints
+        self._given, self._constraint_counts, self._is_outdated = given, of_constraints, False
 
 
 def _values(

@@ -10,7 +10,8 @@ from __future__ import annotations
 import ctypes
 import sys
 import sysconfig
-from collections.abc import Callable, Mapping, Sequence
+from array import array
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
@@ -176,6 +177,15 @@ class Change:
             source[...] = values
         self._writes += target, source
 
+    def write_numbers(
+        self, target: np.ndarray | memoryview[float], values: Iterable[float], code: str = "d"
+    ) -> None:
+        """Write as many numbers to memory: what `write` does, in less time where there are few.
+
+        They are of the type that `code` stands for in the module `array`, by default doubles.
+        """
+        self._writes += target, array(code, values)
+
     def copy_blocks(self, blocks: bytes, kept: object) -> None:
         """Copy blocks of memory, given as records (`layouts.table_rows.Block`), which point into `kept`."""
         self._blocks.append(blocks)
@@ -209,7 +219,7 @@ class Change:
         if self._copies is not None:
             for copies in self._copies.values():
                 for name, copy in copies.items():
-                    self.write(copies.originals[name], copy, lasting=True)
+                    self._writes += copies.originals[name], copy
         commit = _commit() or _make
         commit(
             self._attributes,
@@ -223,7 +233,9 @@ class Change:
         )
 
 
-def blank(record: ctypes.Structure, path: str, value: ctypes.c_int64 | ctypes.c_double = _ZERO) -> bytes:
+def blank(
+    record: ctypes.Structure, path: str, value: ctypes.c_int64 | ctypes.c_int32 | ctypes.c_double = _ZERO
+) -> bytes:
     """The block that writes a value, 0 by default, to a field of a record; its path has points.
 
     The value has to be kept until it is written.
@@ -321,7 +333,7 @@ def _make(
         if cuts:
             _symbols().carom_cut_rows(b"".join(cuts), ctypes.c_int64(len(cuts)))
         for target, source in _in_turn(writes, 2):
-            target[...] = source
+            target[slice(None) if type(target) is memoryview else ...] = source
         for source, target, size in _BLOCK.iter_unpack(b"".join(blocks)):
             ctypes.memmove(target, source, size)
         if runs:

@@ -111,13 +111,15 @@ class Appearance:
         looks = self._of(body)[link - BASE]
         if texture is not None and texture != NO_TEXTURE:
             self.textures.image(texture)
+        values = {"rgba": rgba, "specular": specular, "texture": texture, "two_sided": two_sided}
+        given = {name: value for name, value in values.items() if value is not None}
+        if rgba is not None:
+            given["coloured"] = True
+        change = Change()
         for look in looks if shape is None else [looks[shape]]:
-            look.rgba = look.rgba if rgba is None else rgba
-            look.coloured = look.coloured or rgba is not None
-            look.specular = look.specular if specular is None else specular
-            look.texture = look.texture if texture is None else texture
-            look.two_sided = look.two_sided if two_sided is None else two_sided
-        self.changes += 1
+            change.set_all(look, **given)
+        change.set(self, "changes", self.changes + 1)
+        change.commit()
 
     def knows(self, body: Body) -> bool:
         """Whether the appearance of a body has been read or changed already."""

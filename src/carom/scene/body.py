@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from functools import cached_property
 from math import sqrt
@@ -49,6 +49,10 @@ if TYPE_CHECKING:
 
 _NUMBER = np.dtype(NUMPY_REAL)
 _SPATIAL = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
+_NO_REACTION = (0.0,) * BASE_VELOCITIES
+
+JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
+"""A joint, its position coordinates, and its velocity coordinates; None keeps them."""
 
 
 class Outline:
@@ -333,7 +337,7 @@ class Body(Closed):
         scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
         first, change = self.first_position, Change()
         pose = *position, x * scale, y * scale, z * scale, w * scale
-        change.write(self.world.position[first : first + BASE_POSITIONS], pose)
+        change.write_numbers(self.world.position_memory[first : first + BASE_POSITIONS], pose)
         self.world.contact_arrays.note_cold_start(change)
         self.world.note_link_poses(change, self)
         change.commit()
@@ -360,28 +364,36 @@ class Body(Closed):
             velocity: All velocity coordinates of the joint; None keeps them.
         """
         change = Change()
-        self.note_joint_state(change, joint, position, velocity)
+        self.note_joint_states(change, [(joint, position, velocity)])
         self.world.note_link_poses(change, self)
         change.commit()
 
-    def note_joint_state(
-        self, change: Change, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
-    ) -> list[float]:
-        """Set the state of a joint with a change, as `set_joint_state`; poses of links stay.
+    def note_joint_states(self, change: Change, states: Iterable[JointReset]) -> list[bool]:
+        """Set the states of joints, in turn, with a change, as `set_joint_state`; poses of links stay.
 
         Returns:
-            The coordinates that are set.
+            Of each whether its coordinates change.
         """
-        if position is not None and (count := self.position_count[joint]):
-            first = self.position_index[joint]
-            if count == 4:
-                size = sum(component * component for component in position) ** 0.5
-                position = [component / size for component in position]
-            change.write(self.world.position[first : first + count], position)
-        if velocity is not None and (count := self.velocity_count[joint]):
-            first = self.velocity_index[joint]
-            change.write(self.world.velocity[first : first + count], velocity)
-        return list(position or ())
+        first, first_rate, moved = self.first_position, self.first_velocity, list[bool]()
+        place = self.world.position_memory[first : first + self.rows.count["position"]]
+        motion = self.world.velocity_memory[first_rate : first_rate + self.rows.count["dof"]]
+        coordinates, rates = list(place), list(motion)
+        for joint, position, velocity in states:
+            moves = False
+            if position is not None and (count := self.position_count[joint]):
+                if count == 4:
+                    size = sum(component * component for component in position) ** 0.5
+                    position = [component / size for component in position]
+                start = self.position_index[joint] - first
+                moves = coordinates[start : start + count] != [*position]
+                coordinates[start : start + count] = position
+            if velocity is not None and (count := self.velocity_count[joint]):
+                start = self.velocity_index[joint] - first_rate
+                rates[start : start + count] = velocity
+            moved.append(moves)
+        change.write_numbers(place, coordinates)
+        change.write_numbers(motion, rates)
+        return moved
 
     @alone("world.lock")
     def coordinates(self) -> list[float]:
@@ -390,9 +402,9 @@ class Body(Closed):
         return self.world.position[first : first + count].tolist()
 
     def note_reset(self, *, moved: bool) -> None:
-        """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_reset`."""
+        """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_resets`."""
         change = Change()
-        self.world.contact_arrays.note_reset(change, self.rows.tree, moved=moved)
+        self.world.contact_arrays.note_resets(change, self.rows.tree, moved)
         change.commit()
 
     @alone("world.lock")
@@ -454,16 +466,26 @@ class Body(Closed):
 
     def has_sensor(self, joint: int) -> bool:
         """Whether the force-torque sensor of a joint is on."""
-        return bool(self.world.arrays.model.numpy["link_sensor"][self.first_link + 1 + joint] & SENSED)
+        return bool(self.measured_joints[joint] & SENSED)
+
+    @property
+    def measured_joints(self) -> list[int]:
+        """What is measured of each joint: bits `SENSED` and `LOADED`."""
+        first = self.first_link + 1
+        return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
 
     @alone("world.lock")
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
         change = Change()
+        self.note_sensor(change, joint, enabled=enabled)
+        change.commit()
+
+    def note_sensor(self, change: Change, joint: int, *, enabled: bool) -> None:
+        """The same with a change."""
         self._note_sensor(change, joint, SENSED, on=enabled)
         if not enabled:
-            change.write(self.world.joint_reaction[self.first_link + 1 + joint], 0.0)
-        change.commit()
+            change.write_numbers(self.world.joint_reaction[self.first_link + 1 + joint], _NO_REACTION)
 
     def measure_load(self, change: Change, joint: int) -> None:
         """Measure what a joint transmits after a change, for sensors of sites and of its limit."""
@@ -473,7 +495,7 @@ class Body(Closed):
         model = change.arrays(self.world.arrays.model.numpy)
         sensors = model["link_sensor"][self.first_link : self.first_link + 1 + self.joint_count]
         sensors[1 + joint] = sensors[1 + joint] | kind if on else sensors[1 + joint] & ~kind
-        model["tree_sensor_count"][self.rows.tree] = int(np.count_nonzero(sensors))
+        model["tree_sensor_count"][self.rows.tree] = len(sensors) - sensors.tolist().count(0)
 
 
 def _body_of(world: World, number: int) -> Body:

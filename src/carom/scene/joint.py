@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -217,9 +218,12 @@ class Joint:
     ) -> tuple[list[float], list[float]]:
         """The coordinates of a state for `reset`, checked as it does."""
         world_of(self.body)  # raises an error if the body has been removed
-        position = vector(np.atleast_1d(position), self.body.position_count[self.index], "position")
+        given = (position,) if isinstance(position, float) else np.atleast_1d(position)
+        position = vector(given, self.body.position_count[self.index], "position")
         if self._has_quaternion and not position.any():
             raise ValueError("position must be a quaternion other than 0")
+        if isinstance(velocity, float) and isfinite(velocity):
+            return position.tolist(), [velocity] * self.degrees_of_freedom
         velocity = np.broadcast_to(finite(velocity, "velocity"), self.degrees_of_freedom)
         return position.tolist(), velocity.tolist()
 
@@ -467,11 +471,10 @@ class Joints(Named[Joint]):
         states = []
         for joint in self._movable:
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
-            states.append(joint.checked_state(positions[q:q_end], velocities[u:u_end]))
+            states.append((joint.index, *joint.checked_state(positions[q:q_end], velocities[u:u_end])))
             q, u = q_end, u_end
         change = Change()
-        for joint, state in zip(self._movable, states, strict=True):
-            self._body.note_joint_state(change, joint.index, *state)
+        self._body.note_joint_states(change, states)
         self._body.world.note_link_poses(change, self._body)
         change.commit()
 

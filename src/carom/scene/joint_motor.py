@@ -32,6 +32,7 @@ from carom.layouts.codes import (
     PD_POSITION,
     PD_VELOCITY,
 )
+from carom.native.change import Change
 
 
 class Drives(NamedTuple):
@@ -84,9 +85,14 @@ class Drives(NamedTuple):
             MOTOR_MAX_IMPULSE: not_negative(max_force, "max_force") * self.substep_time,
             MOTOR_DAMPING: finite(damping, "damping"),
         }
-        self._write(self.motor, columns)
         assert isinstance(self.dofs, slice)
-        self.motor[self.dofs.start, MOTOR_TARGET_W] = w
+        change, target = Change(), self.motor[self.dofs]
+        told = target.copy()
+        for column, values in columns.items():
+            told[:, column] = values
+        told[0, MOTOR_TARGET_W] = w
+        change.write(target, told, lasting=True)
+        change.commit()
 
     def pull_like_a_spring(
         self,
@@ -131,11 +137,25 @@ class Drives(NamedTuple):
 
     def switch_off(self) -> None:
         """Switch off the motors and the PD drives."""
+        if isinstance(self.dofs, slice) and type(self.motor) is np.ndarray:
+            change = Change()
+            change.write(self.motor[..., self.dofs, MOTOR_MAX_IMPULSE], 0.0)
+            change.write(self.pd[..., self.dofs, PD_MAX_FORCE], 0.0)
+            change.commit()
+            return
         self.motor[..., self.dofs, MOTOR_MAX_IMPULSE] = 0.0
         self.pd[..., self.dofs, PD_MAX_FORCE] = 0.0
 
     def _write(self, rows: np.ndarray, columns: Mapping[int, np.ndarray]) -> None:
-        """Write columns after checking that all of them fit the rows, so that an error changes nothing."""
+        """Write columns at once if all of them fit the rows, so that an error changes nothing."""
+        if isinstance(self.dofs, slice) and type(rows) is np.ndarray:
+            change, target = Change(), rows[..., self.dofs, :]
+            told = target.copy()
+            for column, values in columns.items():
+                told[..., column] = values
+            change.write(target, told, lasting=True)
+            change.commit()
+            return
         shape = rows[..., self.dofs, 0].shape
         fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
         for column, values in fitting.items():

@@ -147,9 +147,8 @@ class Link:
             if frame == "link":
                 place = np.array(compose(self._link_frame(), Pose(_triple(place))).position)
             arm = place - centre
-        wrench = world_of(self.body).link_force[self._row]
-        wrench[:3] += world_force
-        wrench[3:] += np.cross(arm, world_force)
+        # One statement.
+        world_of(self.body).link_force[self._row] += np.append(world_force, np.cross(arm, world_force))
 
     @alone("body.world.lock")
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:

@@ -12,6 +12,7 @@ from carom.checks import Array, finite
 from carom.description.transform import rotation_matrix
 from carom.model.soft_arrays import Anchor, SoftRows
 from carom.model.soft_spec import SoftSpec
+from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.products import dots, length, product
 from carom.scene.body import Body
@@ -110,8 +111,7 @@ class SoftBody(Body):
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        self.nodes[:] = _as_many(positions, self.nodes.shape, "positions")
-        self.update()
+        self._change_nodes(positions=_as_many(positions, self.nodes.shape, "positions"))
 
     @alone("world.lock")
     def set_node_velocities(self, velocities: Array | Sequence[Sequence[float]]) -> None:
@@ -120,8 +120,7 @@ class SoftBody(Body):
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        self.node_velocities[:] = _as_many(velocities, self.node_velocities.shape, "velocities")
-        self.update()
+        self._change_nodes(velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
 
     @alone("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
@@ -131,17 +130,27 @@ class SoftBody(Body):
         center = state["position"][0, first : first + 3].copy()
         before = np.array(rotation_matrix(_unit(state["position"][0, first + 3 : first + 7])))
         turn = product(np.array(rotation_matrix(_unit(orientation))), before.T)
-        self.nodes[:] = product(self.nodes - center, turn.T) + np.asarray(position)
-        self.node_velocities[:] = product(self.node_velocities, turn.T)
-        self.update()
+        self._change_nodes(
+            product(self.nodes - center, turn.T) + np.asarray(position), product(self.node_velocities, turn.T)
+        )
 
     @alone("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
-        self.node_velocities[:] = np.asarray(linear) + np.cross(np.asarray(angular), self.nodes - center)
-        self.update()
+        turning = np.cross(np.asarray(angular), self.nodes - center)
+        self._change_nodes(velocities=np.asarray(linear) + turning)
+
+    def _change_nodes(self, positions: Array | None = None, velocities: Array | None = None) -> None:
+        """Set positions or velocities of nodes, and with them the pose and the velocity of the base."""
+        change = Change()
+        for target, values in ((self.nodes, positions), (self.node_velocities, velocities)):
+            if values is not None:
+                change.write(target, values)
+        self.world.contact_arrays.soft.note_anchors(change)
+        self.world.note_soft_poses(change)
+        change.commit()
 
     def change_dynamics(self, link: int | str, **changes: Any) -> None:
         """Change contact parameters, as `Body.change_dynamics`; as in PyBullet the mass does not change."""

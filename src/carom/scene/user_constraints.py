@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +63,18 @@ _FIELDS = (
     "user_armature",
     "user_range",
 )
+# The places in a row of attributes that are numbers.
+_PLACES = {
+    "max_impulse": _FIELDS.index("user_max_impulse"),
+    "gear_ratio": _FIELDS.index("user_gear_ratio"),
+    "relative_position_target": _FIELDS.index("user_relative_target"),
+    "erp": _FIELDS.index("user_erp"),
+}
+_PIVOT, _FRAME = _FIELDS.index("user_pivot_b"), _FIELDS.index("user_frame_b")
+# Those that are not in a row.
+_NOT_IN_ROWS = {"max_force"}
+# Those that can change in a row by themselves.
+_CHANGES = {*_PLACES, *_NOT_IN_ROWS, "child_frame"}
 # Those of parts of paths.
 _PATH_FIELDS = (
     "path_kind",
@@ -307,6 +319,31 @@ class UserConstraints:
         if self._written:
             change.set(self, "_written", [])
 
+    def note_values(
+        self, change: Change, constraint: UserConstraint, values: Mapping[str, Any], arrays: ContactArrays
+    ) -> bool:
+        """Change attributes of a constraint, and their numbers in its row, with a change.
+
+        Returns:
+            Whether its row is up to date then; else `write` has to write it.
+        """
+        change.set_all(constraint, **values)
+        numbers = list(self._by_id)
+        if numbers != self._solved or len(self._written) != len(numbers) or not values.keys() <= _CHANGES:
+            return False
+        row, written = numbers.index(constraint.id), self._written.copy()
+        terms = list(written[row])
+        for name, value in values.items():
+            if name == "child_frame":
+                _note_term(change, arrays, row, terms, _PIVOT, value.position)
+                _note_term(change, arrays, row, terms, _FRAME, value.orientation)
+            elif name not in _NOT_IN_ROWS:
+                _note_term(change, arrays, row, terms, _PLACES[name], value)
+        written[row] = tuple(terms)
+        change.set(self, "_written", written)
+        arrays.note_order(change)
+        return True
+
     def write(self, contact_arrays: ContactArrays, state: ArrayTable) -> None:
         """Write all constraints that have changed to the arrays of the engine; impulses follow their rows."""
         now, parts = [], []
@@ -371,6 +408,16 @@ class UserConstraints:
             else bytes(_ROW_BYTES)
             for number in numbers
         )
+
+
+def _note_term(
+    change: Change, arrays: ContactArrays, row: int, terms: list[Any], place: int, value: Any
+) -> None:
+    """Write a number, or several, of a row of `_FIELDS` with a change, if it is another."""
+    if terms[place] != value:
+        terms[place] = value
+        target = arrays.users.numpy[_FIELDS[place]][row : row + 1]
+        change.write_numbers(target, value if isinstance(value, tuple) else (value,))
 
 
 def _write_paths(contact_arrays: ContactArrays, parts: Sequence[tuple[Any, ...]]) -> None:

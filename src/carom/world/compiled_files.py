@@ -37,22 +37,29 @@ def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
         filters.set(a, b, enabled=True, contact=model.paired[names])
 
 
+def equip(bodies: Sequence[Body], model: CompiledModel) -> None:
+    """Give bodies the sites, sensors and keyframes of their file, and muscles their forces.
+
+    The constraints of the file have been made.
+    """
+    places = {
+        body.spec.link(index).name: (body, index)
+        for body in reversed(bodies)
+        for index in range(BASE, len(body.spec.links))
+    }
+    _give_sites(places, model)
+    find_forces(bodies)
+    _give_sensors(bodies, places, model)
+    give_keyframes(bodies, model)
+
+
 def describe(scene: Scene, model: CompiledModel) -> None:
-    """Give a scene the sites, cameras, actuators, sensors, keyframes and options of its file."""
+    """Give a scene the sites, cameras, actuators and options of its file."""
     scene.sites = dict(model.sites)
     scene.cameras = dict(model.cameras)
     scene.options = dict(model.options)
     of_bodies = {it.name: it for body in scene.bodies for it in body.actuators}
     scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
-    places = {
-        body.spec.link(index).name: (body, index)
-        for body in reversed(scene.bodies)
-        for index in range(BASE, len(body.spec.links))
-    }
-    _give_sites(places, model)
-    find_forces(scene.bodies)
-    _give_sensors(scene.bodies, places, model)
-    give_keyframes(scene.bodies, model)
 
 
 def _give_sites(places: Mapping[str, tuple[Body, int]], model: CompiledModel) -> None:

@@ -274,7 +274,7 @@ class DescriptionLoading(BodyAdding):
         from carom.checks import vector
         from carom.description.pose import Pose
         from carom.world.compiled_constraints import constrain
-        from carom.world.compiled_files import describe, finish
+        from carom.world.compiled_files import describe, equip, finish
         from carom.world.robot_files import couple, has_mimics, placed, read_robot_file, report
         from carom.world.scene import Scene
 
@@ -290,6 +290,7 @@ class DescriptionLoading(BodyAdding):
                 finish(bodies, source.model)
                 frame = Pose((place[0], place[1], place[2]), (turn[0], turn[1], turn[2], turn[3]))
                 constraints.extend(constrain(bodies, source.model, frame))
+                equip(bodies, source.model)
 
         needs_more = source.model is not None or any(has_mimics(spec) for spec, _ in source.bodies)
         bodies = self.load_all(placed(source.bodies, place, turn), also if needs_more else None)

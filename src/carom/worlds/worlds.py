@@ -16,6 +16,7 @@ from carom.engine.engine import MAX_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
+from carom.native.gates import alone
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
@@ -50,6 +51,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
     joint limits, and which user constraints are active. The first axis of arrays is the world: (count, ...).
 
     Attributes:
+        lock: The lock that `step` and the other methods have from their arguments to their results; hold it
+            to make several calls, or to use views and batches, without those of other threads in between.
         count: Number of worlds.
         device: The device they are on.
         times: Simulated time of each world [s], shape (count,).
@@ -80,6 +83,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.count: int = count
         self._thread_count = threads
         self._scene = world.copy()
+        self.lock: Any = self._scene.lock
         self._scene.prepare()
         self._engine = make_engine(self._scene, count, device, threads)
         self.device: str = device if isinstance(device, str) else device.name
@@ -135,6 +139,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._scene.parameters.time_step = seconds
         self._engine.update_settings(self._scene.parameters)
 
+    @alone("lock")
     def step(self, count: int = 1, where: ArrayLike | None = None) -> None:
         """Advance the worlds that are not halted by `count` time steps.
 
@@ -197,6 +202,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         if len(worlds) > _MAX_NAMED:
             warnings.warn(f"{len(worlds)} worlds are halted", SimulationWarning, stacklevel=4)
 
+    @alone("lock")
     def detect_collisions(self) -> None:
         """Find the contacts of all worlds for their present coordinates, without a step."""
         if self._engine.can_collide:
@@ -204,6 +210,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
 
     # States
 
+    @alone("lock")
     def save(self, where: ArrayLike | None = None) -> SavedWorlds:
         """The present states, for `restore`.
 
@@ -213,6 +220,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
+    @alone("lock")
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
         """Restore worlds to states of `save`; the steps that follow are then the same, bit for bit.
 
@@ -233,6 +241,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.times[worlds], self._unspent_times[worlds] = start.times[rows], start.unspent_times[rows]
         self.halted[worlds] = False
 
+    @alone("lock")
     def checkpoint(self) -> dict[str, Any]:
         """States and parameters of all worlds, for `resume`, also in another process.
 
@@ -252,6 +261,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
             "parameters": parameters_of(self._engine),
         }
 
+    @alone("lock")
     def resume(self, saved: Mapping[str, Any]) -> None:
         """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
 
@@ -272,6 +282,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
         self.time_step = saved["time_step"]
 
+    @alone("lock")
     def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
         """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
 
@@ -286,6 +297,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.times[worlds] = reset_to(self._scene, self._engine, name, worlds)
         self.halted[worlds] = False
 
+    @alone("lock")
     def extract(self, world: int) -> World:
         """A copy of one of the worlds as a `World`, which continues exactly as it would.
 
@@ -303,6 +315,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         lone.parameters.sensor_seed = int(self.sensor_seeds[number])
         return lone
 
+    @alone("lock")
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
@@ -341,6 +354,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def gravity(self, value: ArrayLike) -> None:
         self.set_gravity(value)
 
+    @alone("lock")
     def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
         """Set the gravity of each world, or of some.
 
@@ -355,6 +369,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
         self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
 
+    @alone("lock")
     def set_fluid(
         self,
         density: ArrayLike | None = None,
@@ -385,6 +400,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         for name, values in found.items():
             self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
 
+    @alone("lock")
     def enable_constraint(
         self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
     ) -> None:
@@ -405,6 +421,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._engine.set_parameter("users", "user_enabled", row, holds, worlds.rows)
         self._engine.contact_arrays.forget_order()
 
+    @alone("lock")
     def constraint_enabled(self, constraint: UserConstraint | int) -> Mask:
         """In which worlds a user constraint is active, a copy (count,).
 
@@ -427,6 +444,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
 
     # Queries
 
+    @alone("lock")
     def rays(self, starts: ArrayLike, ends: ArrayLike, *, mask: int = -1) -> RayHits:
         """Results of rays in each world.
 
@@ -442,6 +460,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def _ray_caster(self) -> RayCaster:
         return RayCaster(self._engine, self._scene.link_places)
 
+    @alone("lock")
     def images(self, camera: Camera, where: ArrayLike | None = None) -> Images:
         """Camera images of each world, drawn on all threads; those of soft bodies one after the other.
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from ctypes import addressof
+from ctypes import addressof, c_int32
 from functools import cached_property
 from math import nan
 from typing import TYPE_CHECKING, cast
 
 from carom.description.pose import Quaternion, Vector3
+from carom.native.change import Change, blank
 from pybullet._bodies.quick_bodies import QuickBodies, box_records, link_records, write_moments
 from pybullet._joints.joint_info import JointInfo, joint_info
 
@@ -69,6 +70,12 @@ class BodyAccess:
             numbers[7:13],
             numbers[13 : 13 + velocities],
         )
+
+    def note_sensor(self, change: Change, joint: int, *, enabled: bool) -> None:
+        """Switch the sensor of a joint on or off with a change."""
+        self.body.note_sensor(change, joint, enabled=enabled)
+        record, shown = self.kernels.joints[joint], c_int32(enabled)
+        change.copy_blocks(blank(record, "has_sensor", shown), (record, shown))
 
     def reset_joint(self, joint: int, position: float, velocity: float) -> None:
         """Set the state of a joint with one degree of freedom, without physics; others stay as they are.

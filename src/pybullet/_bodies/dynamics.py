@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 from carom.description.pose import Quaternion, Vector3
 from carom.layouts.quick_calls import CHANGE_DYNAMICS
+from carom.native.change import Change
 from pybullet._calls.arguments import MAX_MAGNITUDE, Vector, integer, real, vector3
 from pybullet._calls.builtin import exported
 from pybullet._calls.errors import fail, logger
@@ -268,8 +269,9 @@ def enableJointForceTorqueSensor(
         fail(problem, no_joint(access.body, index))
     client = client_of(physicsClientId)
     with client.lock:
-        access.body.set_sensor(index, enabled)
-        client.bodies.forget(access.body.id)
+        change = Change()
+        access.note_sensor(change, index, enabled=enabled)
+        change.commit()
 
 
 def _refuse_size(name: str, value: float) -> NoReturn:

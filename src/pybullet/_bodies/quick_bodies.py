@@ -14,6 +14,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from carom.description.transform import inverse
+from carom.layouts.codes import SENSED
 from carom.layouts.quick_bodies import (
     MOTOR_NUMBERS,
     POSE_NUMBERS,
@@ -52,13 +53,14 @@ class BodyKernels:
 
     Attributes:
         record: The body's record.
+        joints: Those of its joints.
     """
 
-    __slots__ = ("_address", "_kept", "record")
+    __slots__ = ("_address", "_kept", "joints", "record")
 
-    def __init__(self, client: Client, record: Body, *kept: Any) -> None:
+    def __init__(self, client: Client, record: Body, joints: Array[Joint], *kept: Any) -> None:
         call = Call(client=addressof(client), body=addressof(record))
-        self.record = record
+        self.record, self.joints = record, joints
         self._kept = client, call, kept
         self._address = addressof(call)
 
@@ -137,7 +139,7 @@ class QuickBodies:
             handle=id(body),
             derived=id(body.derived),
         )
-        return BodyKernels(self.record, record, body, state, joints, body.all_dynamics, body.derived)
+        return BodyKernels(self.record, record, joints, body, state, body.all_dynamics, body.derived)
 
     def show(self, body: SceneBody, kernels: BodyKernels) -> None:
         """Give the record of a body to the native library, unless it is soft or its id is too high."""
@@ -173,7 +175,7 @@ class QuickBodies:
 
 
 def _joint_records(body: SceneBody) -> Array[Joint]:
-    records = (Joint * body.joint_count)()
+    records, sensors = (Joint * body.joint_count)(), body.measured_joints
     for index, record in enumerate(records):
         dynamics = body.dynamics(index)
         lower, upper = dynamics.joint_lower_limit, dynamics.joint_upper_limit
@@ -181,7 +183,7 @@ def _joint_records(body: SceneBody) -> Array[Joint]:
         record.velocity = body.velocity_index[index] - body.first_velocity
         record.position_count = body.position_count[index]
         record.dof_count = body.velocity_count[index]
-        record.has_sensor = body.has_sensor(index)
+        record.has_sensor = sensors[index] & SENSED
         # Without limits the lower one is greater.
         record.lower, record.upper = (lower, upper) if lower <= upper else (-inf, inf)
     return records

@@ -214,7 +214,8 @@ def quantities(values: Any, problem: str, name: str) -> tuple[float, ...]:
     """As `numbers`, with the bound of `quantity` for each item."""
     result = numbers(values, problem, name)
     for item in result:
-        moderate(item, problem, f"An item of {name}")
+        if abs(item) > MAX_MAGNITUDE:
+            moderate(item, problem, f"An item of {name}")
     return result
 
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import UserConstraintKind
-from carom.native.change import Change
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_GEAR, JOINT_POINT2POINT
@@ -187,12 +186,7 @@ def changeConstraint(
             values["relative_position_target"] = target
         if share >= 0.0:
             values["erp"] = share
-        change = Change()
-        change.set_all(constraint, **values)
-        client.world.pause_step(change)
-        change.commit()
-        client.world.user_constraints.write(client.world.contact_arrays, client.world.arrays.state)
-        client.world.resume_step()
+        client.world.change_constraint(constraint, values)
 
 
 @exported

@@ -31,7 +31,7 @@ from pybullet._clients.lookup import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from carom.scene.body import Body
+    from carom.scene.body import Body, JointReset
     from pybullet._bodies.body_access import JointState, MultiDofState
     from pybullet._joints.joint_info import JointInfo
 
@@ -51,6 +51,7 @@ __all__ = [
 NO_INDICES = "expected a sequence of joint indices"
 _NO_STATE = "getJointState failed."
 _NEGATIVE_BODY = "getJointState failed; invalid bodyUniqueId"
+_QUATERNION = 4
 _NO_LISTS = "Expected an position and/or velocity list."
 
 
@@ -275,7 +276,8 @@ def resetJointStateMultiDof(
     client = client_of(physicsClientId)
     position, velocity = _targets(targetValue, targetVelocity)
     access, index = joint_access(bodyUniqueId, jointIndex, physicsClientId)
-    _check_turn(access.body, index, position)
+    if len(position) == _QUATERNION:
+        _check_turn(access.body, index, position)
     body = access.body
     if len(position) == 1 == body.position_count[index]:
         access.reset_joint(index, position[0], velocity[0] if len(velocity) == 1 else 0.0)
@@ -329,7 +331,8 @@ def resetJointStatesMultiDof(
         position, velocity = _targets(
             positions[place] if positions else (), velocities[place] if velocities else None
         )
-        _check_turn(access.body, joint, position)
+        if len(position) == _QUATERNION:
+            _check_turn(access.body, joint, position)
         body = access.body
         resets.append((joint, position, velocity))
     assert body is not None
@@ -346,27 +349,24 @@ def _targets(position: Any, velocity: Any) -> tuple[tuple[float, ...], tuple[flo
 
 
 def _check_turn(body: Body, joint: int, position: tuple[float, ...]) -> None:
-    """Raise `pybullet.error` for a position of a spherical joint that cannot be normalised."""
-    count = body.position_count[joint]
-    if len(position) == count != body.velocity_count[joint]:
+    """Raise `pybullet.error` for four coordinates that are no turn of a spherical joint."""
+    if body.position_count[joint] == _QUATERNION:
         check_rotation(position, "expected a targetValue sequence.", "targetValue")
 
 
 def _reset(client: Client, body: Body, states: Sequence[_State]) -> None:
     """Resets joints, given by index, positions and velocities, all at once."""
     with client.lock:
-        change, contacts = Change(), client.world.contact_arrays
-        positions: dict[int, list[float]] = {}
+        change = Change()
+        known: list[JointReset] = []
         for joint, position, velocity in states:
-            count, freedoms = body.position_count[joint], body.velocity_count[joint]
-            moved = False
-            if position and len(position) == count:
-                first = body.position_index[joint]
-                before = positions.get(joint) or client.world.position[first : first + count].tolist()
-                rates = velocity if len(velocity) == freedoms else (0.0,) * freedoms
-                positions[joint] = body.note_joint_state(change, joint, position, rates)
-                moved = positions[joint] != before
-            contacts.note_reset(change, body.rows.tree, moved=moved)
+            if position and len(position) == body.position_count[joint]:
+                freedoms = body.velocity_count[joint]
+                known.append((joint, position, velocity if len(velocity) == freedoms else (0.0,) * freedoms))
+            else:
+                known.append((joint, None, None))
+        moved = body.note_joint_states(change, known)
+        client.world.contact_arrays.note_resets(change, body.rows.tree, *moved)
         # As after any reset, the body is up to date.
         client.world.note_link_poses(change, body)
         change.commit()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.description.compliance import Compliance
 from carom.layouts.codes import UserConstraintKind
+from carom.native.change import Change
 from carom.native.gates import alone
 from carom.scene.user_constraints import UserConstraint
 
@@ -41,8 +42,7 @@ class NamedConstraint:
     @enabled.setter
     def enabled(self, value: bool) -> None:
         if self._constraint.enabled != bool(value):
-            self._constraint.enabled = bool(value)
-            self._constraint.parent.world.constraints_changed()
+            change_constraint(self._constraint, enabled=bool(value))
 
     @alone("_constraint.parent.world.lock")
     def _forces(self, rows: int) -> np.ndarray:
@@ -52,6 +52,15 @@ class NamedConstraint:
             impulses = world.user_constraints.impulses(self._constraint, world.arrays.state)
             result[: len(impulses)] = impulses
         return result / (world.parameters.time_step / max(1, world.parameters.substeps))
+
+
+@alone("parent.world.lock")
+def change_constraint(constraint: UserConstraint, **values: Any) -> None:
+    """Change attributes of a constraint, all at once."""
+    world, change = constraint.parent.world, Change()
+    change.set_all(constraint, **values)
+    world.change_constraints(change)
+    change.commit()
 
 
 def yield_as(constraint: UserConstraint, compliance: Compliance) -> None:

@@ -8,7 +8,7 @@ from carom.description.actuator import Range
 from carom.layouts.codes import UserConstraintKind
 from carom.native.gates import alone
 from carom.scene.named import Named
-from carom.scene.named_constraints.named_constraint import NamedConstraint
+from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.making import tendons_of
 from carom.scene.tendons.measure import measured
@@ -78,8 +78,7 @@ class BodyTendon(NamedConstraint):
 
     @armature.setter
     def armature(self, value: float) -> None:
-        self._constraint.armature = _positive(value, "armature")
-        self.body.world.constraints_changed()
+        change_constraint(self._constraint, armature=_positive(value, "armature"))
 
     @property
     def spring_range(self) -> Range:
@@ -132,8 +131,7 @@ class BodyTendon(NamedConstraint):
     def _set(
         self, spring: tuple[float, float, float, float], bounds: tuple[float, float, float, float]
     ) -> None:
-        self._constraint.spring, self._constraint.range = spring, bounds
-        self.body.world.constraints_changed()
+        change_constraint(self._constraint, spring=spring, range=bounds)
 
 
 def _positive(value: float, name: str) -> float:
