@@ -35,6 +35,10 @@ def test_arrays_and_logging_wait_for_a_world_and_a_warning():
         "logging",
         "carom.formats.urdf",
         "carom.algorithms",
+        "carom.description.geometry",
+        "carom.description.link",
+        "carom.model.body_spec",
+        "sysconfig",
     }
 
 
@@ -55,6 +59,8 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
     assert "carom.formats.urdf.reader" in loaded
     unused = {"actuator", "keyframe", "sensor", "site", "tendon"}
     assert not loaded & {f"carom.description.{name}" for name in unused}
+    assert not loaded & {"carom.description.compliance", "carom.description.fluid"}
+    assert not loaded & {"carom.formats.reading.written", "sysconfig"}
     assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
 
 
