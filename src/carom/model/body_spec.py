@@ -32,7 +32,7 @@ DEFAULT_LINK_DAMPING = unpack("f", pack("f", 0.04))[0]
 DEFAULT_CONTACT = ContactParameters()
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class LinkSpec:
     """A link and its parent joint.
 
@@ -134,7 +134,7 @@ class Reusable:
         self.pattern: Any = None
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class BodySpec(Reusable):
     """A tree of links; it does not change any more after a body has been made from it.
 

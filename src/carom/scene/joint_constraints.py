@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 NONE: Four = (0.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class JointConstraint:
     """A motor, a limit, the friction or an actuator of one joint, or a user constraint.
 

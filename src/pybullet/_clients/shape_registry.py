@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 Shape = TypeVar("Shape")
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class CollisionShape:
     """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 
