@@ -16,7 +16,7 @@ DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
 
 
-@dataclass(repr=False, eq=False, slots=True)
+@dataclass(slots=True)
 class LinkDynamics:
     """Inertia, surface and joint limits of a link.
 
