@@ -35,6 +35,10 @@ def test_arrays_and_logging_wait_for_a_world_and_a_warning():
         "logging",
         "carom.formats.urdf",
         "carom.algorithms",
+        "carom.description.geometry",
+        "carom.description.link",
+        "carom.model.body_spec",
+        "sysconfig",
     }
 
 
@@ -55,7 +59,27 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
     assert "carom.formats.urdf.reader" in loaded
     unused = {"actuator", "keyframe", "sensor", "site", "tendon"}
     assert not loaded & {f"carom.description.{name}" for name in unused}
+    assert not loaded & {"carom.description.compliance", "carom.description.fluid"}
+    assert not loaded & {"carom.formats.mesh.ply", "carom.formats.mesh.stl", "carom.formats.reading.written"}
+    assert not loaded & {
+        "carom.model.soft_spec",
+        "carom.scene.snapshot",
+        "carom.scene.soft_body",
+        "sysconfig",
+    }
     assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
+
+
+def test_a_small_image_starts_no_threads():
+    lines = (
+        "import pybullet as p, pybullet_data",
+        "p.connect(p.DIRECT)",
+        'p.loadURDF(pybullet_data.getDataPath() + "/r2d2.urdf")',
+        "p.getCameraImage(64, 64, renderer=p.ER_TINY_RENDERER)",
+    )
+    loaded = modules_after("\n".join(lines))
+    assert "carom.render.renderer" in loaded
+    assert not loaded & {"concurrent.futures", "logging"}
 
 
 @pytest.mark.parametrize(

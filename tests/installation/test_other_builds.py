@@ -7,11 +7,11 @@ import sys
 
 SCRIPT = """
 import logging
-import sysconfig
+import sys
 
 logging.basicConfig(level=logging.INFO)
-usual = sysconfig.get_config_var
-sysconfig.get_config_var = lambda name: int({free}) if name == "Py_GIL_DISABLED" else usual(name)
+if {free}:
+    sys.version += " free-threading build"
 import pybullet as p
 import pybullet_data
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
-from carom.description.compliance import Compliance
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import JointCode
+
+if TYPE_CHECKING:
+    from carom.description.compliance import Compliance
 
 
 class JointType(Enum):

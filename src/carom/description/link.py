@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from carom.description.compliance import ContactCompliance
-from carom.description.fluid import FluidEllipsoid
 from carom.description.geometry import Geometry
 from carom.description.pose import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    from carom.description.compliance import ContactCompliance
+    from carom.description.fluid import FluidEllipsoid
 
 Rgba = tuple[float, float, float, float]
 

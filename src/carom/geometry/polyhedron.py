@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class Polyhedron:
     """Flat faces around a solid, or the triangles of a surface. The arrays are read-only.
 

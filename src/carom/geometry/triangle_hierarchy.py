@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from carom.geometry.polyhedron import Polyhedron
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class TriangleHierarchy:
     """A complete binary tree of boxes over the faces of a surface.
 

@@ -16,7 +16,7 @@ class TreeRows:
     count: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class BodyRows:
     """The rows of a body, with row numbers as if it were alone; its base is at the origin.
 

@@ -12,19 +12,19 @@ from struct import pack, unpack
 from typing import TYPE_CHECKING, Any
 
 from carom.description import Collision, ContactParameters, JointType, Mimic, Pose, Visual
-from carom.description.compliance import Compliance
-from carom.description.fluid import FluidEllipsoid
 from carom.description.joint import JOINT_CODE
 from carom.description.pose import IDENTITY, Vector3
 from carom.layouts.codes import POSITION_COUNT, JointCode
 from carom.layouts.contacts import MARGIN
-from carom.model.soft_spec import SoftSpec
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
+    from carom.description.compliance import Compliance
+    from carom.description.fluid import FluidEllipsoid
     from carom.description.keyframe import BodyKeyframe
     from carom.description.sensor import SensorSpec
     from carom.description.site import SiteSpec
+    from carom.model.soft_spec import SoftSpec
 
 BASE = -1
 # Bullet's default [1/s], a float32 in its source.
@@ -32,7 +32,7 @@ DEFAULT_LINK_DAMPING = unpack("f", pack("f", 0.04))[0]
 DEFAULT_CONTACT = ContactParameters()
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class LinkSpec:
     """A link and its parent joint.
 
@@ -134,7 +134,7 @@ class Reusable:
         self.pattern: Any = None
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class BodySpec(Reusable):
     """A tree of links; it does not change any more after a body has been made from it.
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.description.compliance import Compliance, PairContact
 from carom.native.change import Change
 from carom.native.tables import ArrayTable
+
+if TYPE_CHECKING:
+    from carom.description.compliance import PairContact
 
 _FIELDS = (
     "filter_link_a",
@@ -88,6 +91,8 @@ class PairFilters:
         )
         if impedance[1] <= 0.0:
             return None
+        from carom.description.compliance import Compliance, PairContact
+
         compliance = Compliance(*reference[:2], *impedance[:3], *reference[2:])
         return PairContact(compliance, tuple(friction), impedance[3], tuple(lateral[:2]))
 

@@ -22,7 +22,7 @@ AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class PlacedPiece:
     """A piece and its pose.
 

@@ -76,7 +76,7 @@ class Surface(Protocol):
     anisotropic_friction: tuple[float, float, float]
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class BodyShapes:
     """The rows of a body's shapes.
 

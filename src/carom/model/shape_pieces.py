@@ -57,7 +57,7 @@ _CACHED = 1024
 MeshGeometry = ConvexHull | TriangleMesh
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class ShapePiece:
     """One convex shape, one triangle mesh or one height field.
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.description.pose import Vector3
 from carom.layouts.soft import ANCHORS, BODIES, FREE, HELD, HELD_UNDAMPED, SoftModel
 from carom.model.body_rows import TreeRows
-from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS, SoftSpec
 from carom.native.change import Change
 from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
+
+if TYPE_CHECKING:
+    from carom.model.soft_spec import SoftSpec
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
 # Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
@@ -30,7 +32,7 @@ _INDEX_FIELDS = {
 }
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class SoftRows:
     """The rows of a soft body.
 
@@ -47,7 +49,7 @@ class SoftRows:
     count: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class Anchor:
     """A node that is attached to a link or to the world.
 
@@ -135,6 +137,8 @@ class SoftArrays:
         numpy["spring_a"][rows["spring"]], numpy["spring_b"][rows["spring"]] = ends[:, 0], ends[:, 1]
         numpy["spring_frequency"][rows["spring"]] = frequencies[spec.springs].max(axis=1)
         numpy["spring_all_directions"][rows["spring"]] = spec.damps_all_directions
+        from carom.model.soft_spec import DAMPING, LENGTH, STIFFNESS
+
         for name, column in (("length", LENGTH), ("stiffness", STIFFNESS), ("damping", DAMPING)):
             numpy[f"spring_{name}"][rows["spring"]] = spec.spring_terms[:, column]
         if len(spec.tetras):

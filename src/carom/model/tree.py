@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from carom.description import Joint, Link, Robot
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class TreeNode:
     """A link, its parent joint, and its children.
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ctypes
 import sys
-import sysconfig
 from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
@@ -271,7 +270,7 @@ def _commit() -> Callable[..., object] | None:
 
     It needs a usual build of CPython: others have other objects, or threads that run in parallel.
     """
-    if sys.implementation.name != "cpython" or sysconfig.get_config_var("Py_GIL_DISABLED"):
+    if sys.implementation.name != "cpython" or "free-threading" in sys.version:
         return None
     symbols = _symbols()
     if symbols is None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import builtins
 import ctypes
 import sys
-import sysconfig
 from typing import Any, NamedTuple
 
 from carom.native.library import library
@@ -42,7 +41,7 @@ def _met() -> Host | None:
         sys.implementation.name != "cpython"
         # In debug builds the header of objects differs; in free-threaded ones threads run in parallel.
         or hasattr(sys, "getobjects")
-        or sysconfig.get_config_var("Py_GIL_DISABLED")
+        or "free-threading" in sys.version
     ):
         return None
     symbols: ctypes.CDLL | None = library().symbols

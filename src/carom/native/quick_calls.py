@@ -20,7 +20,7 @@ from carom.native.host import Host, host
 from carom.native.uninterrupted import begin, end, is_our_own
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class Parameter:
     """A parameter of a quick call.
 

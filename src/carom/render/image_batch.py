@@ -21,7 +21,7 @@ from carom.render.shadows import ShadowCameras, shadow_cameras
 from carom.render.views import ViewBuffers, write_bias, write_lighting
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class RawImages:
     """The results of `RawImage` for n worlds, but for the depth; row 0 is the top.
 

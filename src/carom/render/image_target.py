@@ -14,14 +14,17 @@ from carom.native.launch import Launch
 from carom.native.products import product
 from carom.native.tables import put_zeros
 from carom.render.lights import Light
-from carom.render.parallel import Task, run_all
+from carom.render.parallel import Task, run_all, run_in_turn
 from carom.render.projection import Matrix
 from carom.render.scene import SceneArrays
 from carom.render.shadows import shadow_cameras
 from carom.render.views import ViewBuffers, write_bias, write_lighting
 
+_SMALL = 1 << 15
+"""Pixels and triangles together up to which one thread is done before others have woken up."""
 
-@dataclass(frozen=True, eq=False, slots=True)
+
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class RawImage:
     """The results of one image; row 0 is the top.
 
@@ -51,7 +54,7 @@ class RawImage:
         )
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class _Shadows:
     """The view from the light, and the tasks that depend on it."""
 
@@ -80,6 +83,7 @@ class ImageTarget:
         self._distance = put_zeros(picture, "distance", pixels).reshape(height, width)
         self._label = put_zeros(picture, "label", pixels).reshape(height, width)
         self._picture = picture
+        self._run = run_all if pixels + scene.triangle_count > _SMALL else run_in_turn
         self._image_tasks = self._make_image_tasks(self._view)
 
     def draw(
@@ -97,12 +101,12 @@ class ImageTarget:
             shadows = self._shadows_of_size(cameras.width, cameras.height)
             write_bias(self._lighting, cameras)
             shadows.view.look(cameras.world_to_clip, link_to_world[None], two_sided=True)
-            run_all(self._view.project + shadows.view.project)
-            run_all(shadows.depth_tasks)
+            self._run(self._view.project + shadows.view.project)
+            self._run(shadows.depth_tasks)
             image_tasks = shadows.image_tasks
         else:
-            run_all(self._view.project)
-        run_all(image_tasks)
+            self._run(self._view.project)
+        self._run(image_tasks)
         return RawImage(self._rgba.copy(), self._depth.copy(), self._distance.copy(), self._label.copy())
 
     def _shadows_of_size(self, width: int, height: int) -> _Shadows:

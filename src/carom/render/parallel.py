@@ -27,8 +27,7 @@ def worker_count() -> int:
 def run_all(tasks: Sequence[Task]) -> None:
     """Run all tasks in parallel, in any order, and return when the last one is done."""
     if len(tasks) == 1 or worker_count() == 1:
-        for task in tasks:
-            task()
+        run_in_turn(tasks)
         return
     pool = _pool()
     # This thread runs tasks, too: it often finishes them before a sleeping thread has woken up.
@@ -39,6 +38,12 @@ def run_all(tasks: Sequence[Task]) -> None:
     _work(pending)
     for other in others:
         other.result()
+
+
+def run_in_turn(tasks: Sequence[Task]) -> None:
+    """Run all tasks in this thread."""
+    for task in tasks:
+        task()
 
 
 def _work(pending: object) -> None:

@@ -34,7 +34,7 @@ LINK_SHIFT = 24
 """Labels hold the body id in the bits below this one, and the link + 1 from this one upwards."""
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class Piece:
     """Part of a mesh with its own vertices, and its bounding sphere."""
 
@@ -69,7 +69,7 @@ def pieces_of(mesh: RenderMesh) -> tuple[Piece, ...]:
     return tuple(pieces)
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class _Columns:
     """Lists from which the arrays of a scene are concatenated."""
 

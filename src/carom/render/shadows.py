@@ -27,7 +27,7 @@ _PARALLEL_BIAS = 3.0
 """Of parallel light [pixels of the shadow map]."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class ShadowCameras:
     """A camera at the light in each of n worlds; its depth buffer is the shadow map.
 

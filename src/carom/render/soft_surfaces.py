@@ -51,7 +51,7 @@ def surface_mesh(body: SoftBody) -> RenderMesh:
     return mesh_of(places[corners], normals[corners], visual.uvs, visual.triangles)
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class SoftSurface:
     """The surface of a soft body in the arrays of a scene, three vertices for each triangle.
 

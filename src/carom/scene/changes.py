@@ -18,7 +18,6 @@ from carom.scene.body import Body
 from carom.scene.draft import draft_of
 from carom.scene.dynamics_changes import change_base_freedom
 from carom.scene.pattern import pattern_of
-from carom.scene.soft_body import SoftBody
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -87,7 +86,7 @@ def append(change: Change, world: World, spec: BodySpec, pose: Pose) -> Body:
         shapes.put(change, pattern.rows, rows)
     else:
         rows = world.arrays.append(change, spec, base_pose)
-        body = (Body if spec.soft is None else SoftBody)(world, body_id, spec, rows)
+        body = _body_class(spec)(world, body_id, spec, rows)
         shapes.append(change, spec, rows, body.all_dynamics)
     change.set(world, "free_ids", free_ids)
     change.set(world, "next_id", max(change.get(world, "next_id"), body_id + 1))
@@ -98,6 +97,14 @@ def append(change: Change, world: World, spec: BodySpec, pose: Pose) -> Body:
     world.constraints.add_body(change, body)
     world.user_data.add_stated(change, body_id, spec)
     return body
+
+
+def _body_class(spec: BodySpec) -> type[Body]:
+    if spec.soft is None:
+        return Body
+    from carom.scene.soft_body import SoftBody
+
+    return SoftBody
 
 
 def append_now(world: World, spec: BodySpec, pose: Pose) -> Body:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from carom.description.compliance import Compliance, Four
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
 from carom.model.solver_order import IslandTags, remove_unordered
@@ -16,13 +15,14 @@ from carom.scene.constraint_rows import ConstraintRows
 from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
 if TYPE_CHECKING:
+    from carom.description.compliance import Compliance, Four
     from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
 
 NONE: Four = (0.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class JointConstraint:
     """A motor, a limit, the friction or an actuator of one joint, or a user constraint.
 

@@ -23,7 +23,7 @@ _spare: list[tuple[WorldArrays, ShapeArrays]] = []
 """Empty tables, or none while a thread writes to them."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class Pattern:
     """What is the same for all bodies with one specification.
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from carom.scene.snapshot import Shape
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 

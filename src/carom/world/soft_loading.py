@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from carom.model.body_spec import BodySpec
-from carom.scene.soft_body import SoftBody
 from carom.world.loading import BodyAdding
+
+if TYPE_CHECKING:
+    from carom.scene.soft_body import SoftBody
 
 _ORIGIN, _UPRIGHT = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
@@ -176,6 +178,8 @@ class SoftLoading(BodyAdding):
 
     def _soft(self, spec: BodySpec, position: Sequence[float], orientation: Sequence[float]) -> SoftBody:
         body = self._add(spec, position, orientation)
+        from carom.scene.soft_body import SoftBody
+
         assert isinstance(body, SoftBody)
         return body
 

@@ -33,7 +33,6 @@ from carom.scene.changes import add_bodies, add_constraint, free_base, remove_bo
 from carom.scene.faults import cause_in
 from carom.scene.joint_constraints import JointConstraints
 from carom.scene.observers import Observer, SubstepObserver
-from carom.scene.snapshot import Shape, Snapshot, layout, return_to, take
 from carom.scene.state_views import VIEWS, StateViews
 from carom.scene.user_constraints import UserConstraint, UserConstraints
 from carom.scene.user_data import UserData
@@ -47,6 +46,7 @@ from carom.world.soft_loading import SoftLoading
 
 if TYPE_CHECKING:
     from carom.queries.queries import Queries
+    from carom.scene.snapshot import Shape, Snapshot
     from carom.world.log import Log
 
 
@@ -277,6 +277,8 @@ class World(
     @property
     def _shape(self) -> Shape:
         if self._derived.shape is None:
+            from carom.scene.snapshot import Shape, layout
+
             self._derived.shape = Shape(layout(self))
         return self._derived.shape
 
@@ -287,6 +289,8 @@ class World(
         It contains positions and velocities, motors, applied forces, contacts and time; not masses and shapes
         of bodies, constraints, gravity and other parameters.
         """
+        from carom.scene.snapshot import take
+
         return take(self, self._shape)
 
     def restore(
@@ -308,6 +312,8 @@ class World(
                 world is as it was. A body that was removed and loaded again under its number is accepted, but
                 contacts are then detected again.
         """
+        from carom.scene.snapshot import Snapshot, return_to
+
         if not isinstance(state, Snapshot):
             from carom.world_files.world_file import restore_world
 

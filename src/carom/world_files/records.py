@@ -239,10 +239,17 @@ def _required(cls: Any) -> frozenset[str]:
 def _hints(cls: Any) -> dict[str, Any]:
     """Types of the fields of a dataclass, also those that its module imports for type checkers only."""
     from carom.description.actuator import ActuatorSpec
+    from carom.description.compliance import Compliance, ContactCompliance
+    from carom.description.fluid import FluidEllipsoid
     from carom.description.keyframe import BodyKeyframe
     from carom.description.sensor import SensorSpec
     from carom.description.site import SiteSpec
+    from carom.model.soft_spec import SoftSpec
 
-    specs = {it.__name__: it for it in (ActuatorSpec, BodyKeyframe, SensorSpec, SiteSpec)}
+    types = (
+        *(ActuatorSpec, BodyKeyframe, Compliance, ContactCompliance),
+        *(FluidEllipsoid, SensorSpec, SiteSpec, SoftSpec),
+    )
+    specs = {it.__name__: it for it in types}
     hints = get_type_hints(cls, localns={"np": np, "NDArray": NDArray, **specs})
     return {field.name: hints[field.name] for field in fields(cls)}

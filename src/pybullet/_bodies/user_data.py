@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from carom.scene.user_data import UserData
 from pybullet._calls.arguments import integer, sequence, text
 from pybullet._calls.builtin import exported, exported_as
 from pybullet._calls.errors import fail
 from pybullet._clients.clients import client_of
 from pybullet._clients.lookup import body_of, no_body
+
+if TYPE_CHECKING:
+    from carom.scene.user_data import UserData
 
 __all__ = [
     "addUserData",

@@ -33,7 +33,7 @@ _ASKING = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class Function:
     """A function of the public interface.
 

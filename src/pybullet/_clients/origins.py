@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class FileLoad:
     """A call that loaded `count` bodies from a file, with its arguments except the file, by name.
 

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
-from carom.description import Collision, Robot, Visual
 from carom.native.change import Change
+
+if TYPE_CHECKING:
+    from carom.description import Collision, Robot, Visual
 
 Shape = TypeVar("Shape")
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class CollisionShape:
     """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 

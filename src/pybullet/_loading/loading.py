@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, overload
 
-from carom.description import Pose
+from carom.description.pose import Pose
 from carom.errors import CaromError
 from pybullet._calls.arguments import Vector, by_name, integer, moderate, real, rotation, text, vector3
 from pybullet._calls.builtin import exported, exported_as

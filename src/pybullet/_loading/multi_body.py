@@ -6,9 +6,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
-from carom.description import Inertial, Joint, JointLimit, JointType, Link, Pose, Robot
-from carom.description.joint import NEEDS_AXIS
-from carom.description.pose import Quaternion, Vector3
+from carom import description
+from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix, rotation_matrix
 from carom.errors import CaromError
 from pybullet._calls.arguments import (
@@ -40,10 +39,10 @@ Shape = TypeVar("Shape")
 _FAILED = "createMultiBody failed."
 
 JOINT_TYPES = {
-    JOINT_REVOLUTE: JointType.REVOLUTE,
-    JOINT_PRISMATIC: JointType.PRISMATIC,
-    JOINT_SPHERICAL: JointType.SPHERICAL,
-    JOINT_FIXED: JointType.FIXED,
+    JOINT_REVOLUTE: "REVOLUTE",
+    JOINT_PRISMATIC: "PRISMATIC",
+    JOINT_SPHERICAL: "SPHERICAL",
+    JOINT_FIXED: "FIXED",
 }
 
 
@@ -216,7 +215,7 @@ def _described(
     mass, collision, visual, place, turn = base
     frame = optional_pose(place, turn, _FAILED, "baseInertialFrame")
     links = [_link(client, 0, _mass(mass, "baseMass"), frame, collision, visual), *_links(client, lists)]
-    robot = Robot("", tuple(links), tuple(_joints(lists)))
+    robot = description.Robot("", tuple(links), tuple(_joints(lists)))
     collisions = {integer(it, "collision shape") for it in (collision, *lists["linkCollisionShapeIndices"])}
     visuals = {integer(it, "visual shape") for it in (visual, *lists["linkVisualShapeIndices"])}
     return keep_description(client.shapes, key, robot, collisions, visuals)
@@ -235,7 +234,7 @@ def _link_lists(lists: dict[str, Any]) -> dict[str, tuple[Any, ...]]:
     return items
 
 
-def _links(client: Client, lists: dict[str, tuple[Any, ...]]) -> list[Link]:
+def _links(client: Client, lists: dict[str, tuple[Any, ...]]) -> list[description.Link]:
     columns = zip(
         _each(lists, "linkMasses", _mass),
         _each(lists, "linkInertialFramePositions", _vector),
@@ -250,7 +249,7 @@ def _links(client: Client, lists: dict[str, tuple[Any, ...]]) -> list[Link]:
     ]
 
 
-def _joints(lists: dict[str, tuple[Any, ...]]) -> list[Joint]:
+def _joints(lists: dict[str, tuple[Any, ...]]) -> list[description.Joint]:
     parents = _each(lists, "linkParentIndices", integer)
     _check_tree(parents)
     columns = zip(
@@ -283,11 +282,11 @@ def _rotation(values: Any, name: str) -> Quaternion:
     return quaternion_from_matrix(rotation_matrix(rotation(values, _FAILED, name)))
 
 
-def _joint_type(value: Any, name: str) -> JointType:
+def _joint_type(value: Any, name: str) -> description.JointType:
     kind = integer(value, name)
     if kind not in JOINT_TYPES:
         fail(_FAILED, f"{name} is {kind}; a joint has to be revolute, prismatic, spherical or fixed.")
-    return JOINT_TYPES[kind]
+    return description.JointType[JOINT_TYPES[kind]]
 
 
 def _check_tree(parents: list[int]) -> None:
@@ -306,14 +305,16 @@ def _check_tree(parents: list[int]) -> None:
         hangs.update(way)
 
 
-def _link(client: Client, number: int, mass: float, frame: Pose, collision_id: Any, visual_id: Any) -> Link:
+def _link(
+    client: Client, number: int, mass: float, frame: Pose, collision_id: Any, visual_id: Any
+) -> description.Link:
     collision = _shape(client.shapes.collisions, collision_id, "collision")
     visuals = _shape(client.shapes.visuals, visual_id, "visual")
     # PyBullet uses these moments of inertia if the flag URDF_USE_INERTIA_FROM_FILE is set.
     moment = mass if number else 0.0
-    return Link(
+    return description.Link(
         f"link{number}",
-        Inertial(mass, frame, (moment, 0.0, 0.0, moment, 0.0, moment)),
+        description.Inertial(mass, frame, (moment, 0.0, 0.0, moment, 0.0, moment)),
         () if collision is None else collision.collisions,
         visuals or (() if collision is None else collision.visuals),
     )
@@ -328,19 +329,28 @@ def _shape(table: ShapeTable[Shape], number: Any, kind: str) -> Shape | None:
 
 
 def _joint(
-    number: int, parent: int, kind: JointType, place: Vector3, turn: Quaternion, axis: Vector3
-) -> Joint:
+    number: int, parent: int, kind: description.JointType, place: Vector3, turn: Quaternion, axis: Vector3
+) -> description.Joint:
+    from carom.description.joint import NEEDS_AXIS
+
     x, y, z = axis
     length = (x * x + y * y + z * z) ** 0.5
     if length == 0.0 and kind in NEEDS_AXIS:
         fail(_FAILED, f"linkJointAxis[{number - 1}] has no length.")
     unit = (x / length, y / length, z / length) if length else (1.0, 0.0, 0.0)
-    return Joint(
-        f"joint{number}", kind, parent, number, Pose(place, turn), unit, length or 1.0, JointLimit(1.0, -1.0)
+    return description.Joint(
+        f"joint{number}",
+        kind,
+        parent,
+        number,
+        Pose(place, turn),
+        unit,
+        length or 1.0,
+        description.JointLimit(1.0, -1.0),
     )
 
 
-def _assembled(robot: Robot, flags: int) -> BodySpec:
+def _assembled(robot: description.Robot, flags: int) -> BodySpec:
     from carom.soft.from_urdf import rigid_body
 
     without, also = _flags_of_bodies()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from carom.description import Mesh
+from carom import description
 from carom.errors import CaromError
 from pybullet._calls.errors import fail, logger
 from pybullet._clients.clients import Client
@@ -103,7 +103,7 @@ def _look_at_fresh_files(client: Client, bodies: Sequence[Body]) -> None:
         for body in bodies
         for link in (body.spec.base, *body.spec.links)
         for visual in link.visuals
-        if isinstance(visual.geometry, Mesh)
+        if isinstance(visual.geometry, description.Mesh)
     }
     if any(map(is_fresh, paths)):
         from carom.render.appearance import appearance_of

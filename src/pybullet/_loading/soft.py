@@ -7,7 +7,7 @@ from os.path import isfile
 from pathlib import Path
 from typing import Any
 
-from carom.description import Pose
+from carom.description.pose import Pose
 from carom.errors import CaromError
 from carom.formats.unpacking import appears
 from pybullet._calls.arguments import Vector, integer, moderate, real, rotation, text, vector3

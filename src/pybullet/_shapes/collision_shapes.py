@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Collision, ConvexHull, Geometry, Mesh, Pose, TriangleMesh, Visual
-from carom.description.pose import IDENTITY
+from carom import description
+from carom.description.pose import IDENTITY, Pose
 from carom.errors import DescriptionError
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, real, text
 from pybullet._calls.builtin import exported
@@ -232,8 +232,10 @@ def removeCollisionShape(collisionShapeId: int, physicsClientId: int = 0) -> Non
         client.shapes.collisions.remove(number)
 
 
-def _placed(geometry: Geometry, pose: Pose) -> CollisionShape:
-    return CollisionShape((Collision(geometry, pose),), (Visual(geometry, pose, stands_in=True),))
+def _placed(geometry: description.Geometry, pose: Pose) -> CollisionShape:
+    return CollisionShape(
+        (description.Collision(geometry, pose),), (description.Visual(geometry, pose, stands_in=True),)
+    )
 
 
 def _mesh_from_data(
@@ -245,8 +247,8 @@ def _mesh_from_data(
     scaled = positions * scale
     corners = triangles(() if indices is None else indices, len(positions), _FAILED)
     if len(corners):
-        return _placed(TriangleMesh(scaled, corners, _MARGIN, scale), pose)
-    return _placed(ConvexHull(scaled, scale), pose)
+        return _placed(description.TriangleMesh(scaled, corners, _MARGIN, scale), pose)
+    return _placed(description.ConvexHull(scaled, scale), pose)
 
 
 def _mesh_from_file(
@@ -255,7 +257,7 @@ def _mesh_from_file(
     """The shape of a mesh file; `is_part`: PyBullet would make it part of a compound."""
     from carom.model.shape_pieces import mesh_geometries
 
-    mesh = Mesh(
+    mesh = description.Mesh(
         find_file(client, name, problem),
         scale_of(mesh_scale, problem),
         concave=bool(flags & GEOM_FORCE_CONCAVE_TRIMESH),
@@ -267,10 +269,10 @@ def _mesh_from_file(
         fail(problem, str(reason))
     collisions = []
     for geometry in geometries:
-        if is_part and isinstance(geometry, TriangleMesh):
+        if is_part and isinstance(geometry, description.TriangleMesh):
             geometry = replace(geometry, margin=_MARGIN)
-        collisions.append(Collision(geometry, pose))
-    visual = Visual(replace(mesh, concave=False), pose, stands_in=True)
+        collisions.append(description.Collision(geometry, pose))
+    visual = description.Visual(replace(mesh, concave=False), pose, stands_in=True)
     return CollisionShape(tuple(collisions), (visual,), lasts=mesh.concave and not is_part)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Collision, Heightfield, Visual
+from carom import description
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.native.change import Change
@@ -85,13 +85,13 @@ def _checked(heights: NDArray[np.float64], problem: str, *, rounded: bool = True
     return heights
 
 
-def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> Heightfield:
+def heightfield(heights: NDArray[np.float64], scale: Vector3, problem: str) -> description.Heightfield:
     """A heightfield with the mean of its minimum and maximum height at the origin."""
     from carom.geometry.hull import SMALLEST
 
     if min(map(abs, scale[:2])) < SMALLEST:
         fail(problem, f"meshScale is {list(scale)}; its x and y must not be 0, nor less than {SMALLEST:g}.")
-    return Heightfield(heights, scale, 0.5 * float(heights.min() + heights.max()))
+    return description.Heightfield(heights, scale, 0.5 * float(heights.min() + heights.max()))
 
 
 def replace_heights(client: Client, number: int, heights: NDArray[np.float64], problem: str) -> None:
@@ -103,21 +103,23 @@ def replace_heights(client: Client, number: int, heights: NDArray[np.float64], p
     if shape is None:
         fail(problem, f"replaceHeightfieldIndex: there is no shape {number}.")
     old = shape.collisions[0].geometry
-    if not isinstance(old, Heightfield):
+    if not isinstance(old, description.Heightfield):
         fail(problem, f"replaceHeightfieldIndex: shape {number} is not a heightfield.")
     if heights.shape != old.heights.shape:
         (columns, rows), (new_columns, new_rows) = old.heights.shape, heights.shape
         fail(problem, f"The heightfield has {rows} x {columns} points, not {new_rows} x {new_columns}.")
-    new = Heightfield(heights, old.scale, old.middle)
+    new = description.Heightfield(heights, old.scale, old.middle)
     with client.lock, uninterrupted:
         change = Change()
-        change.set(shape, "collisions", (Collision(new, shape.collisions[0].frame),))
-        change.set(shape, "visuals", (Visual(new, shape.visuals[0].frame, stands_in=True),))
+        change.set(shape, "collisions", (description.Collision(new, shape.collisions[0].frame),))
+        change.set(shape, "visuals", (description.Visual(new, shape.visuals[0].frame, stands_in=True),))
         _renew_bodies(change, client, old, new)
         change.commit()
 
 
-def _renew_bodies(change: Change, client: Client, old: Heightfield, new: Heightfield) -> None:
+def _renew_bodies(
+    change: Change, client: Client, old: description.Heightfield, new: description.Heightfield
+) -> None:
     from carom.layouts.flags import LoadFlags
     from carom.render.appearance import appearance_of
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Box, Capsule, Cylinder, Geometry, Plane, Sphere
-from carom.description.geometry import MAX_SIZE
+from carom import description
 from carom.description.pose import Vector3
 from carom.formats.shipped import advice
 from pybullet._calls.arguments import MAX_MAGNITUDE, moderate, real
@@ -27,7 +26,7 @@ PRIMITIVES = (GEOM_SPHERE, GEOM_BOX, GEOM_CYLINDER, GEOM_PLANE, GEOM_CAPSULE)
 
 def primitive(
     kind: int, problem: str, radius: Any, length: Any, half_extents: Any, normal: Any, *, length_name: str
-) -> Geometry:
+) -> description.Geometry:
     """A sphere, box, cylinder, plane or capsule from the arguments of a call; sizes in metres.
 
     `length` is that of a cylinder, or between the two hemispheres of a capsule. A box needs `half_extents`.
@@ -41,25 +40,28 @@ def primitive(
             fail(problem, "A box needs halfExtents.")
         x, y, z = optional_vector3(half_extents, problem, "halfExtents") or (1.0, 1.0, 1.0)
         _check_size(min(x, y, z) >= 0.0, max(x, y, z), problem, f"halfExtents is {[x, y, z]}.")
-        return Box((x, y, z))
+        return description.Box((x, y, z))
     if kind == GEOM_PLANE:
         x, y, z = optional_vector3(normal, problem, "planeNormal") or (0.0, 0.0, 1.0)
         norm = (x * x + y * y + z * z) ** 0.5
         if norm == 0.0:
             fail(problem, "planeNormal has no length.")
-        return Plane((x / norm, y / norm, z / norm))
+        return description.Plane((x / norm, y / norm, z / norm))
     size = real(radius, "radius", problem)
     if size == 0.0:
         fail(problem, "radius is 0. It has to be greater than 0.")
     _check_size(size >= 0.0, size, problem, f"radius is {size}.")
     if kind == GEOM_SPHERE:
-        return Sphere(size)
+        return description.Sphere(size)
     height = real(length, length_name, problem)
     _check_size(height >= 0.0, height, problem, f"{length_name} is {height}.")
-    return Capsule(size, height) if kind == GEOM_CAPSULE else Cylinder(size, height)
+    make = description.Capsule if kind == GEOM_CAPSULE else description.Cylinder
+    return make(size, height)
 
 
 def _check_size(is_allowed: bool, greatest: float, problem: str, particulars: str) -> None:
+    from carom.description.geometry import MAX_SIZE
+
     if not is_allowed or greatest > MAX_SIZE:
         fail(problem, f"{particulars} It has to be from 0 to {MAX_SIZE:g} m.")
 

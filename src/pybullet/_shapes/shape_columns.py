@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from carom.description import Geometry, Pose
 from pybullet._calls.arguments import integer, sequence
 from pybullet._calls.errors import error, fail, logger
 from pybullet._calls.optional_vectors import optional_pose
 from pybullet._shapes.shape_arguments import primitive
+
+if TYPE_CHECKING:
+    from carom.description import Geometry, Pose
 
 Made = TypeVar("Made")
 

@@ -4,19 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.description import (
-    Box,
-    Capsule,
-    ConvexHull,
-    Cylinder,
-    Geometry,
-    Heightfield,
-    Mesh,
-    Plane,
-    SignedDistanceField,
-    Sphere,
-    TriangleMesh,
-)
+from carom import description
 from carom.description.pose import Quaternion, Vector3
 from carom.description.transform import quaternion_from_matrix
 from pybullet._calls.arguments import integer
@@ -228,45 +216,47 @@ def _body_and_link(client: Client, body_id: Any, link_index: Any, problem: str) 
     return body, link_of(body, link_index, "linkIndex", problem)
 
 
-def _collision_geometry(geometry: Geometry, implicit_cylinder: bool) -> tuple[int, Vector3, bytes] | None:
+def _collision_geometry(
+    geometry: description.Geometry, implicit_cylinder: bool
+) -> tuple[int, Vector3, bytes] | None:
     """Type, dimensions and file of a collision shape; None for one that is not reported."""
     match geometry:
-        case Sphere(radius):
+        case description.Sphere(radius):
             return GEOM_SPHERE, (radius, radius, radius), b""
-        case Plane(normal):
+        case description.Plane(normal):
             return GEOM_PLANE, normal, b""
-        case Cylinder() if implicit_cylinder:
+        case description.Cylinder() if implicit_cylinder:
             return _visual_geometry(geometry)
         # What PyBullet reports for meshes whose file it does not store.
-        case Cylinder() | ConvexHull() | TriangleMesh():
+        case description.Cylinder() | description.ConvexHull() | description.TriangleMesh():
             return GEOM_MESH, (1.0, 1.0, 1.0), b"unknown_file"
-        case Heightfield() | SignedDistanceField():
+        case description.Heightfield() | description.SignedDistanceField():
             return None
         case _:
             return _visual_geometry(geometry)
 
 
-def _visual_geometry(geometry: Geometry) -> tuple[int, Vector3, bytes]:
+def _visual_geometry(geometry: description.Geometry) -> tuple[int, Vector3, bytes]:
     """Type, dimensions and file of a visual shape."""
     match geometry:
-        case Sphere(radius):
+        case description.Sphere(radius):
             return GEOM_SPHERE, (radius, 0.0, 0.0), b""
-        case Box((x, y, z)):
+        case description.Box((x, y, z)):
             return GEOM_BOX, (2.0 * x, 2.0 * y, 2.0 * z), b""
-        case Capsule(radius, length):
+        case description.Capsule(radius, length):
             return GEOM_CAPSULE, (length, radius, 0.0), b""
-        case Cylinder(radius, length):
+        case description.Cylinder(radius, length):
             return GEOM_CYLINDER, (length, radius, 0.0), b""
-        case Plane():
+        case description.Plane():
             return GEOM_PLANE, (0.0, 0.0, 0.0), b""
-        case Mesh(_, scale):
+        case description.Mesh(_, scale):
             # The name that a script gave, or the path of a file that a robot file names.
             return GEOM_MESH, scale, (geometry.asked_for or str(geometry.path)).encode()
-        case ConvexHull(scale=scale) | TriangleMesh(scale=scale):
+        case description.ConvexHull(scale=scale) | description.TriangleMesh(scale=scale):
             return GEOM_MESH, scale, b""
-        case Heightfield():
+        case description.Heightfield():
             return GEOM_HEIGHTFIELD, (0.0, 0.0, 0.0), b""
-        case SignedDistanceField(path):
+        case description.SignedDistanceField(path):
             return _SIGNED_DISTANCE_FIELD, (0.0, 0.0, 0.0), str(path).encode()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from carom.description import Geometry, Material, Mesh, TriangleMesh, Visual
+from carom import description
 from carom.errors import DescriptionError
 from pybullet._calls.arguments import Indices, Vector, Vectors, integer, text
 from pybullet._calls.builtin import exported
@@ -86,7 +86,7 @@ def createVisualShape(
     kind = integer(shapeType, "shapeType")
     integer(flags, "flags")
     pose = optional_pose(visualFramePosition, visualFrameOrientation, _FAILED, "visualFrame")
-    material = Material(
+    material = description.Material(
         rgba=optional_vector4(rgbaColor, _FAILED, "rgbaColor") or _WHITE,
         specular=optional_vector3(specularColor, _FAILED, "specularColor") or _HIGHLIGHT,
     )
@@ -101,7 +101,7 @@ def createVisualShape(
         fail(_FAILED, "A mesh needs fileName, or vertices and indices.")
     else:
         fail(_FAILED, f"There is no type of visual shape {kind}.")
-    return client.shapes.visuals.add((Visual(geometry, pose, material=material),))
+    return client.shapes.visuals.add((description.Visual(geometry, pose, material=material),))
 
 
 @exported
@@ -156,11 +156,11 @@ def createVisualShapeArray(
     columns = ShapeColumns("createVisualShapeArray", "visual", given)
     colours = Column(rgbaColors, "rgbaColors", "rgba color")
 
-    def part(index: int, kind: int) -> Visual:
+    def part(index: int, kind: int) -> description.Visual:
         pose, problem = columns.frame(index), columns.problem
         integer(columns.flags.item(index, 0), "flags")
         rgba = optional_vector4(colours.item(index), problem, "rgbaColors")
-        material = None if rgba is None else Material(rgba=rgba)
+        material = None if rgba is None else description.Material(rgba=rgba)
         file = columns.files.item(index)
         if kind in PRIMITIVES:
             geometry = columns.primitive(index)
@@ -168,20 +168,20 @@ def createVisualShapeArray(
             geometry = _mesh_from_file(client, text(file, "fileNames"), columns.scales.item(index), problem)
         else:
             fail(problem, f"type {kind} is not supported here, or has no file name.")
-        return Visual(geometry, pose, material=material)
+        return description.Visual(geometry, pose, material=material)
 
     parts = columns.each(part)
     return client.shapes.visuals.add(tuple(parts))
 
 
-def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> Geometry:
+def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) -> description.Geometry:
     """The mesh of a file. If the file cannot be used, an empty mesh, as in PyBullet, and a logged warning."""
     from carom.formats.files import is_fresh
     from carom.formats.mesh import read_mesh
 
     scale = scale_of(mesh_scale, problem)
     try:
-        mesh = Mesh(find_file(client, name, problem), scale, asked_for=name)
+        mesh = description.Mesh(find_file(client, name, problem), scale, asked_for=name)
         read_mesh(mesh.path)
         if is_fresh(mesh.path):
             # The file may be deleted before the mesh is drawn.
@@ -193,18 +193,18 @@ def _mesh_from_file(client: Client, name: str, mesh_scale: Any, problem: str) ->
 
         import numpy as np
 
-        return TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
+        return description.TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
     return mesh
 
 
 def _mesh_from_data(
     vertices: Any, indices: Any, normals: Any, uvs: Any, scale: tuple[float, float, float]
-) -> Geometry:
+) -> description.Geometry:
     positions = points(vertices, _FAILED, "vertices")
     corners = triangles(indices, len(positions), _FAILED)
     if not len(corners):
         fail(_FAILED, "There are no triangles.")
-    return TriangleMesh(
+    return description.TriangleMesh(
         positions * scale,
         corners,
         scale=scale,

@@ -26,7 +26,7 @@ _AFTER_SLASH = re.compile(rb"/\S*")
 _BROKEN = re.compile(rb"[.eE]")
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class _Group:
     """What stands between two `o` or `g` lines.
 

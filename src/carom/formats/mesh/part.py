@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class MeshPart:
     """One piece of a mesh file: an object or group of an OBJ, a geometry of a DAE, a whole STL.
 

@@ -8,8 +8,6 @@ from carom.errors import DescriptionError
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.mesh.obj import read_obj
 from carom.formats.mesh.part import MeshPart
-from carom.formats.mesh.ply import read_ply
-from carom.formats.mesh.stl import read_stl
 
 MAX_FILE_BYTES = 512 << 20
 """Largest mesh file that is read."""
@@ -18,7 +16,7 @@ MAX_CACHED_BYTES = 256 << 20
 """Most memory that the meshes of unchanged files take; robots may have a hundred of them."""
 
 
-# Those of formats with texts of their own are imported when there is such a file.
+# Those of the rarer formats are imported when there is such a file.
 def _read_collada(data: bytes, file: Path) -> list[MeshPart]:
     from carom.formats.mesh.collada import read_collada
 
@@ -31,13 +29,25 @@ def _read_gltf(data: bytes, file: Path) -> list[MeshPart]:
     return read_gltf(data, file)
 
 
+def _read_ply(data: bytes, file: Path) -> list[MeshPart]:
+    from carom.formats.mesh.ply import read_ply
+
+    return read_ply(data, file)
+
+
+def _read_stl(data: bytes, file: Path) -> list[MeshPart]:
+    from carom.formats.mesh.stl import read_stl
+
+    return read_stl(data, file)
+
+
 _READERS = {
     ".obj": read_obj,
-    ".stl": read_stl,
+    ".stl": _read_stl,
     ".dae": _read_collada,
     ".glb": _read_gltf,
     ".gltf": _read_gltf,
-    ".ply": read_ply,
+    ".ply": _read_ply,
 }
 
 

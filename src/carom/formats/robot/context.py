@@ -5,18 +5,20 @@ from __future__ import annotations
 import re
 from math import inf, isfinite, isnan
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Material, Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.formats.reading.cursor import Cursor, TracedElement
-from carom.formats.reading.written import Written
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element, from_calls
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
+
+if TYPE_CHECKING:
+    from carom.formats.reading.written import Written
 
 Default = TypeVar("Default")
 

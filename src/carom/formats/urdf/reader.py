@@ -11,7 +11,6 @@ from carom.description import Joint, Link, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
 from carom.formats.reading.cursor import Cursor
 from carom.formats.reading.ignored import IgnoredList
-from carom.formats.reading.written import Written
 from carom.formats.robot.context import FileContext
 from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.link import read_link
@@ -29,6 +28,7 @@ from carom.formats.xml_tree import parse_root
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
+    from carom.formats.reading.written import Written
     from carom.formats.xacro.document import Expanded
 
 Part = TypeVar("Part", Link, Joint)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from dataclasses import dataclass, field
+from io import BytesIO
 from itertools import chain, islice
 from pathlib import Path
 
@@ -24,15 +26,17 @@ _GREATEST = float(np.finfo(np.float32).max)
 _MAX_LIBRARIES = 1000
 # Keyword: kind of value, and how many numbers are used and required; colours or weights may follow.
 _KINDS = {b"v": (_VERTEX, 3, 3), b"vt": (_UV, 2, 1), b"vn": (_NORMAL, 3, 3)}
+# Lines with the same keyword, or another line. Runs are bounded, because the matcher remembers each line.
+_RUNS = re.compile(rb"(?:[ \t]*(?P<keyword>v[tn]?|f)[ \t].*\n)(?:[ \t]*(?P=keyword)[ \t].*\n){0,20000}|.*\n")
 
 
-@dataclass(slots=True)
+@dataclass(repr=False, eq=False, slots=True)
 class _Lines:
     """The lines of an OBJ file, by keyword.
 
     Attributes:
-        values: Positions, texture coordinates and normals: line numbers and the text after the keyword.
-        faces: Text after the `f` of each face.
+        values: Positions, texture coordinates and normals: runs of lines, each after the number of its first.
+        faces: Words after the `f` of each face.
         face_lines: Line number of each face.
         known: How many positions, texture coordinates and normals were known at each face.
         libraries: Names of the material files, once each.
@@ -41,7 +45,7 @@ class _Lines:
     """
 
     values: tuple[list[tuple[int, bytes]], ...] = field(default_factory=lambda: ([], [], []))
-    faces: list[bytes] = field(default_factory=list)
+    faces: list[list[bytes]] = field(default_factory=list)
     face_lines: list[int] = field(default_factory=list)
     known: list[tuple[int, int, int]] = field(default_factory=list)
     libraries: dict[str, None] = field(default_factory=dict)
@@ -70,16 +74,23 @@ def read_obj_visual(file: Path) -> RenderMesh:
 
 def _take_apart(data: bytes) -> _Lines:
     lines = _Lines()
-    vertices, uvs, normals = lines.values
+    known = [0, 0, 0]
     material, has_faces = ("", 0), False
-    for number, line in enumerate(data.removeprefix(b"\xef\xbb\xbf").splitlines(), start=1):
-        keyword, _, rest = line.strip().replace(b"\t", b" ").partition(b" ")
+    data = data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n") + b"\n"
+    number = 1
+    for run in _RUNS.finditer(data):
+        text, keyword, rest = run.group(), run["keyword"], b""
+        if keyword is None:
+            keyword, _, rest = text.strip().replace(b"\t", b" ").partition(b" ")
+        count = text.count(b"\n")
         if keyword in _KINDS:
-            lines.values[_KINDS[keyword][0]].append((number, rest))
+            kind = _KINDS[keyword][0]
+            lines.values[kind].append((number, text))
+            known[kind] += count
         elif keyword == b"f":
-            lines.faces.append(rest)
-            lines.face_lines.append(number)
-            lines.known.append((len(vertices), len(uvs), len(normals)))
+            lines.faces += [line.split()[1:] for line in text.splitlines()]
+            lines.face_lines += range(number, number + count)
+            lines.known += [(known[_VERTEX], known[_UV], known[_NORMAL])] * count
             has_faces = True
         elif keyword in (b"g", b"o"):
             lines.materials += [material] * has_faces
@@ -88,23 +99,26 @@ def _take_apart(data: bytes) -> _Lines:
             material = (first_word(rest.decode("utf-8", errors="surrogateescape")), len(lines.libraries))
         elif keyword == b"mtllib":
             lines.libraries.setdefault(rest.strip().decode("utf-8", errors="surrogateescape"))
+        number += count
     lines.materials += [material] * has_faces
     return lines
 
 
-def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path) -> NDArray[np.float64]:
+def _numbers(runs: list[tuple[int, bytes]], width: int, least: int, file: Path) -> NDArray[np.float64]:
     """The first `width` numbers of each line, 0 for those left out after `least`."""
-    words = [line.split()[:width] for _, line in lines]
-    rows = np.zeros((len(lines), width))
+    text = b"".join(run for _, run in runs)
+    count = text.count(b"\n")
     # Lines of a file usually have the same form and are correct: then NumPy parses them.
-    if all(len(line) == width for line in words):
+    if count and text.isascii():
         with suppress(ValueError):
-            rows[:] = np.array([*map(float, chain.from_iterable(words))]).reshape(-1, width)
-            if (np.abs(rows) <= _GREATEST).all():
+            rows = np.loadtxt(BytesIO(text), usecols=range(1, width + 1), comments=None, ndmin=2)
+            if len(rows) == count and (np.abs(rows) <= _GREATEST).all():
                 return rows
-    for index, (number, _) in enumerate(lines):
+    rows = np.zeros((count, width))
+    lines = [it for number, run in runs for it in enumerate(run.splitlines(), start=number)]
+    for index, (number, line) in enumerate(lines):
         try:
-            values = [float(word) for word in words[index]]
+            values = [float(word) for word in line.split()[1 : width + 1]]
         except ValueError:
             values = []
         if len(values) < least:
@@ -117,8 +131,8 @@ def _numbers(lines: list[tuple[int, bytes]], width: int, least: int, file: Path)
 
 def _corners(lines: _Lines, counts: tuple[int, int, int], file: Path) -> NDArray[np.int64]:
     """Triangles (m, 3 corners, 3): position, texture coordinate and normal of each corner; -1 for none."""
-    sizes = np.array([len(face.split()) for face in lines.faces], dtype=np.int64)
-    words = b" ".join(lines.faces).split()
+    sizes = np.array([len(face) for face in lines.faces], dtype=np.int64)
+    words = list(chain.from_iterable(lines.faces))
     try:
         indices = _indices(words)
     except (ValueError, OverflowError):
@@ -164,7 +178,7 @@ def _integers(words: list[bytes]) -> list[int]:
 def _bad_face(lines: _Lines) -> int | None:
     for face, line in zip(lines.faces, lines.face_lines, strict=True):
         try:
-            _indices(face.split())
+            _indices(face)
         except (ValueError, OverflowError):
             return line
     return None

@@ -17,7 +17,7 @@ NO_TEXTURE_UV = 0.5
 """Value of both texture coordinates of vertices that have none."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class RenderMesh:
     """Triangles ready to be drawn. All arrays are read-only.
 
