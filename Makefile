@@ -109,7 +109,7 @@ oracle: .oracle/pybullet
 
 # What the tests of the clients need beside the simulator. The clients themselves are not installed: they would
 # bring the distribution `pybullet`.
-CLIENT_NEEDS := gymnasium scipy matplotlib pytest transforms3d control
+CLIENT_NEEDS := gymnasium gym==0.26.2 scipy matplotlib pytest tqdm transforms3d control
 
 .clients/carom/clients: pyproject.toml
 	$(PYTHON) -m venv .clients/carom

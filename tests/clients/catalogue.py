@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,56 @@ class Scripts:
     left_out: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class Task:
+    """A scripted policy in an environment of `roboverse`; see `tasks.py`.
+
+    Attributes:
+        environment: Its identifier.
+        policy: Name of the policy.
+        success: The entry of the information that says whether the trial succeeded.
+        steps: Number of actions.
+        changes: Arguments of the environment that differ from the registered ones: only some of the objects
+            that they name lie in the repository.
+    """
+
+    environment: str
+    policy: str
+    success: str
+    steps: int
+    changes: dict[str, Any] = field(default_factory=dict)
+
+
+ROBOVERSE = "avisingh599/roboverse"
+TRIALS = 8
+_ANYWHERE = {"object_position_low": (0.5, 0.18, -0.3), "object_position_high": (0.7, 0.27, -0.3)}
+_BOTTLE = {
+    "object_names": ("gatorade",),
+    "object_scales": (0.75,),
+    "object_orientations": ((0, 0, 1, 0),),
+    "target_object": "gatorade",
+}
+_TWO = {"object_names": ("shed", "ball"), "object_scales": (0.7, 0.7), "target_object": "shed"}
+_ONE = {"object_names": ("shed",), "object_scales": (0.7,)}
+
+TASKS = {
+    "grasp a shed": Task("Widow250GraspEasy-v0", "grasp", "grasp_success", 30),
+    "grasp a shed anywhere": Task("Widow250GraspEasy-v0", "grasp", "grasp_success", 30, _ANYWHERE),
+    "grasp a bottle from a tray": Task("Widow250Grasp-v0", "grasp", "grasp_success", 30, _BOTTLE),
+    "grasp one of two from a tray": Task("Widow250Grasp-v0", "grasp", "grasp_success", 30, _TWO),
+    "put a shed on a tray": Task("Widow250PickTray-v0", "pickplace", "place_success", 40),
+    "put a shed into a tray anywhere": Task("Widow250PutInTray-v0", "pickplace", "place_success", 40, _ONE),
+    "open a drawer": Task("Widow250DrawerOpen-v0", "drawer_open", "drawer_opened_success", 40),
+    "open a drawer anywhere": Task(
+        "Widow250DrawerRandomizedOpen-v0", "drawer_open", "drawer_opened_success", 40
+    ),
+}
+
+
 # Scripts that come to something else on purpose, or by chance, and why: docs/differences.md has it at length.
 KNOWN = {
+    "deformable_anchor": "anchored cloth swings otherwise, by up to 0.12 m in a second",
+    "deformable_torus": "PyBullet makes a body without nodes of a file that is not there",
     "biped2d_pybullet": "a ball lies with its centre on the axis of a box, and may leave by either side",
     "minitaur_test": "the forces on feet of closed loops depend on which contacts were found first",
     "quadruped": "the forces on feet of closed loops depend on which contacts were found first",

@@ -59,6 +59,8 @@ def compare_runs(real: Run, ours: Run) -> Verdict:
         return Verdict(NOT_BUILT in ours.error, f"here: {ours.error or ours.end}")
     early, later = drift(real.states, ours.states)
     text = f"{ours.end}, {ours.steps} steps, {early:.1e} apart at first, {later:.1e} at most"
+    if ours.steps < min(real.steps, EARLY):
+        return Verdict(False, f"{text}; PyBullet: {real.end}, {real.steps} steps")
     return Verdict(early <= DRIFT or later <= SETTLED, text)
 
 
@@ -80,6 +82,24 @@ def drift(real: list[tuple[int, State]], ours: list[tuple[int, State]]) -> tuple
         if step <= EARLY:
             early = later
     return early, later
+
+
+def compare_trials(real: list[tuple[bool, float]], ours: list[tuple[bool, float]]) -> Verdict:
+    """Whether a policy succeeds here about as often as with PyBullet: one trial less may be chance."""
+    there, here = (sum(success for success, _ in trials) for trials in (real, ours))
+    same = sum(a[0] == b[0] for a, b in zip(real, ours, strict=False))
+    returns = [sum(total for _, total in trials) for trials in (real, ours)]
+    text = f"{there} of {len(real)} trials succeed with PyBullet, {here} here, {same} end alike"
+    return Verdict(
+        len(real) == len(ours) > 0 and here >= there - 1,
+        f"{text}; rewards {returns[0]:.0f} and {returns[1]:.0f}",
+    )
+
+
+def read_trials(output: Path) -> list[tuple[bool, float]]:
+    """What `tasks.py` has printed."""
+    lines = output.read_text(encoding="utf-8", errors="replace").splitlines()
+    return [tuple(json.loads(line[6:])) for line in lines if line.startswith("trial ")]
 
 
 def read_tests(report: Path) -> dict[str, str]:

@@ -10,7 +10,7 @@ from datetime import date
 from pathlib import Path
 from typing import TypedDict
 
-from tests.clients.catalogue import KNOWN, SCRIPTS, SUITES
+from tests.clients.catalogue import KNOWN, ROBOVERSE, SCRIPTS, SUITES, TASKS, TRIALS
 
 RECORD = Path(__file__).with_name("record.json")
 PAGE = Path(__file__).parents[2] / "docs" / "conformance" / "clients.md"
@@ -56,6 +56,15 @@ def page(record: dict[str, dict[str, Outcome]]) -> str:
     for name, suite in SUITES.items():
         project = f"[{name}](https://github.com/{suite.repository})"
         lines.append(_row(project, record.get(name, {}).get(name)))
+    runs = record.get("roboverse", {})
+    lines += [
+        f"\n## Scripted grasps ([roboverse](https://github.com/{ROBOVERSE}))\n",
+        f"Its scripted policies, {TRIALS} trials of each, with the seeds from 0 on. PyBullet's inverse",
+        "kinematics hardly moves the arm once a finger is beyond its limits, and this one does: drawers come",
+        "open more often.\n",
+        *_head("task"),
+        *(_row(name, runs.get(name)) for name in TASKS),
+    ]
     for group, scripts in SCRIPTS.items():
         source = scripts.module or f"{scripts.repository}, {scripts.folder}"
         lines += [f"\n## The {group} (`{source}`)\n"]

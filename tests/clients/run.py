@@ -9,17 +9,27 @@ of sources, unless they lie there already; nothing of them becomes part of this 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import subprocess
 import sys
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from tests.clients.catalogue import KNOWN, SCRIPTS, SUITES, Scripts, Suite
-from tests.clients.outcome import Run, Verdict, compare_runs, compare_tests, read_tests
+from tests.clients.catalogue import KNOWN, ROBOVERSE, SCRIPTS, SUITES, TASKS, TRIALS, Scripts, Suite, Task
+from tests.clients.outcome import (
+    Run,
+    Verdict,
+    compare_runs,
+    compare_tests,
+    compare_trials,
+    read_tests,
+    read_trials,
+)
 from tests.clients.page import PAGE, note, page, read
 
 WATCH = Path(__file__).with_name("watch.py")
+PLAY = Path(__file__).with_name("tasks.py")
 STEPS = 240
 """Of each script so many steps are watched: a second of the simulation."""
 SECONDS = 60
@@ -112,6 +122,18 @@ def run_scripts(bench: Bench, name: str, scripts: Scripts, wanted: list[str]) ->
     return verdicts
 
 
+def run_task(bench: Bench, name: str, task: Task) -> Verdict:
+    """Plays the trials of a task with both, on PyBullet's own assets."""
+    source, assets = bench.source(ROBOVERSE), bench.folder_of("pybullet_data")
+    trials = {}
+    for which, python in bench.interpreters.items():
+        folder = bench.scratch("roboverse", which, name.replace(" ", "_"))
+        command = [str(python), str(PLAY), str(source), str(assets), json.dumps(asdict(task)), str(TRIALS)]
+        _run(command, folder, _clean(), TRIALS * SECONDS)
+        trials[which] = read_trials(folder / "output.txt")
+    return compare_trials(trials["oracle"], trials["carom"])
+
+
 def _lay_out(folder: Path, root: Path, scripts: Path) -> None:
     """Puts what lies beside the scripts, and the data of the repository, where they look for it."""
     beside = [entry for entry in scripts.iterdir() if entry.suffix != ".py"]
@@ -169,7 +191,14 @@ def main() -> int:
             good &= verdict.good
             if options.record:
                 note(name, name, same=verdict.good, text=verdict.text)
-    wanted = [name for name in options.names if name not in SUITES]
+    for name, task in TASKS.items():
+        if not options.names or "roboverse" in options.names:
+            verdict = run_task(bench, name, task)
+            _say(name, verdict)
+            good &= verdict.good
+            if options.record:
+                note("roboverse", name, same=verdict.good, text=verdict.text)
+    wanted = [name for name in options.names if name not in (*SUITES, "roboverse")]
     if wanted or not options.names:
         for name, scripts in SCRIPTS.items():
             print(f"\n{name}:")

@@ -6,7 +6,15 @@ import sys
 from pathlib import Path
 
 from tests.clients import watch
-from tests.clients.outcome import Run, compare_runs, compare_tests, drift, read_tests
+from tests.clients.outcome import (
+    Run,
+    compare_runs,
+    compare_tests,
+    compare_trials,
+    drift,
+    read_tests,
+    read_trials,
+)
 
 FALLING = [(1, [[0.0, 0.0, 1.0]]), (20, [[0.0, 0.0, 0.5]]), (30, [[0.0, 0.0, 0.0]])]
 
@@ -23,6 +31,24 @@ def test_runs_that_move_alike_are_the_same() -> None:
     assert compare_runs(real, Run("steps", steps=30, states=shifted(4e-3, 1))).good
     assert not compare_runs(real, Run("steps", steps=30, states=shifted(6e-3, 1))).good
     assert drift(FALLING, shifted(0.5, 30)) == (0.0, 0.5)
+
+
+def test_a_script_that_hardly_gets_to_its_steps_differs() -> None:
+    real = Run("steps", steps=240, states=FALLING)
+    assert not compare_runs(real, Run("time", steps=0)).good
+    assert compare_runs(real, Run("time", steps=30, states=FALLING)).good
+
+
+def test_trials_succeed_about_as_often(tmp_path: Path) -> None:
+    output = tmp_path / "output.txt"
+    output.write_text("build time\ntrial [true, 3.0]\ntrial [false, 0.0]\ntrial [true, 2.0]\n")
+    real = read_trials(output)
+    assert real == [(True, 3.0), (False, 0.0), (True, 2.0)]
+    found = compare_trials(real, [(True, 3.0), (False, 0.0), (False, 1.0)])
+    assert found.good
+    assert found.text == "2 of 3 trials succeed with PyBullet, 1 here, 2 end alike; rewards 5 and 4"
+    assert not compare_trials(real, [(False, 0.0)] * 3).good
+    assert not compare_trials(real, []).good
 
 
 def test_runs_with_other_bodies_differ() -> None:
