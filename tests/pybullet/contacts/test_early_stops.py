@@ -2,7 +2,7 @@
 
 It stops at a tetrahedron whose volume is less than 1.7e-9 m³. Where shapes are small, or one is round, its
 answer is off by then: the normal by up to 6e-2, the point by up to 0.2 mm. None of these answers changes by
-more than 1e-9 if a body starts 1e-13 m elsewhere.
+more than 1e-9 if a body starts 1e-12 m elsewhere.
 """
 
 from __future__ import annotations
