@@ -123,6 +123,21 @@ def test_what_is_no_rotation_is_felt_for_one_step(calls: list[Call], expected: b
 
 
 @pytest.mark.parametrize(
+    ("calls", "expected"),
+    [([TILTED], True), ([RIGHT], False), ([TILTED, STEP], False), ([], False)],
+)
+@pytest.mark.parametrize(("body", "asked"), [(BODY, True), ({"$": 7}, False)])
+def test_what_is_no_rotation_is_felt_by_closest_points(
+    calls: list[Call], body: dict[str, int], asked: bool, expected: bool
+):
+    ask = call(60, "getClosestPoints", body, {"$": 8}, 5)
+    theirs, ours = (
+        [0, 0, 1, 0, -1, [0.0, 0.0, 1.0], [0.0, 0.0, 1.0 - gap], [0.0, 0.0, 1.0], gap] for gap in (0.2, 0.3)
+    )
+    assert is_known([BOX, *calls, ask], "distance", theirs, ours) == (expected and asked)
+
+
+@pytest.mark.parametrize(
     ("turn", "expected"), [([1, 0, 0, 0], True), ([0, 0, math.sqrt(0.5), math.sqrt(0.5)], False)]
 )
 def test_half_a_turn_of_a_spherical_joint(turn: list[float], expected: bool):

@@ -197,16 +197,25 @@ def starts_at_a_limit(seen: Seen) -> bool:
 
 def turns_by_no_rotation(seen: Seen, steps: int) -> bool:
     """Whether a base was reset to a quaternion whose length is not 1, at most so many steps ago."""
+    return any(True for _ in _turned_by_no_rotation(seen, steps))
+
+
+def is_near_what_no_rotation_turned(seen: Seen) -> bool:
+    """Whether a body asked about was reset to a quaternion whose length is not 1, since the last step."""
+    return any(body in seen.call["a"] for body in _turned_by_no_rotation(seen, 0))
+
+
+def _turned_by_no_rotation(seen: Seen, steps: int) -> Iterator[Any]:
+    """The bodies that were reset to a quaternion whose length is not 1, at most so many steps ago."""
     for call in reversed(seen.before):
         if call["f"] == "stepSimulation":
             steps -= 1
             if steps < 0:
-                return False
+                return
         if call["f"] == "resetBasePositionAndOrientation":
             turn = call["a"][2]
             if isinstance(turn, list) and abs(sum(part * part for part in turn) - 1.0) > _NO_ROTATION:
-                return True
-    return False
+                yield call["a"][0]
 
 
 def _half_turned(value: Any) -> bool:

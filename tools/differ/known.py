@@ -38,6 +38,7 @@ from tools.differ.causes import (
     is_a_little_nearer,
     is_as_thick_as_a_margin,
     is_farther_from_a_fine_hull,
+    is_near_what_no_rotation_turned,
     is_the_same_rotation,
     is_the_shorter_way_out,
     is_thinner_than_its_margins,
@@ -242,7 +243,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "places links as if the base were larger by the square of that length",
         # What is reported of the start of a step is so after it, too.
-        lambda seen: seen.differs("getLinkState", "getAABB") and turns_by_no_rotation(seen, 1),
+        lambda seen: (
+            (seen.differs("getLinkState", "getAABB") and turns_by_no_rotation(seen, 1))
+            or (seen.differs("getClosestPoints") and is_near_what_no_rotation_turned(seen))
+        ),
     ),
     Known(
         "the same rotation with the other sign",

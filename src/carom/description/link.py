@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from carom.description.geometry import Geometry
+from carom.description.geometry import Capsule, Geometry
 from carom.description.pose import IDENTITY, Pose
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ class Collision:
     Attributes:
         ends_frame: For a capsule or cylinder whose ends the file states: the frame in which it states them,
             in the link frame. PyBullet computes a different inertia for such shapes.
+        implicit: Whether a capsule given by its ends is a compound of a capsule in PyBullet, and not `swept`.
     """
 
     geometry: Geometry
@@ -56,6 +57,12 @@ class Collision:
     group: int | None = None
     mask: int | None = None
     ends_frame: Pose | None = None
+    implicit: bool = False
+
+    @property
+    def swept(self) -> bool:
+        """Whether the shape is a swept sphere in PyBullet."""
+        return self.ends_frame is not None and isinstance(self.geometry, Capsule) and not self.implicit
 
 
 @dataclass(frozen=True, slots=True)

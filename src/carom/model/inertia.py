@@ -38,7 +38,7 @@ from carom.layouts.contacts import MARGIN
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds, placed_bounds, shape_bounds
-from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends, is_swept
+from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
 
 _log = Logger(__name__)
 
@@ -107,7 +107,10 @@ def mass_terms(link: LinkSpec, *, implicit_cylinder: bool, margin: float = MARGI
     `margin` is that of a single hull, or of the hulls of an OBJ file together [m].
     """
     if is_in_place(link.collisions, link.inertial_frame):
-        return _shape_terms(link.collisions[0].geometry, implicit_cylinder, margin)
+        (only,) = link.collisions
+        if only.ends_frame is not None:
+            return _box_terms(12.0, 1.0, bounds_between_ends(only, 0.0))
+        return _shape_terms(only.geometry, implicit_cylinder, margin)
     return _box_terms(12.0, 1.0, link_bounds(link, implicit_cylinder=implicit_cylinder))
 
 
@@ -119,29 +122,25 @@ def link_bounds(link: LinkSpec, *, implicit_cylinder: bool) -> Bounds:
     """
     collisions, inertial_frame = link.collisions, link.inertial_frame
     if is_in_place(collisions, inertial_frame):
-        if is_swept(collisions[0]):
+        if collisions[0].ends_frame is not None:
             return bounds_between_ends(collisions[0], FIRST_MARGIN)
         return shape_bounds(collisions[0].geometry, implicit_cylinder=implicit_cylinder)
-    boxes = [_bounds_in(inertial_frame, collision, implicit_cylinder) for collision in collisions]
+    boxes = [bounds_in(inertial_frame, collision, implicit_cylinder) for collision in collisions]
     nothing = Bounds((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     return (reduce(Bounds.joined, boxes) if boxes else nothing).grown(link.compound_margin)
 
 
-def _bounds_in(inertial_frame: Pose, collision: Collision, implicit_cylinder: bool) -> Bounds:
+def bounds_in(inertial_frame: Pose, collision: Collision, implicit_cylinder: bool) -> Bounds:
     """Bounds of one of several shapes along the axes of an inertial frame."""
-    if is_swept(collision):
-        rotation, position = placement(inertial_frame, as_given(collision).frame)
-        return bounds_between_ends(collision, FIRST_MARGIN).placed(rotation, position)
-    place = placement(inertial_frame, collision.frame)
+    place = placement(inertial_frame, as_given(collision).frame)
+    if collision.ends_frame is not None:
+        return bounds_between_ends(collision, FIRST_MARGIN).placed(*place)
     return placed_bounds(collision.geometry, *place, implicit_cylinder=implicit_cylinder)
 
 
 def is_in_place(collisions: Sequence[Collision], inertial_frame: Pose) -> bool:
     """Whether there is a single shape and its frame, or that of its ends, is exactly the inertial frame."""
-    if len(collisions) != 1:
-        return False
-    only = as_given(collisions[0]) if is_swept(collisions[0]) else collisions[0]
-    return placement(inertial_frame, only.frame) == _IN_PLACE
+    return len(collisions) == 1 and placement(inertial_frame, as_given(collisions[0]).frame) == _IN_PLACE
 
 
 def shape_margin(link: LinkSpec, collision: Collision) -> float | None:
@@ -159,11 +158,11 @@ def shape_margin(link: LinkSpec, collision: Collision) -> float | None:
 
 
 def is_compound(link: LinkSpec) -> bool:
-    """Whether the shapes of a link are a compound in Bullet, as a cylinder given by its ends is, too."""
+    """Whether the shapes of a link are a compound in Bullet, as one given by its ends is, unless swept."""
     if not is_in_place(link.collisions, link.inertial_frame):
         return True
     only = link.collisions[0]
-    return only.ends_frame is not None and isinstance(only.geometry, Cylinder)
+    return only.ends_frame is not None and not only.swept
 
 
 def collision_margin(link: LinkSpec) -> float:
@@ -174,7 +173,7 @@ def collision_margin(link: LinkSpec) -> float:
     if is_compound(link):
         return link.compound_margin
     only = link.collisions[0]
-    if is_swept(only):
+    if only.swept:
         return FIRST_MARGIN
     default = shape_margin(link, only)
     if default is not None:
@@ -191,7 +190,7 @@ def collision_margin(link: LinkSpec) -> float:
 
 def margin_is_radius(link: LinkSpec) -> bool:
     """Whether a link's margin is the radius of its only shape, a ball or capsule; it never changes then."""
-    if is_compound(link) or is_swept(link.collisions[0]):
+    if is_compound(link) or link.collisions[0].swept:
         return False
     return isinstance(link.collisions[0].geometry, (Sphere, Capsule))
 
@@ -200,7 +199,7 @@ def widens_bounds(link: LinkSpec, kinds: list[ShapeKind]) -> bool:
     """Whether the margin of a link, with pieces of these kinds, is around its shapes and not within them."""
     if not kinds:
         return False
-    return is_compound(link) or is_swept(link.collisions[0]) or kinds[0] not in _WITH_MARGIN_INSIDE
+    return is_compound(link) or link.collisions[0].swept or kinds[0] not in _WITH_MARGIN_INSIDE
 
 
 def placement(inertial_frame: Pose, shape_frame: Pose) -> tuple[Matrix3, Vector3]:

@@ -10,16 +10,15 @@ from carom.description.pose import Vector3
 from carom.layouts.contacts import MARGIN
 from carom.layouts.flags import LoadFlags
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.model.bounds import Bounds, placed_bounds, vertex_bounds
-from carom.model.inertia import TWELFTH, box_moments, inertia_from_shapes, is_in_place, placement
-from carom.model.swept_spheres import FIRST_MARGIN, as_given, bounds_between_ends
+from carom.model.bounds import Bounds, vertex_bounds
+from carom.model.inertia import TWELFTH, bounds_in, box_moments, inertia_from_shapes, is_in_place, placement
+from carom.model.swept_spheres import FIRST_MARGIN
 
 
 def set_mjcf_inertias(body: BodySpec) -> None:
     """Set the inertias of a body's links to those that PyBullet computes for MJCF files.
 
-    There cylinders are exact, compounds have no margin, and capsules given by their ends are swept spheres,
-    which have a margin.
+    There cylinders are exact, and compounds have no margin.
 
     Raises:
         DescriptionError: The file of a collision mesh cannot be used.
@@ -33,25 +32,19 @@ def set_mjcf_inertias(body: BodySpec) -> None:
 
 def _inertia(link: LinkSpec) -> Vector3:
     mass, collisions, frame = link.mass, link.collisions, link.inertial_frame
-    if not any(collision.ends_frame or _is_stl(collision) for collision in collisions):
+    if not any(_is_stl(collision) for collision in collisions):
         return inertia_from_shapes(replace(link, compound_margin=0.0), implicit_cylinder=True)
-    if is_in_place([as_given(collision) for collision in collisions], frame):
-        (only,) = collisions
-        if only.ends_frame is not None:
-            return box_moments(mass / 12.0, bounds_between_ends(only, 0.0))
-        return box_moments(mass * TWELFTH, _stl_bounds(only).grown(MARGIN))
+    if is_in_place(collisions, frame):
+        return box_moments(mass * TWELFTH, _stl_bounds(collisions[0]).grown(MARGIN))
     boxes = [_placed(collision, frame) for collision in collisions]
     return box_moments(mass / 12.0, reduce(Bounds.joined, boxes))
 
 
 def _placed(collision: Collision, frame: Pose) -> Bounds:
     """Bounds of a shape along the axes of an inertial frame."""
-    rotation, position = placement(frame, as_given(collision).frame)
     if _is_stl(collision):
-        return _stl_bounds(collision).placed(rotation, position)
-    if collision.ends_frame is None:
-        return placed_bounds(collision.geometry, rotation, position, implicit_cylinder=True)
-    return bounds_between_ends(collision, FIRST_MARGIN).placed(rotation, position)
+        return _stl_bounds(collision).placed(*placement(frame, collision.frame))
+    return bounds_in(frame, collision, implicit_cylinder=True)
 
 
 def _is_stl(collision: Collision) -> bool:

@@ -13,7 +13,7 @@ from carom.model.body_spec import LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
-from carom.model.swept_spheres import FIRST_MARGIN, is_swept
+from carom.model.swept_spheres import FIRST_MARGIN, as_given
 
 _log = Logger(__name__)
 
@@ -48,23 +48,31 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
         if isinstance(collision.geometry, SignedDistanceField):
             _log.warning("link %r: nothing collides with a signed distance field", link.name)
         pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
-        if is_swept(collision):
+        if collision.swept:
             pieces = [replace(piece, size=(*piece.size[:2], FIRST_MARGIN)) for piece in pieces]
         margin = shape_margin(link, collision)
         if margin is not None:
             pieces = [replace(piece, margin=margin) for piece in pieces]
-        depth = int(len(link.collisions) > 1 or hypot(*pose[:6]) > _IDENTITY_TOLERANCE) + _is_compound(
-            collision
-        )
+        depth = int(_is_moved(link, collision)) + _is_compound(collision)
         placed.extend(PlacedPiece(piece, pose, index, depth) for piece in pieces)
     return placed
 
 
-def _is_compound(collision: Collision) -> bool:
-    """Whether the shape itself is a compound in Bullet, as that of an OBJ file is, also of one part.
+def _is_moved(link: LinkSpec, collision: Collision) -> bool:
+    """Whether Bullet puts a shape into a compound of its link: it is one of several, or has its own place."""
+    rotation, position = placement(link.inertial_frame, as_given(collision).frame)
+    turn = quaternion_from_matrix(rotation)
+    return len(link.collisions) > 1 or hypot(*position, *turn[:3]) > _IDENTITY_TOLERANCE
 
+
+def _is_compound(collision: Collision) -> bool:
+    """Whether the shape itself is a compound in Bullet.
+
+    That of an OBJ file is one, also of one part, and any that is given by its ends and is not swept.
     Shapes that scripts make are none: of these the parts are put directly into the compound of the link.
     """
+    if collision.ends_frame is not None:
+        return not collision.swept
     geometry = collision.geometry
     return isinstance(geometry, Mesh) and not geometry.concave and geometry.path.suffix.lower() == ".obj"
 

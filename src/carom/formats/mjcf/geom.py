@@ -73,8 +73,7 @@ def read_geom(context: MjcfContext, element: Element, attributes: Attributes, in
     frame, given_in = pose, None
     if ends is not None:
         frame = compose(pose, _between(ends))
-        if kind == "cylinder" or not context.implicit:
-            given_in = pose
+        given_in = pose
     return Geom(
         Collision(
             geometry,
@@ -83,6 +82,7 @@ def read_geom(context: MjcfContext, element: Element, attributes: Attributes, in
             group=context.parse_bits(element, "contype", attributes.get("contype", "1")),
             mask=context.parse_bits(element, "conaffinity", attributes.get("conaffinity", "1")),
             ends_frame=given_in,
+            implicit=context.implicit,
         ),
         Visual(geometry, frame, attributes.get("name", ""), _material(context, element, attributes)),
         volume,

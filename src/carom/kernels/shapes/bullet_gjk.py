@@ -3,9 +3,9 @@
 If a face or an edge of one core is parallel to one of the other, many pairs of points are equally near.
 Bullet's GJK ends at one that depends on its way: on its first direction, on its rules for segments, triangles
 and tetrahedra, and on the order of the two cores. A puck that lands flat tips over this point. If the faces
-are nearly parallel, Bullet stops a little early, because a tetrahedron is too thin. So this is the same
-search, with the same rules in the same order. The one in `gjk.py` is made for accuracy, and takes over where
-this one fails.
+are nearly parallel, or shapes small or round, Bullet stops early, because a tetrahedron is too thin. So this
+is the same search, with the same rules in the same order. The one in `gjk.py` is made for accuracy, and takes
+over where cores overlap.
 """
 
 import warp as wp
@@ -15,7 +15,7 @@ from carom.kernels.shapes.cores import Core, local_support
 from carom.kernels.shapes.gjk import corner, weighted
 from carom.kernels.types import Index3, Int32, Matrix43, Vector3, Vector4, Vectors3, func, real, shared_func
 
-MAX_STEPS = 64
+MAX_STEPS = 1000
 # Bullet's tolerances: of the squared distance, and of its decrease in a step, both as a fraction; the squared
 # distance of equal points and that of cores that touch [m^2]; six times the volume of a flat tetrahedron
 # [m^3].
@@ -24,10 +24,8 @@ ROUNDING = real(2.220446049250313e-16)
 SAME_POINT = real(9.999999960041972e-13)
 TOUCHING = real(1.0e-12)
 NO_VOLUME = real(1.0e-8)
-# The search has failed if the distance may be less by more than this [m].
-UNCERTAIN = real(1.0e-6)
-# Bits of the corners of a triangle.
-ALL_THREE = wp.constant(7)
+# Bits of the corners of a triangle, and what stands for them where a tetrahedron is flat.
+ALL_THREE, FLAT = wp.constant(7), wp.constant(16)
 # Outcomes of a search.
 FAILED, FOUND, TOO_FAR = 0, 1, 2
 
@@ -122,7 +120,7 @@ def face_of_tetrahedron(face: Int32) -> Index3:
 def nearest_on_tetrahedron(simplex: Matrix43) -> Nearest:
     """Point of a tetrahedron's surface nearest to the origin.
 
-    It depends on no corner if the tetrahedron is flat, or contains the origin.
+    It depends on no corner if the tetrahedron contains the origin; `used` is `FLAT` if it is flat.
     """
     result = Nearest()
     least = real(-1.0)
@@ -134,7 +132,9 @@ def nearest_on_tetrahedron(simplex: Matrix43) -> Nearest:
         normal = wp.cross(b - a, c - a)
         volume = wp.dot(corner(simplex, 6 - corners[0] - corners[1] - corners[2]) - a, normal)
         if wp.abs(volume) < NO_VOLUME:
-            return Nearest()
+            flat = Nearest()
+            flat.used = FLAT
+            return flat
         if wp.dot(-a, normal) * volume < 0.0:
             on_face = nearest_on_triangle(a, b, c)
             distance = wp.length_sq(on_face.point)
@@ -216,6 +216,9 @@ def nearest_as_in_bullet(core_a: Core, core_b: Core, vertex_position: Vectors3, 
         count += 1
         found = nearest_on(differences, count)
         if found.used == 0:
+            return Int32(FAILED), max_distance, axis, point_b
+        if found.used == FLAT:
+            # The nearest point so far is Bullet's result, though it may not be the nearest of all.
             break
         if count == 2:
             share = found.weights[1]
@@ -244,10 +247,5 @@ def nearest_as_in_bullet(core_a: Core, core_b: Core, vertex_position: Vectors3, 
                     on_b[unused, i] = on_b[count, i]
             unused -= 1
     length = wp.length(axis)
-    outcome = Int32(FOUND)
-    if (
-        wp.abs(length - bound / length) > UNCERTAIN
-        or wp.abs(length * length - distance_sq) > UNCERTAIN * length
-    ):
-        outcome = Int32(FAILED)
+    outcome = Int32(FOUND if steps < MAX_STEPS else FAILED)
     return outcome, length, axis / length, middle + point_b
