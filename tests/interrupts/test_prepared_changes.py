@@ -44,7 +44,7 @@ def made() -> World:
 
 def _tie(world: World) -> Any:
     places = world.bodies[2], -1, world.bodies[1], 3
-    return world.tie(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
+    return world.constrain(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
 
 
 def _file(world: World, folder: Path) -> Callable[[], Any]:
@@ -141,7 +141,7 @@ CHANGES: dict[str, Change] = {
     "remove": lambda world, _: lambda: world.remove(1),
     "remove the last": lambda world, _: lambda: world.remove(3),
     "tie": lambda world, _: lambda: _tie(world),
-    "untie": lambda world, _: lambda: world.untie(world.user_constraints.all[0]),
+    "untie": lambda world, _: lambda: world.remove_constraint(world.user_constraints.all[0]),
     "restore": _restore,
     "reset": lambda world, _: world.reset,
     "change dynamics": lambda world, _: (

@@ -232,7 +232,8 @@ class World(
 
         return copy_world(self)
 
-    def tie(
+    @alone("lock")
+    def constrain(
         self,
         kind: UserConstraintKind,
         parent: Body,
@@ -245,20 +246,31 @@ class World(
         child_frame: Pose = IDENTITY,
         hidden: bool = False,
     ) -> UserConstraint:
-        """Tie a link to another, or to the world; see `UserConstraint` for the arguments.
+        """Constrain a link to another, or to the world; see `UserConstraint` for the arguments.
 
         A hidden constraint is not among `user_constraints.all`.
+
+        Raises:
+            ValueError: One of the bodies is no longer in the world.
         """
         places = (parent, parent_link, child, child_link)
         frames = (axis, parent_frame, child_frame)
-        return add_constraint(self, self.user_constraints.new(kind, *places, *frames, hidden=hidden))
+        with uninterrupted:
+            # Its number is the next one until it has been added.
+            constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
+            add_constraint(self, constraint)
+        return constraint
 
     def add_constraint(self, constraint: UserConstraint) -> None:
-        """Add a constraint that `user_constraints.new` has made for a body of this world."""
+        """Add a constraint that `user_constraints.new` has made for a body of this world.
+
+        Raises:
+            ValueError: One of its bodies is no longer in the world.
+        """
         add_constraint(self, constraint)
 
-    def untie(self, constraint: UserConstraint) -> None:
-        """Remove a constraint made by `tie`."""
+    def remove_constraint(self, constraint: UserConstraint) -> None:
+        """Remove a user constraint."""
         remove_constraint(self, constraint)
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
