@@ -131,6 +131,19 @@ def _colour(world: World, _: Path) -> Callable[[], Any]:
     return lambda: looks.change(body, -1, rgba=(1.0, 0.0, 0.0, 1.0), specular=(0.1, 0.2, 0.3))
 
 
+_RED = np.full((2, 2, 3), (255, 0, 0), dtype=np.uint8)
+
+
+def _texture(world: World, _: Path) -> Callable[[], Any]:
+    return lambda: appearance_of(world).add_texture(_RED, list(world.bodies.values()))
+
+
+def _other_texture(world: World, _: Path) -> Callable[[], Any]:
+    textures = appearance_of(world).textures
+    number = textures.add(_RED)
+    return lambda: textures.replace(number, _RED // 2)
+
+
 Change = Callable[[World, Path], Callable[[], Any]]
 
 CHANGES: dict[str, Change] = {
@@ -188,6 +201,8 @@ CHANGES: dict[str, Change] = {
     "disable a motor": lambda world, _: world.bodies[3].joints.movable[0].disable_motor,
     "apply a force": _force,
     "colour": _colour,
+    "load a texture": _texture,
+    "change a texture": _other_texture,
     "switch a coupling off": _coupling,
     "stiffen a tendon": _tendon,
     "move nodes": _nodes,
@@ -259,7 +274,14 @@ def summary(world: World) -> tuple[Any, ...]:
         [(it.enabled, it.spring, it.range) for it in world.user_constraints.all],
         [_rows_of_nodes(world, name) for name in ("node_position", "node_velocity")],
         [repr(appearance_of(world)._looks.get(body)) for body in bodies],
+        _textures(world),
     )
+
+
+def _textures(world: World) -> tuple[Any, ...]:
+    textures = appearance_of(world).textures
+    images = [(number, image.tobytes()) for number, image in textures._images.items()]
+    return textures.changes, textures._next, textures._next_hidden, images
 
 
 def _rows_of_nodes(world: World, name: str) -> bytes:
