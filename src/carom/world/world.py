@@ -204,7 +204,8 @@ class World(
         Raises:
             KeyError: There is no such body.
         """
-        remove_body(self, self.bodies[body_id])
+        with uninterrupted:
+            remove_body(self, self.bodies[body_id])
 
     def reset(self, also: Callable[[Change], None] | None = None) -> None:
         """Remove all bodies and reset all parameters except the time step and the substeps.
@@ -366,10 +367,11 @@ class World(
     @alone("lock")
     def change_parameters(self, **values: Any) -> None:
         """Set some of `parameters` and apply them, all at once."""
-        change = Change()
-        self.note_parameters(change, **values)
-        change.commit()
-        self.resume_step()
+        with uninterrupted:
+            change = Change()
+            self.note_parameters(change, **values)
+            change.commit()
+            self.resume_step()
 
     def apply_parameters(self) -> None:
         """Apply changes of `parameters`."""
