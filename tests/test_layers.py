@@ -87,7 +87,7 @@ LAUNCH_KERNELS = {"carom.gpu", "carom.kernels"}
 # Modules that name each other's types: one of each circle, how many there are, and why.
 CIRCLES_OF_TYPES = {
     # A body has a world, and methods of both hand themselves to functions in modules of their own.
-    "carom.scene.body": 108,
+    "carom.scene.body": 109,
     # Likewise a connection and the bodies and detours that it keeps.
     "pybullet._clients.clients": 11,
     # Arrays of worlds, and rows that are written to them.

@@ -19,7 +19,7 @@ def panda(time_step: float = 1e-3, gravity: float = -9.81) -> tuple[World, Body]
     world.gravity = (0.0, 0.0, gravity)
     robot = world.load_urdf(DATA / "franka_panda" / "panda.urdf", fixed_base=True)
     for coupling in world.user_constraints.all:
-        world.untie(coupling)
+        world.remove_constraint(coupling)
     robot.change_dynamics(-1, linear_damping=0.0, angular_damping=0.0, joint_damping=0.0)
     for joint in robot.joints.movable:
         joint.damping = 0.0

@@ -44,7 +44,7 @@ def made() -> World:
 
 def _tie(world: World) -> Any:
     places = world.bodies[2], -1, world.bodies[1], 3
-    return world.tie(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
+    return world.constrain(UserConstraintKind.FIXED, *places, axis=(0.0, 0.0, 1.0))
 
 
 def _file(world: World, folder: Path) -> Callable[[], Any]:
@@ -131,6 +131,19 @@ def _colour(world: World, _: Path) -> Callable[[], Any]:
     return lambda: looks.change(body, -1, rgba=(1.0, 0.0, 0.0, 1.0), specular=(0.1, 0.2, 0.3))
 
 
+_RED = np.full((2, 2, 3), (255, 0, 0), dtype=np.uint8)
+
+
+def _texture(world: World, _: Path) -> Callable[[], Any]:
+    return lambda: appearance_of(world).add_texture(_RED, list(world.bodies.values()))
+
+
+def _other_texture(world: World, _: Path) -> Callable[[], Any]:
+    textures = appearance_of(world).textures
+    number = textures.add(_RED)
+    return lambda: textures.replace(number, _RED // 2)
+
+
 Change = Callable[[World, Path], Callable[[], Any]]
 
 CHANGES: dict[str, Change] = {
@@ -141,7 +154,7 @@ CHANGES: dict[str, Change] = {
     "remove": lambda world, _: lambda: world.remove(1),
     "remove the last": lambda world, _: lambda: world.remove(3),
     "tie": lambda world, _: lambda: _tie(world),
-    "untie": lambda world, _: lambda: world.untie(world.user_constraints.all[0]),
+    "untie": lambda world, _: lambda: world.remove_constraint(world.user_constraints.all[0]),
     "restore": _restore,
     "reset": lambda world, _: world.reset,
     "change dynamics": lambda world, _: (
@@ -188,6 +201,8 @@ CHANGES: dict[str, Change] = {
     "disable a motor": lambda world, _: world.bodies[3].joints.movable[0].disable_motor,
     "apply a force": _force,
     "colour": _colour,
+    "load a texture": _texture,
+    "change a texture": _other_texture,
     "switch a coupling off": _coupling,
     "stiffen a tendon": _tendon,
     "move nodes": _nodes,
@@ -259,7 +274,14 @@ def summary(world: World) -> tuple[Any, ...]:
         [(it.enabled, it.spring, it.range) for it in world.user_constraints.all],
         [_rows_of_nodes(world, name) for name in ("node_position", "node_velocity")],
         [repr(appearance_of(world)._looks.get(body)) for body in bodies],
+        _textures(world),
     )
+
+
+def _textures(world: World) -> tuple[Any, ...]:
+    textures = appearance_of(world).textures
+    images = [(number, image.tobytes()) for number, image in textures._images.items()]
+    return textures.changes, textures._next, textures._next_hidden, images
 
 
 def _rows_of_nodes(world: World, name: str) -> bytes:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from inspect import isfunction
 from threading import Condition, Thread
 from typing import Any
 
@@ -15,6 +16,7 @@ from carom.algorithms.inverse_dynamics import inverse_dynamics
 from carom.algorithms.inverse_kinematics import inverse_kinematics
 from carom.algorithms.jacobian import jacobian
 from carom.algorithms.mass_matrix import mass_matrix
+from carom.worlds.body import BodyBatch
 
 _ROUNDS = 40
 _BODIES = ("plane.urdf", "kuka_iiwa/model.urdf", "cube_small.urdf")
@@ -214,14 +216,45 @@ def test_worlds_do_not_wait_for_each_other() -> None:
         assert not thread.is_alive()
 
 
-def test_calls_of_worlds_wait_for_each_other() -> None:
+CALLS_OF_WORLDS: dict[str, Callable[[Worlds], Any]] = {
+    "step": Worlds.step,
+    "contacts": lambda worlds: worlds.contacts(2),
+    "linearize": lambda worlds: worlds.linearize(),
+    "velocities": lambda worlds: worlds[2].base_velocities,
+    "set velocities": lambda worlds: worlds[2].set_base_velocities([0.0] * 6),
+    "set joints": lambda worlds: setattr(worlds[2], "joint_positions", 0.0),
+    "targets": lambda worlds: worlds[2].set_position_targets(0.0),
+    "controls": lambda worlds: setattr(worlds[2], "controls", np.zeros((3, 0))),
+    "dynamics": lambda worlds: worlds[2].dynamics(-1),
+    "mass matrices": lambda worlds: worlds[2].mass_matrices(),
+    "gravity": lambda worlds: worlds[2].gravity_forces(),
+    "sensors": lambda worlds: worlds[2].read_sensors(),
+}
+
+
+@pytest.mark.parametrize("name", CALLS_OF_WORLDS)
+def test_calls_of_worlds_wait_for_each_other(name: str) -> None:
     worlds, done = Worlds(made(), 3), list[str]()
-    thread = Thread(target=lambda: (worlds.step(), done.append("stepped")))
+    call = CALLS_OF_WORLDS[name]
+    # Modules are known the second time.
+    call(worlds)
+    thread = Thread(target=lambda: (call(worlds), done.append("done")))
     with worlds.lock:
         thread.start()
         thread.join(0.2)
         assert not done
         worlds.step()
     thread.join()
-    assert done == ["stepped"]
-    assert worlds.times.tolist() == pytest.approx([2.0 / 240.0] * 3)
+    assert done == ["done"]
+    assert worlds.times.tolist() == pytest.approx([(3.0 if name == "step" else 1.0) / 240.0] * 3)
+
+
+# Names of what waits for nobody: it is the same at all times, or names the rows of a view.
+_FREE = {"columns", "link_index", "link_rows"}
+
+
+@pytest.mark.parametrize("kind", [Worlds, BodyBatch])
+def test_all_methods_of_worlds_wait(kind: type) -> None:
+    methods = {name: getattr(kind, name) for name in dir(kind) if name[0] != "_"}
+    free = {name for name, it in methods.items() if isfunction(it) and not hasattr(it, "__wrapped__")}
+    assert free <= _FREE

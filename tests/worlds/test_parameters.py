@@ -155,7 +155,7 @@ def test_gravity() -> None:
 def tied_world() -> tuple[World, int]:
     scene, box = box_world()
     other = add_box(scene, (0.5, 0.0, 0.12))
-    tie = scene.tie(UserConstraintKind.POINT_TO_POINT, box, -1, other, -1)
+    tie = scene.constrain(UserConstraintKind.POINT_TO_POINT, box, -1, other, -1)
     tie.parent_frame = type(tie.parent_frame)((0.25, 0.0, 0.0))
     tie.child_frame = type(tie.child_frame)((-0.25, 0.0, 0.0))
     scene.scene_changed()

@@ -152,7 +152,7 @@ def test_forces_act_where_they_are_to() -> None:
 
 def test_gravity_and_constraints_change_where_they_are_to() -> None:
     world, cube = box()
-    tie = world.tie(UserConstraintKind.FIXED, cube, BASE, None, BASE)
+    tie = world.constrain(UserConstraintKind.FIXED, cube, BASE, None, BASE)
     worlds = Worlds(world, COUNT)
     worlds.set_gravity([[0.0, 0.0, -1.0], [0.0, 0.0, -2.0]], where=CHOSEN)
     assert worlds.gravity[:, 2].tolist() == [-9.81, -2.0, -9.81, -1.0, -9.81]

@@ -131,7 +131,7 @@ def test_sensors_feel_what_links_touch_and_are_tied_to() -> None:
     add_box(world, (0.0, -HALF, 1.0 + HALF))
     hanging = add_ball(world, (0.0, 0.0, 0.5))
     frame = Pose((0.0, 0.0, 0.5 - HALF))
-    world.tie(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, -1, child_frame=frame)
+    world.constrain(UserConstraintKind.POINT_TO_POINT, plate, 0, hanging, -1, child_frame=frame)
     plate.joints[0].enable_sensor()
     worlds = Worlds(world, COUNT, threads=2)
     lone = worlds.extract(2)

@@ -107,11 +107,16 @@ class QuickCalls:
 
 
 def quick_calls(vectorcall: int) -> QuickCalls | None:
-    """The quick calls of this process; None where the library cannot use Python.
+    """The quick calls of this process, for the first caller; None for others, and where there are none.
 
+    The library has one table of them, so a module `pybullet` that is imported a second time goes without.
     `vectorcall` is the address of the function that calls a Python function.
     """
-    if host is None:
+    if host is None or _given_away:
         return None
+    _given_away.append(host)
     host.python["PyObject_Vectorcall"].value = vectorcall
     return QuickCalls(host)
+
+
+_given_away: list[Host] = []

@@ -125,68 +125,96 @@ class Appearance:
         """Whether the appearance of a body has been read or changed already."""
         return body in self._looks
 
+    def add_texture(self, image: Texels, bodies: Sequence[Body]) -> int:
+        """Add a texture, after those of bodies, in the order these were loaded, and return its number."""
+        change = Change()
+        self._note_first(change, bodies)
+        number = self.textures.note(change, image)
+        change.commit()
+        return number
+
     def number_textures(self, bodies: Sequence[Body]) -> None:
         """Number the textures of bodies, in the order the bodies were loaded."""
-        for body in bodies:
-            if body not in self._looks:
-                self._looks[body] = self._first_of(body)
+        change = Change()
+        self._note_first(change, bodies)
+        change.commit()
 
     def _of(self, body: Body) -> list[list[ShapeLook]]:
         if body not in self._looks:
             # The textures of bodies that were loaded before come first.
             self.number_textures(list(body.world.bodies.values()))
         if body not in self._looks:
-            self._looks[body] = self._first_of(body)
+            self.number_textures([body])
         return self._looks[body]
 
-    def _first_of(self, body: Body) -> list[list[ShapeLook]]:
-        """The looks of a body as it was loaded; numbers its textures."""
+    def _note_first(self, change: Change, bodies: Sequence[Body]) -> None:
+        """Give bodies that have no looks yet their first ones with a change."""
+        first = {body: self._first_of(change, body) for body in bodies if body not in self._looks}
+        if first:
+            looks = WeakKeyDictionary(self._looks)
+            looks.update(first)
+            change.set(self, "_looks", looks)
+
+    def _first_of(self, change: Change, body: Body) -> list[list[ShapeLook]]:
+        """The looks of a body as it was loaded; a change numbers its textures."""
         flags = LoadFlags(body.spec.flags)
         looks = [
-            self._first_looks(body.link_spec(link), link, flags) for link in range(BASE, body.joint_count)
+            self._first_looks(change, body.link_spec(link), link, flags)
+            for link in range(BASE, body.joint_count)
         ]
         if body.spec.soft is not None:
-            looks[0] = self._soft_looks(body.spec.base, looks[0], body.spec.soft.checkered)
+            looks[0] = self._soft_looks(change, body.spec.base, looks[0], body.spec.soft.checkered)
         return looks
 
-    def _soft_looks(self, base: LinkSpec, looks: list[ShapeLook], checkered: bool) -> list[ShapeLook]:
+    def _soft_looks(
+        self, change: Change, base: LinkSpec, looks: list[ShapeLook], checkered: bool
+    ) -> list[ShapeLook]:
         """Looks of a soft body: two-sided, because it may be cloth, and with its texture if it has one."""
         files = [None if visual.material is None else visual.material.texture for visual in base.visuals]
         images = [CHECKER if checkered else _image_of(file) for file in files]
         # In PyBullet the textures of soft bodies have no number.
-        textures = [NO_TEXTURE if image is None else self.textures.add_hidden(image) for image in images]
+        textures = [
+            NO_TEXTURE if image is None else self.textures.note(change, image, hidden=True)
+            for image in images
+        ]
         return [
             replace(look, two_sided=True, texture=texture)
             for look, texture in zip(looks, textures, strict=True)
         ]
 
-    def _first_looks(self, spec: LinkSpec, link: int, flags: LoadFlags) -> list[ShapeLook]:
+    def _first_looks(self, change: Change, spec: LinkSpec, link: int, flags: LoadFlags) -> list[ShapeLook]:
         # A link without visual shapes is drawn with its collision shapes.
         if not spec.visuals:
             undefined = _undefined_colour(link, flags)
-            looks = [self._look(shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions]
+            looks = [
+                self._look(change, shape.geometry, shape.frame, undefined, flags) for shape in spec.collisions
+            ]
             for look in looks:
                 look.coloured = undefined is not WHITE
             return looks
         looks = []
         for visual in spec.visuals:
-            look = self._look(visual.geometry, visual.frame, _colour(visual.material, link, flags), flags)
+            look = self._look(
+                change, visual.geometry, visual.frame, _colour(visual.material, link, flags), flags
+            )
             if visual.material is not None and visual.material.specular is not None:
                 look.specular = visual.material.specular
             look.coloured = not visual.stands_in or look.rgba is not WHITE
             looks.append(look)
         return looks
 
-    def _look(self, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags) -> ShapeLook:
+    def _look(
+        self, change: Change, geometry: Geometry, frame: Pose, rgba: Rgba, flags: LoadFlags
+    ) -> ShapeLook:
         # The mesh is kept in memory because, as in PyBullet, its file may be deleted after loading.
         mesh = shape_mesh(geometry)
         look = ShapeLook(geometry, frame, mesh, rgba)
         if isinstance(geometry, (Plane, Heightfield)):
-            look.texture = self.textures.add(CHECKER)
+            look.texture = self.textures.note(change, CHECKER)
         elif isinstance(geometry, Mesh):
             look.rgba = _colour_of_mesh(geometry.path, mesh, flags) or rgba
             image = _image_of(mesh.texture_file)
-            look.texture = NO_TEXTURE if image is None else self.textures.add(image)
+            look.texture = NO_TEXTURE if image is None else self.textures.note(change, image)
         return look
 
 

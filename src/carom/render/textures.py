@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.native.change import Change
 from carom.render.images import Texels
 
 NO_TEXTURE = -1
@@ -30,22 +31,28 @@ class Textures:
 
     def add(self, image: Texels) -> int:
         """Add an image (height, width, 3), the top row first, and return its number."""
-        number = self._next
-        self._next += 1
-        self._images[number] = image
+        change = Change()
+        number = self.note(change, image)
+        change.commit()
         return number
 
-    def add_hidden(self, image: Texels) -> int:
-        """Add an image that scripts cannot refer to; its number is less than `NO_TEXTURE`."""
-        number = self._next_hidden
-        self._next_hidden -= 1
-        self._images[number] = image
+    def note(self, change: Change, image: Texels, *, hidden: bool = False) -> int:
+        """Add an image with a change, and return its number.
+
+        Scripts cannot refer to a hidden one; its number is less than `NO_TEXTURE`.
+        """
+        counter, following = ("_next_hidden", -1) if hidden else ("_next", 1)
+        number = change.get(self, counter)
+        change.set(self, counter, number + following)
+        change.put(self._images, number, image)
         return number
 
     def replace(self, number: int, image: Texels) -> None:
         """Replace an image by another one, of any size."""
-        self._images[number] = image
-        self.changes += 1
+        change = Change()
+        change.put(self._images, number, image)
+        change.set(self, "changes", self.changes + 1)
+        change.commit()
 
     def image(self, number: int) -> Texels:
         """The image of a texture; KeyError if there is none with this number."""
@@ -53,5 +60,7 @@ class Textures:
 
     def clear(self) -> None:
         """Remove all images; their numbers are not used again."""
-        self._images.clear()
-        self.changes += 1
+        change = Change()
+        change.refill(self._images, {})
+        change.set(self, "changes", self.changes + 1)
+        change.commit()

@@ -17,6 +17,7 @@ from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
 from carom.scene.draft import draft_of
 from carom.scene.dynamics_changes import change_base_freedom
+from carom.scene.handles import world_of
 from carom.scene.pattern import pattern_of
 from carom.scene.user_constraints import UserConstraint
 
@@ -144,15 +145,21 @@ def remove_body(world: World, body: Body) -> None:
 
 
 @alone("lock")
-def add_constraint(world: World, constraint: UserConstraint) -> UserConstraint:
-    """Add a new user constraint, and return it."""
+def add_constraint(world: World, constraint: UserConstraint) -> None:
+    """Add a new user constraint.
+
+    Raises:
+        ValueError: One of its bodies is no longer in the world.
+    """
     with uninterrupted:
+        world_of(constraint.parent)
+        if constraint.child is not None:
+            world_of(constraint.child)
         change = Change()
         world.user_constraints.put(change, constraint)
         world.constraints.add_user(change, constraint)
         world.change_constraints(change)
         change.commit()
-    return constraint
 
 
 @alone("lock")

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
+from carom.native.gates import alone
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
 
@@ -43,6 +44,7 @@ class ActuatorBatch(Batch):
         return self._state["actuator_control"][:, self._actuators]
 
     @controls.setter
+    @alone("_scene.lock")
     def controls(self, value: ArrayLike) -> None:
         view = self.controls
         view[:] = self._chosen().values(self._take(value), view.shape[1:], "controls")
@@ -57,6 +59,7 @@ class ActuatorBatch(Batch):
         """Forces of the actuators in the last substep [N or N m], a view (count, actuators)."""
         return self._state["actuator_force"][:, self._actuators]
 
+    @alone("_scene.lock")
     def change_actuator(
         self, actuator: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:

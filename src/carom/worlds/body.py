@@ -9,6 +9,7 @@ from carom.checks import Array
 from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.magnitudes import UNIT_ROUNDING
+from carom.native.gates import alone
 from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.checks import Mask
@@ -39,6 +40,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     # Presence
 
     @property
+    @alone("_scene.lock")
     def present(self) -> Mask:
         """In which worlds the body is present, a copy (count,); see `set_present`."""
         return is_present(self._engine.arrays, self.rows)
@@ -47,6 +49,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def present(self, value: ArrayLike) -> None:
         self.set_present(value)
 
+    @alone("_scene.lock")
     def set_present(self, present: ArrayLike, where: ArrayLike | None = None) -> None:
         """Let the body come or go in each world, or in some.
 
@@ -98,6 +101,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
 
+    @alone("_scene.lock")
     def set_base_poses(
         self,
         positions: ArrayLike,
@@ -126,6 +130,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         self._engine.contact_arrays.forget_warm_start(worlds.numbers)
 
     @property
+    @alone("_scene.lock")
     def base_velocities(self) -> Array:
         """Linear velocity of the base's centre of mass [m/s], angular velocity [rad/s]: a copy (count, 6)."""
         first = self._body.first_velocity
@@ -136,6 +141,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def base_velocities(self, value: ArrayLike) -> None:
         self.set_base_velocities(value)
 
+    @alone("_scene.lock")
     def set_base_velocities(self, velocities: ArrayLike, where: ArrayLike | None = None) -> None:
         """Set linear and angular velocities of the base in world axes.
 
@@ -150,6 +156,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         self._state["dof_velocity"][worlds.rows, first + 3 : first + BASE_VELOCITIES] = values[:, :3]
 
     @property
+    @alone("_scene.lock")
     def link_poses(self) -> Array:
         """World poses of the link frames, as `Link.pose`, for the present coordinates: (count, links, 7).
 
@@ -158,6 +165,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         return link_frames(self._poses.poses()[:, self._links], self._body.spec.links)
 
     @property
+    @alone("_scene.lock")
     def link_inertial_poses(self) -> Array:
         """World poses of the links' inertial frames, as `Link.inertial_pose`: a copy (count, links, 7).
 
@@ -167,6 +175,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         return self._poses.poses()[:, self._links].copy()
 
     @property
+    @alone("_scene.lock")
     def link_velocities(self) -> Array:
         """Linear velocity of the links' centres of mass [m/s], then their angular velocity [rad/s].
 
@@ -184,6 +193,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         return self._state["link_pose"][:, self._links]
 
     @property
+    @alone("_scene.lock")
     def stepped_link_velocities(self) -> Array:
         """`link_velocities` as `pybullet.getLinkState` has them after a step: a view (count, links, 6).
 
@@ -192,6 +202,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """
         return self._poses.velocities_at_step()[:, self._links]
 
+    @alone("_scene.lock")
     def update_link_poses(self, where: ArrayLike | None = None) -> None:
         """Update `stepped_link_poses` from the coordinates.
 
@@ -200,6 +211,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """
         self._poses.update(self._chosen(where).numbers)
 
+    @alone("_scene.lock")
     def apply_forces(
         self,
         link: int | str,
@@ -234,6 +246,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
 
     # Parameters
 
+    @alone("_scene.lock")
     def change_dynamics(
         self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:
@@ -258,6 +271,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         """
         change_dynamics(self._engine, self._body, self.link_index(link), self._chosen(where), changes)
 
+    @alone("_scene.lock")
     def dynamics(self, link: int | str) -> dict[str, Array]:
         """What `change_dynamics` changes of a link, as it is now in each world.
 

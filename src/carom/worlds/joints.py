@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite
 from carom.description import JointType
 from carom.layouts.codes import SENSED
+from carom.native.gates import alone
 from carom.scene.joint_motor import Drives
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
@@ -39,6 +40,7 @@ class JointBatch(Batch):
     def joint_velocities(self, value: ArrayLike) -> None:
         self._fill(self.joint_velocities, value, "joint_velocities")
 
+    @alone("_scene.lock")
     def _fill(self, view: Array, value: ArrayLike, name: str) -> None:
         view[:] = self._chosen().values(self._take(value), view.shape[1:], name)
 
@@ -48,11 +50,13 @@ class JointBatch(Batch):
         return self._state["dof_torque"][:, self._dofs]
 
     @property
+    @alone("_scene.lock")
     def motor_torques(self) -> Array:
         """Torques [N m] or forces [N] of the motors in the last substep, a copy (count, dofs)."""
         return self._state["dof_motor_impulse"][:, self._dofs] / self._scene.parameters.substep_time
 
     @property
+    @alone("_scene.lock")
     def limits(self) -> tuple[Array, Array]:
         """Minimum and maximum positions of movable joints in each world; infinite without a limit.
 
@@ -95,6 +99,7 @@ class JointBatch(Batch):
             return slice(int(columns[0]), int(columns[-1]) + 1)
         return columns
 
+    @alone("_scene.lock")
     def enable_sensors(self, *joints: int | str) -> None:
         """Switch the force-torque sensors of joints on in all worlds; all joints if none is named."""
         chosen = joints or tuple(range(self._body.joint_count))
@@ -118,6 +123,7 @@ class JointBatch(Batch):
 
     # Drives
 
+    @alone("_scene.lock")
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -160,6 +166,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.aim_at_position(target, rate, gain, damping, forces, fastest)
 
+    @alone("_scene.lock")
     def set_velocity_targets(
         self,
         targets: ArrayLike,
@@ -180,6 +187,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.aim_at_velocity(target, gain, forces)
 
+    @alone("_scene.lock")
     def set_springs(
         self,
         targets: ArrayLike,
@@ -204,6 +212,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.pull_like_a_spring(rest, rate, *gains, forces)
 
+    @alone("_scene.lock")
     def set_torques(
         self,
         torques: ArrayLike,
@@ -224,12 +233,14 @@ class JointBatch(Batch):
         with self._rows_of_dofs("dof_torque", worlds) as rows:
             rows[:, columns] = values
 
+    @alone("_scene.lock")
     def disable_motors(self, joints: list[int | str] | None = None, where: ArrayLike | None = None) -> None:
         """Switch off the motors and springs of joints, in all worlds or in some."""
         columns, _ = self._chosen_joints(joints, one_freedom=joints is not None)
         with self._drives(columns, self._chosen(where)) as drives:
             drives.switch_off()
 
+    @alone("_scene.lock")
     def motors(self, joints: list[int | str] | None = None) -> dict[str, Array]:
         """What motors are told in each world, by the names of the arguments of `set_position_targets`.
 
@@ -246,6 +257,7 @@ class JointBatch(Batch):
         with self._drives(columns, self._chosen()) as drives:
             return drives.motors()
 
+    @alone("_scene.lock")
     def springs(self, joints: list[int | str] | None = None) -> dict[str, Array]:
         """What springs of joints are told in each world, by the names of the arguments of `set_springs`.
 

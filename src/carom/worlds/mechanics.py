@@ -18,6 +18,7 @@ from carom.checks import Array
 from carom.description.transform import conjugate, rotate
 from carom.layouts.chain import DAMPED, NULL_SPACE, SELECTIVE
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.native.gates import alone
 from carom.worlds.algorithms.mechanics import MechanicsBatch
 from carom.worlds.algorithms.poses import PoseBatch
 from carom.worlds.algorithms.searches import InverseKinematicsBatch, Searcher, SearchOptions
@@ -33,6 +34,7 @@ class AlgorithmBatch(Batch):
     for any number of threads.
     """
 
+    @alone("_scene.lock")
     def forward_kinematics(
         self,
         positions: ArrayLike,
@@ -56,6 +58,7 @@ class AlgorithmBatch(Batch):
         specs = [body.spec.base if link < 0 else body.spec.links[link] for link in numbers]
         return link_frames(poses[:, [1 + link for link in numbers]], specs)
 
+    @alone("_scene.lock")
     def jacobians(
         self,
         link: int | str,
@@ -84,6 +87,7 @@ class AlgorithmBatch(Batch):
         found = self._mechanics.jacobians(self.link_index(link), points, self._joints(worlds, positions))
         return found[:, :3], found[:, 3:]
 
+    @alone("_scene.lock")
     def mass_matrices(self, positions: ArrayLike | None = None, where: ArrayLike | None = None) -> Array:
         """Joint-space inertia matrices, as `carom.algorithms.mass_matrix`; armature is included.
 
@@ -102,6 +106,7 @@ class AlgorithmBatch(Batch):
         worlds = self._chosen(where)
         return self._mechanics.mass_matrices(self._joints(worlds, positions), worlds.numbers)
 
+    @alone("_scene.lock")
     def inverse_dynamics(
         self,
         accelerations: ArrayLike = 0.0,
@@ -152,6 +157,7 @@ class AlgorithmBatch(Batch):
         questions = np.concatenate([gravity, state, rates, changes], axis=1)
         return self._mechanics.forces(questions, worlds.numbers)
 
+    @alone("_scene.lock")
     def inverse_kinematics(
         self,
         links: Sequence[int | str],

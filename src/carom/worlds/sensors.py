@@ -9,6 +9,7 @@ from carom.checks import Array
 from carom.description.sensor import SensorObject
 from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
+from carom.native.gates import alone
 from carom.scene.body import Body
 from carom.scene.sensors.frames import frame_of, placement
 from carom.scene.sensors.reading import StepWatch, forget, reading, remembered
@@ -100,6 +101,7 @@ class SensorBatch(Batch):
         """Names of the sensors."""
         return [spec.name for spec in self._body.spec.sensors]
 
+    @alone("_scene.lock")
     def sensor(self, sensor: int | str) -> Array:
         """What a sensor shows in each world, as `BodySensor.read`: (count, dim), on the host.
 
@@ -111,10 +113,12 @@ class SensorBatch(Batch):
         """
         return reading(self._source, self._body, choose("sensor", self.sensor_names, sensor)).copy()
 
+    @alone("_scene.lock")
     def read_sensors(self) -> dict[str, Array]:
         """What each sensor shows, by name; see `sensor`."""
         return {name: self.sensor(index) for index, name in enumerate(self.sensor_names)}
 
+    @alone("_scene.lock")
     def site_poses(self, site: int | str) -> Array:
         """World poses of a site for the present coordinates: a copy (count, 7), on the host.
 

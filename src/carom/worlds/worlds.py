@@ -51,8 +51,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
     joint limits, and which user constraints are active. The first axis of arrays is the world: (count, ...).
 
     Attributes:
-        lock: The lock that `step` and the other methods have from their arguments to their results; hold it
-            to make several calls, or to use views and batches, without those of other threads in between.
+        lock: The lock that all methods, and those of bodies, have from their arguments to their results; hold
+            it to make several calls, or to use views, without those of other threads in between.
         count: Number of worlds.
         device: The device they are on.
         times: Simulated time of each world [s], shape (count,).
@@ -134,6 +134,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         return self._scene.parameters.time_step
 
     @time_step.setter
+    @alone("lock")
     def time_step(self, value: float) -> None:
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
@@ -351,6 +352,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         return self._engine.parameter("model", "gravity_vector", 0)
 
     @gravity.setter
+    @alone("lock")
     def gravity(self, value: ArrayLike) -> None:
         self.set_gravity(value)
 

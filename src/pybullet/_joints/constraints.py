@@ -108,7 +108,7 @@ def createConstraint(
     child_frame = _frame(childFramePosition, childFrameOrientation, *_CHILD_FRAME)
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
     with client.lock:
-        constraint = client.world.tie(
+        constraint = client.world.constrain(
             kind,
             parent,
             parent_link,
@@ -219,7 +219,7 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
         logger.warning("removeConstraint: there is no constraint %s.", number)
         return
     with client.lock:
-        client.world.untie(constraint)
+        client.world.remove_constraint(constraint)
 
 
 @exported

@@ -61,9 +61,7 @@ def loadTexture(textureFilename: str, physicsClientId: int = 0) -> int:
     except DescriptionError as problem:
         fail(_CANNOT_LOAD, str(problem))
     with client.lock:
-        appearance = appearance_of(client.world)
-        appearance.number_textures(list(client.world.bodies.values()))
-        return appearance.textures.add(image)
+        return appearance_of(client.world).add_texture(image, list(client.world.bodies.values()))
 
 
 @exported

@@ -102,7 +102,7 @@ class Picking:
         for constraint in self._released:
             # The constraint is gone if its body has been removed in the meantime.
             if constraints.get(constraint.id) is constraint:
-                self._world.untie(constraint)
+                self._world.remove_constraint(constraint)
         self._released.clear()
 
     def _carry(self, hand: _Hand) -> None:
@@ -137,7 +137,7 @@ class Picking:
             return True
         if not moving_links(body)[hand.link - BASE]:
             return False
-        hand.constraint = world.tie(
+        hand.constraint = world.constrain(
             UserConstraintKind.POINT_TO_POINT,
             body,
             hand.link,

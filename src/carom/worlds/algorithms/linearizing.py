@@ -17,6 +17,7 @@ from carom.linearization.chosen import chosen_parts
 from carom.linearization.exact import StepDerivatives, StepLinearizer
 from carom.linearization.linearized_step import refuse_substeps
 from carom.linearization.stepping import Copies
+from carom.native.gates import alone
 from carom.scene.body import Body
 from carom.world.world import World
 from carom.worlds.algorithms.mechanics import MechanicsBatch
@@ -59,6 +60,7 @@ class Linearizing:
     _thread_count: int | None
     _linearizer: _Linearizer | None = None
 
+    @alone("_scene.lock")
     def linearize(
         self,
         controls: Sequence[str] = ("torques",),
@@ -91,6 +93,7 @@ class Linearizing:
             tuple(found.rows),
         )
 
+    @alone("_scene.lock")
     def step_vjp(
         self,
         cotangents: ArrayLike,
