@@ -1,23 +1,6 @@
 """Environments put together from named functions: observations, rewards, events, commands, terminations."""
 
 from carom.vector.managers.manager_env import ManagerEnv
-from carom.vector.managers.terms import (
-    Command,
-    Curriculum,
-    Event,
-    Observation,
-    Reward,
-    Task,
-    Termination,
-)
+from carom.vector.managers.terms import Command, Curriculum, Event, Observation, Reward, Task, Termination
 
-__all__ = [
-    "Command",
-    "Curriculum",
-    "Event",
-    "ManagerEnv",
-    "Observation",
-    "Reward",
-    "Task",
-    "Termination",
-]
+__all__ = ["Command", "Curriculum", "Event", "ManagerEnv", "Observation", "Reward", "Task", "Termination"]
