@@ -7,7 +7,9 @@
 typedef double Four __attribute__((ext_vector_type(4), aligned(8)));
 static_assert(LANES == 4, "numbers are transposed four by four");
 
-inline const double* numbers_at(const char* first, int64_t bytes) { return reinterpret_cast<const double*>(first + bytes); }
+inline const double* numbers_at(const char* first, int64_t bytes) {
+    return reinterpret_cast<const double*>(first + bytes);
+}
 inline double* numbers_at(char* first, int64_t bytes) { return reinterpret_cast<double*>(first + bytes); }
 
 inline Four& four_at(double* at) { return *reinterpret_cast<Four*>(at); }
@@ -19,7 +21,9 @@ inline void repeat(const double* from, double* to, int count) {
         four_at(to + i * LANES) = Four(from[i]);
 }
 
-inline void put_side_by_side(const double* a, const double* b, const double* c, const double* d, double* to, int count) {
+inline void put_side_by_side(
+    const double* a, const double* b, const double* c, const double* d, double* to, int count
+) {
     int i = 0;
     for (; i + 4 <= count; i += 4, to += 4 * LANES) {
         const Four low_ab = __builtin_shufflevector(four_at(a + i), four_at(b + i), 0, 4, 2, 6);

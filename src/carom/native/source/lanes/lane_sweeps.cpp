@@ -20,7 +20,7 @@ enum { EFFECTIVE_MASS = 1, LOWER, UPPER, IMPULSE };
 constexpr int SETTLING_SWEEPS = 2;
 
 // More rows than this, for each of those of the world with the most, cost more than solving each world for itself.
-constexpr int MOST_SLOTS = 2;
+constexpr int MAX_SLOTS = 2;
 
 // What a lane without a row has in its place: change, effective mass, bounds, impulse; share and softness, which make
 // every change 0. A row that is not soft in a slot that is corrects its whole rate.
@@ -56,15 +56,15 @@ bool are_equal(const int32_t* a, const int32_t* b, int count) {
 // Whether the rows over two trees of a world are those of the first, but for their numbers.
 bool have_same_pair_rows(const LaneWorld& first, const LaneWorld& other) {
     const int rows = first.waiting[WAITING_PAIR_ROWS];
-    return rows == other.waiting[WAITING_PAIR_ROWS] && first.waiting[WAITING_BLOCKS] == other.waiting[WAITING_BLOCKS]
-        && are_equal(first.row_places, other.row_places, 4 * rows)
-        && are_equal(first.row_starts, other.row_starts, rows);
+    return rows == other.waiting[WAITING_PAIR_ROWS] && first.waiting[WAITING_BLOCKS] == other.waiting[WAITING_BLOCKS] &&
+           are_equal(first.row_places, other.row_places, 4 * rows) &&
+           are_equal(first.row_starts, other.row_starts, rows);
 }
 
 // The rows of all lanes in the order of their visits, merged.
 class Merging {
 public:
-    Merging(const LaneMotion& lanes) : lanes(lanes), sweeps(lanes.sweeps) { }
+    Merging(const LaneMotion& lanes) : lanes(lanes), sweeps(lanes.sweeps) {}
 
     // Returns whether they could be merged to few enough slots.
     bool merge() {
@@ -73,7 +73,7 @@ public:
             most = world.waiting[WAITING_VISITS] > most ? world.waiting[WAITING_VISITS] : most;
         while (left_of(longest()) > 0) {
             const int lane = longest();
-            if (visits == MOST_SLOTS * most)
+            if (visits == MAX_SLOTS * most)
                 return false;
             if (!(next(lane) < 0 ? add_common(next(lane)) : add_slot(places(lane)[ENTRY])))
                 return false;
@@ -228,8 +228,8 @@ bool has_settled(const LaneSweeps& sweeps, int slot, const bool (&is_searching)[
     bool settled = true;
     for (int lane = 0; lane < LANES; ++lane) {
         const double impulse = numbers[IMPULSE * LANES + lane];
-        settled &= !is_searching[lane]
-            || (impulse == numbers[LOWER * LANES + lane] && impulse == numbers[UPPER * LANES + lane]);
+        settled &= !is_searching[lane] ||
+                   (impulse == numbers[LOWER * LANES + lane] && impulse == numbers[UPPER * LANES + lane]);
     }
     return settled;
 }
