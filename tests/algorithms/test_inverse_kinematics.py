@@ -11,6 +11,7 @@ from tests.physics.aba_reference import rotation
 from tests.physics.robots import random_tree
 
 import pybullet as p
+import pybullet_data
 from carom import World
 from carom.algorithms import inverse_kinematics
 from carom.description import JointType
@@ -120,6 +121,35 @@ def test_an_orientation_is_reached_from_singular_poses_where_pybullet_is_stuck(p
             arrived += distance < CLOSE and angle < CLOSE
     assert asked >= 5
     assert arrived >= 0.9 * asked
+
+
+@pytest.mark.parametrize(
+    ("start", "position", "orientation", "expected"),
+    [
+        ([0] * 7, (0, 0, 1.26), (0, 0, 1, 0.0007963), (0.015468, 0, 0.015468, 0, 0.015468, 0, 3.0935961)),
+        (
+            [0.1, 0.4, -0.2, -1.0, 0.3, 0.8, 0.0],
+            (0.5, 0.1, 0.3),
+            (1, 0, 0, 0),
+            (0.0871371, 0.5652184, -0.2149306, -1.1594855, 0.2687166, 0.9237933, 2.967934),
+        ),
+    ],
+)
+def test_a_damping_holds_joints_as_in_pybullet(start, position, orientation, expected):
+    """Answers of PyBullet 3.2.7; the first leaves more than half of the way."""
+    client = p.connect(p.DIRECT)
+    try:
+        path = f"{pybullet_data.getDataPath()}/kuka_iiwa/model.urdf"
+        arm = p.loadURDF(path, useFixedBase=True, physicsClientId=client)
+        for joint, angle in enumerate(start):
+            p.resetJointState(arm, joint, angle, physicsClientId=client)
+        damping = [100.0] * 6 + [0.5]
+        found = p.calculateInverseKinematics(
+            arm, 6, position, orientation, jointDamping=damping, physicsClientId=client
+        )
+    finally:
+        p.disconnect(client)
+    assert_allclose(found, expected, rtol=0, atol=2e-6)
 
 
 def test_more_steps_within_limits_come_nearer():

@@ -46,6 +46,7 @@ _UNSTATED = -1
 _SOLVERS = (IK_DLS, IK_SDLS)
 # PyBullet's iteration is considered stuck if it leaves more than this fraction of the distance.
 _STUCK = 0.5
+_ANY = 1e30
 _STEPS_WHERE_STUCK = 200
 
 
@@ -105,7 +106,7 @@ def calculateInverseKinematics(
     enough, its result is returned. If not, the search continues from there, and the closest solution found is
     returned. Exception: for a position with an orientation, without `maxNumIterations` and
     `residualThreshold`, PyBullet's result is returned unless it violates limits, or leaves more than half of
-    the distance and more than 2 cm.
+    the distance and more than 2 cm; with `jointDamping`, also then.
 
     With limits the result is always within them. With `lowerLimits`, `upperLimits`, `jointRanges` and
     `restPoses` joints are also moved towards their rest poses (null-space control), a little with each call,
@@ -161,7 +162,9 @@ def calculateInverseKinematics(
     if orientation is not None and maxNumIterations <= 0 and residualThreshold < 0:
         # Scripts that do not ask for accuracy may depend on PyBullet's result (trained policies, for
         # example). Each call brings them closer to the target, unless PyBullet's iteration is stuck.
-        options["further"], options["patience"] = _STEPS_WHERE_STUCK, _STUCK
+        # Who states a damping asks for small steps.
+        patience = _ANY if "damping" in options else _STUCK
+        options["further"], options["patience"] = _STEPS_WHERE_STUCK, patience
 
     with client.lock:
         found = _algorithm()(
