@@ -89,12 +89,14 @@ def test_a_heap_outgrows_its_arrays_and_comes_to_lie_where_it_does_on_the_proces
     room = there._engine.contact_arrays.contacts.capacity["contact"]
     for worlds in (there, here):
         worlds.step(60)
-        worlds.step(60)
-    assert there._engine.contact_arrays.contacts.capacity["contact"] > room
+    # Later, the number of points of boxes that lie on each other is up to rounding.
     counts = np.asarray(there._engine.contact_arrays.contacts.numpy["count_contacts"])[:, THERE]
     np.testing.assert_array_equal(
         counts, here._engine.contact_arrays.contacts.numpy["count_contacts"][:, THERE]
     )
+    for worlds in (there, here):
+        worlds.step(60)
+    assert there._engine.contact_arrays.contacts.capacity["contact"] > room
     # Rounding differs on the device, and while boxes tumble over each other differences grow.
     for batch, other in zip(there, here, strict=True):
         np.testing.assert_allclose(np.asarray(batch.base_poses), other.base_poses, atol=2e-3)

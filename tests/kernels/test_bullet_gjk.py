@@ -30,7 +30,7 @@ from tests.kernels.convex_cores import (
     segment,
 )
 
-from carom.kernels.shapes.bullet_gjk import FAILED, FOUND, TOO_FAR, nearest_as_in_bullet, nearest_on
+from carom.kernels.shapes.bullet_gjk import FAILED, FLAT, FOUND, TOO_FAR, nearest_as_in_bullet, nearest_on
 from carom.kernels.shapes.cores import Core
 from carom.kernels.types import Int32, Matrix43, RealRows, Vectors3, kernel, real
 
@@ -91,9 +91,9 @@ def test_the_nearest_point_of_a_simplex_is_made_of_the_corners_it_names(seed: in
     assert [used >> i & 1 for i in range(4)] == [int(weight > 0.0) for weight in weights]
 
 
-def test_a_flat_tetrahedron_has_no_nearest_point() -> None:
+def test_a_flat_tetrahedron_is_called_flat() -> None:
     corners = np.array([[1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0 + 1e-9]])
-    assert answers_of(nearest_on_kernel, Matrix43(*corners.ravel()), 4)[4] == 0.0
+    assert answers_of(nearest_on_kernel, Matrix43(*corners.ravel()), 4)[4] == FLAT
 
 
 @pytest.mark.parametrize("kinds", list(product(POLYTOPES, POLYTOPES)))
