@@ -9,6 +9,9 @@ from tests.patience import PATIENCE
 from tests.viewer.watcher import Watcher
 
 import pybullet as p
+from carom import World
+from carom.viewer.input.picking import Picking
+from carom.viewer.input.turning import Turning
 from carom.viewer.viewer import Viewer
 from pybullet._clients.clients import clients
 
@@ -107,3 +110,29 @@ def test_what_is_fixed_or_not_there_cannot_be_held(viewer: Viewer, ball: int):
         p.stepSimulation()
         page.wait_for(lambda: page.frame.get("time") == pytest.approx(51 / 240))
     assert ties(viewer) == 0
+
+
+def test_the_last_turn_and_move_count_where_the_hand_lets_go_at_once() -> None:
+    """A page sends the last motion and the release of the button within one frame."""
+    world = World()
+    ball = world.add_sphere(0.1, position=(0.0, 0.0, 1.0))
+    turning = Turning(world, world.lock, lambda: True)
+    half = math.sqrt(0.5)
+    for quarter in ([0.0, 0.0, 0.0, 1.0], [0.0, 0.0, half, half]):
+        turning.turn(1, {"body": ball.id, "link": -1, "orientation": quarter})
+    turning.release(1)
+    turning.apply()
+    np.testing.assert_allclose(ball.links[-1].pose.orientation, [0.0, 0.0, half, half], atol=1e-15)
+    assert not world.observers
+
+    picking = Picking(world, world.lock, lambda: True)
+    for has_hold in (True, False):
+        picking.take(1, ball.id, -1, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+        if has_hold:
+            picking.apply()
+        target = (0.5, 0.25, 1.0) if has_hold else (-0.5, 0.0, 2.0)
+        picking.move(1, target)
+        picking.release(1)
+        picking.apply()
+        np.testing.assert_allclose(ball.links[-1].pose.position, target, atol=1e-15)
+        assert not world.user_constraints.rows

@@ -60,7 +60,7 @@ class Picking:
         self._world = world
         self._world_lock = lock
         self._picking: dict[int, _Hand] = {}
-        self._released: list[UserConstraint] = []
+        self._released: list[_Hand] = []
 
     def take(self, page: int, body: int, link: int, point: Vector3, target: Vector3) -> None:
         """Starts the pull of a page at a point of a link, given in the link's inertial frame."""
@@ -76,10 +76,10 @@ class Picking:
             hand.moved = True
 
     def release(self, page: int) -> None:
-        """Ends the pull of a page."""
+        """Ends the pull of a page, after it has moved where the page had it last."""
         hand = self._picking.pop(page, None)
-        if hand is not None and hand.constraint is not None:
-            self._released.append(hand.constraint)
+        if hand is not None and (hand.moved or hand.constraint is not None):
+            self._released.append(hand)
 
     def apply(self, patience: float = _PATIENCE) -> None:
         """Makes, moves and removes the constraints; if no step ends in `patience` [s], at the next call."""
@@ -90,19 +90,22 @@ class Picking:
         if not self._world_lock.acquire(timeout=patience):
             return
         try:
-            self._remove_released()
+            self._let_go()
             for page, hand in list(self._picking.items()):
                 if not self._hold(hand):
                     del self._picking[page]
         finally:
             self._world_lock.release()
 
-    def _remove_released(self) -> None:
+    def _let_go(self) -> None:
         constraints = self._world.user_constraints
-        for constraint in self._released:
+        for hand in self._released:
+            # A hand that holds nothing yet takes hold first.
+            while hand.moved and self._hold(hand):
+                pass
             # The constraint is gone if its body has been removed in the meantime.
-            if constraints.get(constraint.id) is constraint:
-                self._world.remove_constraint(constraint)
+            if hand.constraint is not None and constraints.get(hand.constraint.id) is hand.constraint:
+                self._world.remove_constraint(hand.constraint)
         self._released.clear()
 
     def _carry(self, hand: _Hand) -> None:

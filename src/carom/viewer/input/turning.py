@@ -50,7 +50,8 @@ class Turning:
         self._world = world
         self._world_lock = lock
         self._paused = paused
-        self._asked: dict[int, tuple[int, int, Quaternion] | None] = {}
+        self._asked: dict[int, tuple[int, int, Quaternion]] = {}
+        self._ended: set[int] = set()
         self._turns: dict[int, _Turn] = {}
 
     def turn(self, page: int, message: dict[str, Any]) -> None:
@@ -60,19 +61,20 @@ class Turning:
         if isfinite(length) and length > 1e-6:
             orientation = (x / length, y / length, z / length, w / length)
             self._asked[page] = (int(message["body"]), int(message["link"]), orientation)
+            self._ended.discard(page)
 
     def release(self, page: int) -> None:
-        """Ends the turn of a page."""
+        """Ends the turn of a page, after what it has asked for last."""
         if page in self._turns or page in self._asked:
-            self._asked[page] = None
+            self._ended.add(page)
 
     def apply(self, patience: float = _PATIENCE) -> None:
         """Does what pages have asked for; if no step ends in `patience` [s], at the next call."""
-        if not self._asked or not self._world_lock.acquire(timeout=patience):
+        if not (self._asked or self._ended) or not self._world_lock.acquire(timeout=patience):
             return
         try:
             for page, asked in self._asked.items():
-                turn = None if asked is None else self._turn(self._turns.get(page), *asked)
+                turn = self._turn(self._turns.get(page), *asked)
                 by_hand = turn is not None and follows_hand(turn.body, turn.link)
                 if turn is None or by_hand:
                     self._turns.pop(page, None)
@@ -80,7 +82,10 @@ class Turning:
                     self._turns[page] = turn
                 if turn is not None and (by_hand or self._paused()):
                     _carry(turn)
+            for page in self._ended:
+                self._turns.pop(page, None)
             self._asked.clear()
+            self._ended.clear()
             observers = self._world.observers
             if self._turns and self not in observers:
                 observers.append(self)
