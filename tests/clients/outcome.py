@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from xml.etree import ElementTree
@@ -28,13 +29,16 @@ class Run:
     states: list[tuple[int, State]] = field(default_factory=list)
 
     @classmethod
-    def read(cls, record: Path) -> Run:
-        """The record of a run; one that left none has crashed."""
+    def read(cls, record: Path, folders: Sequence[Path] = ()) -> Run:
+        """The record of a run; one that left none has crashed. Errors name files without these `folders`."""
         if not record.exists():
             return cls("crash")
         found = json.loads(record.read_text())
         states = [(step, state) for step, state in found["states"]]
-        return cls(found["end"], found["error"], found["steps"], states)
+        error = found["error"]
+        for folder in folders:
+            error = error.replace(f"{folder}/", "")
+        return cls(found["end"], error, found["steps"], states)
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def run_scripts(bench: Bench, name: str, scripts: Scripts, wanted: list[str]) ->
             environment = _clean() | watching
             command = [str(python), str(WATCH), str(record), str(STEPS), str(SECONDS), str(script)]
             _run(command, folder, environment, 2 * SECONDS)
-            runs[which] = Run.read(record)
+            runs[which] = Run.read(record, (folder, Path(assets)))
         verdict = compare_runs(runs["oracle"], runs["carom"])
         if not verdict.good and script.stem in KNOWN:
             verdict = Verdict(True, f"{verdict.text}; known: {KNOWN[script.stem]}")

@@ -33,6 +33,13 @@ def test_runs_that_move_alike_are_the_same() -> None:
     assert drift(FALLING, shifted(0.5, 30)) == (0.0, 0.5)
 
 
+def test_errors_name_files_without_the_folders_of_this_machine(tmp_path: Path) -> None:
+    record = tmp_path / "record.json"
+    error = f"error: {tmp_path}/../data/box.urdf:2: 'box.obj' was not found"
+    record.write_text(json.dumps({"end": "error", "error": error, "steps": 0, "states": []}))
+    assert Run.read(record, (tmp_path,)).error == "error: ../data/box.urdf:2: 'box.obj' was not found"
+
+
 def test_a_script_that_hardly_gets_to_its_steps_differs() -> None:
     real = Run("steps", steps=240, states=FALLING)
     assert not compare_runs(real, Run("time", steps=0)).good

@@ -1,5 +1,6 @@
 """The page about other people's code."""
 
+import re
 from pathlib import Path
 
 from tests.clients.page import PAGE, note, page, read
@@ -7,6 +8,12 @@ from tests.clients.page import PAGE, note, page, read
 
 def test_the_page_is_up_to_date() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(read()), "run python -m tests.clients.page"
+
+
+def test_no_folder_of_a_machine_is_recorded() -> None:
+    texts = [outcome["text"] for group in read().values() for outcome in group.values()]
+    assert texts
+    assert not [text for text in texts if re.search(r"(?<![\w.:/])/\w", text)]
 
 
 def test_outcomes_are_noted_and_shown(tmp_path: Path) -> None:
