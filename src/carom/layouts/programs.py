@@ -11,6 +11,9 @@ LANES = 4
 # -1 if there are none; number of rows over one tree, of those over two and of blocks of these, of visits; and
 # of the sweeps that were made.
 WAITING_ROOT, WAITING_ROWS, WAITING_PAIR_ROWS, WAITING_BLOCKS, WAITING_VISITS, WAITING_SWEEPS = range(6)
+# After each of so many sweeps, the first ones, rows that have settled are left out of those that follow. The
+# second corrects what the first has rounded.
+SETTLING_SWEEPS = 2
 
 
 @c_record()

@@ -24,11 +24,9 @@ from carom.kernels.solver.warm_starting import (
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import USER
+from carom.layouts.programs import SETTLING_SWEEPS
 from carom.layouts.status import OVERFLOW, STATUS
 
-# After each of the first sweeps, rows that have settled are left out of those that follow. The
-# second corrects what the first has rounded.
-SETTLING_SWEEPS = 2
 # In place of the number of rows over one tree, if not all of them are in `visit_row`.
 NOT_IN_ORDER = -1
 

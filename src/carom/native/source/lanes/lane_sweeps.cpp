@@ -16,8 +16,6 @@ namespace {
 enum { CONSTRAINT, ENTRY, DELTA, RESPONSE, BLOCKS, SOFT, PLACE_NUMBERS };
 // Places among the numbers of rows over one tree, of which the first is the same in rows over two.
 enum { EFFECTIVE_MASS = 1, LOWER, UPPER, IMPULSE };
-// After so many sweeps, slots that have settled are left out, as in `kernels.solver.solver`.
-constexpr int SETTLING_SWEEPS = 2;
 
 // More rows than this, for each of those of the world with the most, cost more than solving each world for itself.
 constexpr int MAX_SLOTS = 2;
