@@ -192,7 +192,6 @@ def nearest_as_in_bullet(core_a: Core, core_b: Core, vertex_position: Vectors3, 
     axis = Vector3(0.0, 1.0, 0.0)
     last = Vector3(1.0e30, 1.0e30, 1.0e30)
     distance_sq = real(1.0e30)
-    bound = real(0.0)
     point_a = Vector3(0.0, 0.0, 0.0)
     point_b = Vector3(0.0, 0.0, 0.0)
     steps = Int32(0)

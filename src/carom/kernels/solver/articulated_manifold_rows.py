@@ -127,9 +127,11 @@ def write_contact_jacobians(
                 fill_zero(pair_rows.jacobian_response, start + row * distance, world, blocks)
             arm = point - wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
             normal, lateral1, lateral2 = sign * terms.normal, sign * terms.lateral1, sign * terms.lateral2
-            moment0 = wp.cross(arm, normal) + 0.0 * normal
-            moment1 = wp.cross(arm, lateral1) + 0.0 * lateral1
-            moment2 = wp.cross(arm, lateral2) + 0.0 * lateral2
+            moment0, moment1, moment2 = (
+                wp.cross(arm, normal),
+                wp.cross(arm, lateral1),
+                wp.cross(arm, lateral2),
+            )
             first = model.tree[tree].first_dof
             matrix = model.tree[tree].first_block
             own_velocity = Vector3(0.0, 0.0, 0.0)
