@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 from functools import cache
 from typing import Any
 
@@ -22,6 +23,14 @@ class MethodDefinition(ctypes.Structure):
 
 # Keeps the definitions in memory: builtins point to them.
 _definitions: list[MethodDefinition] = []
+
+
+def is_usual_python() -> bool:
+    """Whether Python has the objects and the lock that C code at an address counts on.
+
+    Other implementations have other objects, and in free-threaded builds threads run in parallel.
+    """
+    return sys.implementation.name == "cpython" and "free-threading" not in sys.version
 
 
 def defined(name: str, code: Any, documentation: str = "", *, keywords: bool = False) -> MethodDefinition:

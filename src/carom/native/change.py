@@ -8,14 +8,13 @@ has not happened. `Change.commit` runs no line of Python in the middle; after it
 from __future__ import annotations
 
 import ctypes
-import sys
 from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from struct import Struct
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from carom.native.builtins import new_builtin
+from carom.native.builtins import is_usual_python, new_builtin
 from carom.native.uninterrupted import uninterrupted
 
 if TYPE_CHECKING:
@@ -266,11 +265,8 @@ def _in_turn(items: list[Any], count: int) -> list[tuple[Any, ...]]:
 
 @cache
 def _commit() -> Callable[..., object] | None:
-    """The native function that makes changes; None where Python does.
-
-    It needs a usual build of CPython: others have other objects, or threads that run in parallel.
-    """
-    if sys.implementation.name != "cpython" or "free-threading" in sys.version:
+    """The native function that makes changes; None where Python does."""
+    if not is_usual_python():
         return None
     symbols = _symbols()
     if symbols is None:

@@ -11,6 +11,7 @@ import ctypes
 import sys
 from typing import Any, NamedTuple
 
+from carom.native.builtins import is_usual_python
 from carom.native.library import library
 
 
@@ -37,12 +38,8 @@ _VECTORCALL = "PyObject_Vectorcall"
 
 
 def _met() -> Host | None:
-    if (
-        sys.implementation.name != "cpython"
-        # In debug builds the header of objects differs; in free-threaded ones threads run in parallel.
-        or hasattr(sys, "getobjects")
-        or "free-threading" in sys.version
-    ):
+    # In debug builds the header of objects differs.
+    if not is_usual_python() or hasattr(sys, "getobjects"):
         return None
     symbols: ctypes.CDLL | None = library().symbols
     if symbols is None:
