@@ -85,14 +85,10 @@ class Drives(NamedTuple):
             MOTOR_MAX_IMPULSE: not_negative(max_force, "max_force") * self.substep_time,
             MOTOR_DAMPING: finite(damping, "damping"),
         }
-        assert isinstance(self.dofs, slice)
-        change, target = Change(), self.motor[self.dofs]
-        told = target.copy()
-        for column, values in columns.items():
-            told[:, column] = values
-        told[0, MOTOR_TARGET_W] = w
-        change.write(target, told, lasting=True)
-        change.commit()
+        # Only the row of the first dof has it.
+        columns[MOTOR_TARGET_W] = self.motor[self.dofs, MOTOR_TARGET_W].copy()
+        columns[MOTOR_TARGET_W][0] = w
+        self._write(self.motor, columns)
 
     def pull_like_a_spring(
         self,
