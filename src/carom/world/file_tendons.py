@@ -35,19 +35,20 @@ def add_tendons(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> li
         if it.robot:
             body = own[it.robot]
             tendons[it.name] = new_tendon_at_rest(body, _spec(body, it, place))
-            _put(body, tendons[it.name])
+            body.world.add_constraint(tendons[it.name])
     made = []
     for it in model.tendon_couplings:
         leader = None if it.leader is None else tendons[it.leader]
         constraint = new_tendon_coupling(tendons[it.follower], leader, it.coefficients, it.name)
         constraint.enabled = it.enabled
         yield_as(constraint, it.compliance)
-        _put(constraint.parent, constraint)
+        constraint.parent.world.add_constraint(constraint)
         made.append(TendonCoupling(constraint))
     for body in bodies:
         for number, actuator in enumerate(body.spec.actuators):
             if not drives_joint(actuator):
-                _put(body, new_transmission(body, number, actuator, _sites(body, model, place)))
+                transmission = new_transmission(body, number, actuator, _sites(body, model, place))
+                body.world.add_constraint(transmission)
     return made
 
 
@@ -65,10 +66,6 @@ def new_tendon_at_rest(body: Body, spec: TendonSpec) -> UserConstraint:
     positions[:] = before
     body.update_link_poses()
     return made
-
-
-def _put(body: Body, constraint: UserConstraint) -> None:
-    body.world.add_constraint(constraint)
 
 
 def _links(body: Body) -> dict[str, int]:
