@@ -44,8 +44,8 @@ def loadSDF(
     Args:
         sdfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
-            deformable worlds it makes external forces act twice, as in PyBullet.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. As in
+            PyBullet, air does not slow such bodies, and in deformable worlds external forces act twice.
         globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet, it does not apply to
             radii of spheres and to joint limits.
         physicsClientId: The connection.
