@@ -77,8 +77,8 @@ FAR, CLOSE, CLOSE_WITH_MANIFOLD, MEETING = -1, 0, 1, 2
 HOLDING = 2.0
 # Maximum number of rows of a contact or a user constraint.
 ROWS_PER_PAIR = 6
-# Maximum number of vertices of EPA's polytope; it has up to twice as many faces.
-MAX_CORNERS = 64
+# Maximum number of vertices of EPA's polytope, as in Bullet; it has up to twice as many faces.
+MAX_CORNERS = 128
 
 
 @struct
