@@ -14,7 +14,13 @@ Numbers = list[float]
 DEPTHS = (0.0022, 0.0045)
 """Least and greatest depth along the direction that shapes are placed by [m]."""
 EACH = 12
-CORNERS = [[-0.2, -0.24, -0.15], [0.0, 0.0, 0.3], [0.06, 0.16, -0.28], [-0.06, -0.18, -0.28], [0.14, 0.3, -0.1]]
+CORNERS = [
+    [-0.2, -0.24, -0.15],
+    [0.0, 0.0, 0.3],
+    [0.06, 0.16, -0.28],
+    [-0.06, -0.18, -0.28],
+    [0.14, 0.3, -0.1],
+]
 """Of a hull [m]."""
 BOX, CYLINDER, MESH, CAPSULE = 3, 4, 5, 7
 KINDS = {"table": BOX, "box": BOX, "cylinder": CYLINDER, "hull": MESH, "capsule": CAPSULE}
@@ -94,4 +100,3 @@ def contacts(p: Any, pair: str) -> list[list[float]]:
         for point in p.getContactPoints():
             rows.append([*point[5], *point[6], *point[7], point[8]])
     return rows
-
