@@ -1,11 +1,11 @@
-"""Records contacts of overlapping cores in PyBullet: `python -m tests.collision.record_overlapping_cores`."""
+"""Records contacts of overlapping cores: `python -m tests.first_contacts.record_overlapping_cores`."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
-from tests.collision.overlapping_cores import PAIRS, contacts
+from tests.first_contacts.overlapping_cores import PAIRS, contacts
 
 import pybullet as p
 

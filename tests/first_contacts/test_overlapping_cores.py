@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from tests.collision.overlapping_cores import ON_TABLES, PAIRS, contacts
+from tests.first_contacts.overlapping_cores import ON_TABLES, PAIRS, contacts
 
 import pybullet as p
 
