@@ -79,8 +79,8 @@ HOLDING = 2.0
 HELD_BEFORE = 0.5
 # Maximum number of rows of a contact or a user constraint.
 ROWS_PER_PAIR = 6
-# Maximum number of vertices of EPA's polytope; it has up to twice as many faces.
-MAX_CORNERS = 64
+# Maximum number of vertices of EPA's polytope, as in Bullet; it has up to twice as many faces.
+MAX_CORNERS = 128
 
 
 @struct
