@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from threading import RLock
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,8 +57,7 @@ _CACHED = 1024
 MeshGeometry = ConvexHull | TriangleMesh
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class ShapePiece:
+class ShapePiece(NamedTuple):
     """One convex shape, one triangle mesh or one height field.
 
     Attributes:
