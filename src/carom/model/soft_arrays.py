@@ -13,8 +13,7 @@ from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
-    from carom.model.soft_rows import Anchor, SoftRows
-    from carom.model.soft_spec import SoftSpec
+    from carom.model.soft_spec import Anchor, SoftRows, SoftSpec
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
 # Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
@@ -61,7 +60,7 @@ class SoftArrays:
             "face": len(spec.faces),
         }
         self.table.reserve({axis: self.used[axis] + number for axis, number in count.items()})
-        from carom.model.soft_rows import SoftRows
+        from carom.model.soft_spec import SoftRows
 
         soft = SoftRows(rows, spec, {axis: self.used[axis] for axis in _AXES}, count)
         self._write(soft)

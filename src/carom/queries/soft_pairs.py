@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from carom.model.soft_arrays import SoftArrays
-    from carom.model.soft_rows import SoftRows
+    from carom.model.soft_spec import SoftRows
 
 # Least barycentric coordinate of a foot point: as in the solver, faces extend a little beyond their edges.
 _BESIDE = -0.05
