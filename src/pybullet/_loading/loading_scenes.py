@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -144,4 +143,5 @@ def _load(
         fail(problem, str(error))
     if len(bodies) > _MAX_BODIES:
         fail(f"SDF exceeds body capacity: {len(bodies)} > {_MAX_BODIES}")
-    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)), maximal=maximal)
+    counted = FileLoad(load.function, load.arguments, load.takes_pose, len(bodies))
+    return add_bodies(client, bodies, problem, counted, maximal=maximal)
