@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from tests.differ.test_programs import call, outcome, state
 from tools.differ.assets import FILES
+from tools.differ.causes.known import statement
 from tools.differ.compare import Difference, compare
-from tools.differ.known import statement
 from tools.differ.programs import Call
 from tools.differ.values import Place
 

@@ -6,7 +6,7 @@ import math
 import re
 from typing import Any
 
-from tools.differ.causes import Seen, made_for, maker_of
+from tools.differ.causes.calls import Seen, made_for, maker_of
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})

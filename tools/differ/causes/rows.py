@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from tools.differ.assets import AT_LIMITS, FIXED
-from tools.differ.causes import (
+from tools.differ.causes.calls import (
     LEFT_OVER,
     MAKE,
     TOUCHES_ITSELF,
