@@ -534,6 +534,25 @@ def test_what_fixed_joints_tie_does_not_touch_itself(file: str, flags: int, othe
 
 
 @pytest.mark.parametrize(
+    ("links", "flags", "expected"),
+    [
+        ((0, 2), 8, True),
+        ((3, 5), 8192 | 8, True),
+        ((2, 3), 8, False),
+        ((-1, 2), 8, False),
+        ((0, 2), 0, False),
+        ((0, 6), 8, False),
+    ],
+)
+def test_what_fixed_joints_tie_in_a_robot_does_not_touch(links: tuple[int, int], flags: int, expected: bool):
+    robot = call(1, "loadURDF", "TwoJointRobot_w_fixedJoints.urdf", flags=flags)
+    calls = [BOX, robot, call(2, "getContactPoints")]
+    assert is_known(calls, "links", [((1, links[0]), (1, links[1]))], []) == expected
+    points = [[0, 1, 1, *links], [0, 0, 1, -1, -1]]
+    assert is_known(calls, ".len", points, points[1:]) == expected
+
+
+@pytest.mark.parametrize(
     ("calls", "text", "expected"),
     [
         (

@@ -457,10 +457,10 @@ def shades_as_a_ball(seen: Seen) -> bool:
     else:
         body = maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
         bodies = [] if body is None else [body]
-    return any(_has_something_long_and_round(seen, body) for body in bodies)
+    return any(shows_something_long_and_round(seen, body) for body in bodies)
 
 
-def _has_something_long_and_round(seen: Seen, body: Call) -> bool:
+def shows_something_long_and_round(seen: Seen, body: Call) -> bool:
     """Whether the body that a call makes has cylinders or capsules."""
     if body["f"].startswith("load"):
         return body["a"][:1] != [] and body["a"][0] in LONG_AND_ROUND

@@ -59,7 +59,7 @@ from tools.differ.causes.calls import (
     starts_with_a_ball_joint,
     turns_by_no_rotation,
 )
-from tools.differ.causes.poses import looks_from_within, starts_half_a_turn_away
+from tools.differ.causes.poses import has_ends_that_stand_out, looks_from_within, starts_half_a_turn_away
 from tools.differ.causes.rows import (
     drives_before_restoring,
     drives_from_a_limit,
@@ -208,6 +208,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "A camera between the two",
         lambda seen: seen.differs("getCameraImage segments") and looks_from_within(seen),
+    ),
+    Known(
+        "The flat ends of its cylinders stand out by up to 1 mm",
+        lambda seen: seen.differs("getCameraImage depth") and has_ends_that_stand_out(seen),
     ),
     Known(
         "Which way a link turns that is exactly half a turn from its target",
