@@ -55,7 +55,8 @@ def _step_by_step(calls: Sequence[Call]) -> tuple[list[Call], list[int]]:
         if call["f"] == _SETTINGS:
             length = keywords.get("fixedTimeStep", length)
             parts = max(keywords.get("numSubSteps", parts), 1)
-            call = {**call, "k": {name: keywords[name] for name in keywords if name != "numSubSteps"}}
+            others = {name: keywords[name] for name in keywords if name != "numSubSteps"}
+            call = Call(f=call["f"], a=call["a"], k=others, id=call["id"])
         elif call["f"] == "setTimeStep":
             length = call["a"][0] if call["a"] else keywords["timeStep"]
         if call["f"] == "stepSimulation" and parts > 1:
