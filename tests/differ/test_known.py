@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from tests.differ.test_programs import call, outcome, state
 from tools.differ.assets import FILES
+from tools.differ.causes.known import statement
 from tools.differ.compare import Difference, compare
-from tools.differ.known import statement
 from tools.differ.programs import Call
 from tools.differ.values import Place
 
@@ -531,6 +531,25 @@ def test_what_fixed_joints_tie_does_not_touch_itself(file: str, flags: int, othe
     points = [[0, other, 1, -1, 4], [0, 0, 1, -1, -1]]
     assert is_known(calls, ".len", points, points[1:]) == expected
     assert not is_known(calls, ".len", points, [])
+
+
+@pytest.mark.parametrize(
+    ("links", "flags", "expected"),
+    [
+        ((0, 2), 8, True),
+        ((3, 5), 8192 | 8, True),
+        ((2, 3), 8, False),
+        ((-1, 2), 8, False),
+        ((0, 2), 0, False),
+        ((0, 6), 8, False),
+    ],
+)
+def test_what_fixed_joints_tie_in_a_robot_does_not_touch(links: tuple[int, int], flags: int, expected: bool):
+    robot = call(1, "loadURDF", "TwoJointRobot_w_fixedJoints.urdf", flags=flags)
+    calls = [BOX, robot, call(2, "getContactPoints")]
+    assert is_known(calls, "links", [((1, links[0]), (1, links[1]))], []) == expected
+    points = [[0, 1, 1, *links], [0, 0, 1, -1, -1]]
+    assert is_known(calls, ".len", points, points[1:]) == expected
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from tests.differ.test_known import PROBE, STEP, is_known
 from tests.differ.test_programs import call
+from tools.differ.causes.known import statement
 from tools.differ.compare import Difference
-from tools.differ.known import statement
 from tools.differ.programs import Call
 from tools.differ.values import Place
 

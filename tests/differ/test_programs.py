@@ -7,9 +7,9 @@ import math
 from typing import Any
 
 import pytest
+from tools.differ.causes.known import KNOWN
 from tools.differ.compare import compare, difference
 from tools.differ.each_call import CALLS, programs_of_getters
-from tools.differ.known import KNOWN
 from tools.differ.minimise import Minimiser
 from tools.differ.pair import ROOT, Outcome
 from tools.differ.perform import perform
@@ -132,6 +132,8 @@ def test_a_process_that_dies_differs():
 
 class Fake:
     """Interpreters that differ where a program has calls of `a` and `b`, the latter with a large number."""
+
+    oracle = None
 
     def run(self, calls: list[Call], seconds: float = 0) -> tuple[Outcome, Outcome]:
         before: set[str] = set()

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 
 import pytest
 from tests.differ.test_programs import call, outcome
+from tools.differ.causes.rounding import MEMORY, ROUNDING, doubted_by_pybullet
 from tools.differ.compare import Difference
 from tools.differ.pair import ROOT, Outcome
 from tools.differ.programs import Call
-from tools.differ.rounding import MEMORY, ROUNDING, doubted_by_pybullet
 from tools.differ.values import Place
 
 PROGRAM = [

@@ -7,8 +7,8 @@ import lzma
 from typing import Any
 
 import pytest
+from tools.differ.causes.known import statement
 from tools.differ.compare import compare
-from tools.differ.known import statement
 from tools.differ.pair import Outcome
 from tools.differ.perform import perform
 from tools.differ.programs import script

@@ -19,11 +19,13 @@ class SceneCase:
         loader: Name of PyBullet's function.
         file: The file, in the folder of test data.
         options: Further arguments.
+        shapes: Whether it is also asked where collision shapes are.
     """
 
     loader: str
     file: str
     options: dict[str, Any] = field(default_factory=dict)
+    shapes: bool = False
 
     @property
     def name(self) -> str:
@@ -45,6 +47,8 @@ CASES = [
     SceneCase("loadMJCF", "mjcf/scene.xml", {"flags": 2}),
     SceneCase("loadMJCF", "mjcf/no_compiler.xml"),
     SceneCase("loadMJCF", "mjcf/turned.xml"),
+    # PyBullet ends when asked where hulls of two balls are, which capsules are without this flag.
+    SceneCase("loadMJCF", "mjcf/hanging.xml", {"flags": 128}, shapes=True),
 ]
 
 
@@ -72,6 +76,11 @@ def ask(p: Any, case: SceneCase, client: int) -> list[dict[str, Any]]:
                 ],
             }
         )
+        if case.shapes:
+            answers[-1]["shapes"] = [
+                plain(p.getCollisionShapeData(body, index, physicsClientId=client))
+                for index in range(-1, count)
+            ]
     p.resetSimulation(physicsClientId=client)
     return answers
 

@@ -182,7 +182,7 @@ def test_a_shape_given_by_its_ends_lies_between_them(tmp_path: Path) -> None:
         read(tmp_path, '<body><geom type="capsule" size=".1" fromto="1 0 0 1 0 -2"/></body>')
     ).robot.links[0]
     assert link.collisions[0].geometry == Capsule(pytest.approx(0.1), 2.0)  # type: ignore[arg-type]
-    assert link.collisions[0].frame == Pose((1.0, 0.0, -1.0), (1.0, 0.0, 0.0, 0.0))
+    assert link.collisions[0].frame == Pose((1.0, 0.0, -1.0), (0.0, 1.0, 0.0, 0.0))
 
 
 def test_colours_count_when_they_are_asked_for(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from typing import Any
 
+from tools.differ.causes.substeps import with_contacts_of_substeps
 from tools.differ.compare import Difference, compare
 from tools.differ.pair import Pair
 from tools.differ.programs import Call, closed
@@ -47,6 +48,9 @@ class Minimiser:
         self._left -= 1
         theirs, ours = self._pair.run(calls, _SECONDS)
         found = compare(calls, theirs, ours)
+        if found:
+            theirs = with_contacts_of_substeps(self._pair.oracle, calls, theirs)
+            found = compare(calls, theirs, ours)
         return next((one for one in found if one.signature.startswith(self._signature)), None)
 
     def _without(self, calls: list[Call], size: int) -> tuple[list[Call], Difference | None]:

@@ -13,8 +13,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from tools.differ.causes.known import statement
 from tools.differ.compare import compare
-from tools.differ.known import statement
 from tools.differ.pair import ORACLE, ROOT, Server, data_of
 from tools.differ.themes import THEMES, program
 

@@ -5,7 +5,8 @@
 corners, and meshes that make one. `bare.json` are those with a link that has a joint to move and no collision
 shape. `long_and_round.json` are those that show cylinders or capsules, and `swept.json` those with capsules
 that are given by two points: the least radius of these, and the greatest of these and of balls [m].
-`thin.json` are those with boxes thinner than 5 cm, and how thin [m].
+`thin.json` are those with boxes thinner than 5 cm, and how thin [m]. `tied.json` are those with fixed joints:
+of each link the one that fixed joints tie it to, which is nearest to the base.
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -59,6 +60,16 @@ def at_limit(body):
         if info[2] in (p.JOINT_REVOLUTE, p.JOINT_PRISMATIC) and info[8] <= info[9] and 0 in info[8:10]:
             return True
     return False
+
+
+def tied(body):
+    """Of each link that from which on fixed joints lead to it; -1 is the base."""
+    first = []
+    for j in range(p.getNumJoints(body)):
+        info = p.getJointInfo(body, j)
+        kind, parent = info[2], info[16]
+        first.append(j if kind != p.JOINT_FIXED else first[parent] if parent >= 0 else -1)
+    return first
 
 
 def is_fine(body):
@@ -131,7 +142,7 @@ def main():
     names += sorted(glob.glob("**/*.sdf", recursive=True) + glob.glob("mjcf/*.xml"))
     p.connect(p.DIRECT)
     lines, bare, limits, children_first, long_and_round = [], [], [], [], []
-    swept, thin = {}, {}
+    swept, thin, ties = {}, {}, {}
     fine = [name for name in MESHES if holds(makes_a_fine_hull, name)]
     for name in names:
         if any(word in name for word in LEFT_OUT) or not holds(load, name):
@@ -147,6 +158,8 @@ def main():
             swept[name] = radii_of_swept(name)
         if name.endswith(".urdf") and thinnest_box(name) is not None:
             thin[name] = thinnest_box(name)
+        if name.endswith(".urdf") and p.JOINT_FIXED in types[0]:
+            ties[name] = tied(bodies[0])
         if any(map(has_a_bare_link, bodies)):
             bare.append(name)
         if any(map(at_limit, bodies)):
@@ -168,6 +181,9 @@ def main():
     for table, rows in tables.items():
         with open(os.path.join(folder, f"{table}.json"), "w") as file:
             file.write(json.dumps(rows, indent=1) + "\n")
+    with open(os.path.join(folder, "tied.json"), "w") as file:
+        rows = [f"{json.dumps(name)}: {json.dumps(ties[name], separators=(',', ':'))}" for name in ties]
+        file.write("{\n" + ",\n".join(rows) + "\n}\n")
     with open(os.path.join(folder, "assets.json"), "w") as file:
         file.write("{\n" + ",\n".join(lines) + "\n}\n")
 

@@ -6,10 +6,11 @@
 A program is a list of calls (`programs.py`), made from a seed and a theme (`themes.py`, of `kinds/`). Two
 interpreters perform it (`pair.py`, `perform.py`), with PyBullet's files for both. `compare.py` says where
 results differ: beyond 1e-9 before the first contact, and in the first steps after it as far as rounding
-lets one see. What docs/differences states is counted only (`known.py`), and so is that to which PyBullet has
-another answer itself, in another process or from starts 1e-12 m elsewhere (`rounding.py`). Of everything
-else the first program of each kind is made as short as it can be (`minimise.py`), printed as a script, and
-written to build/differ, and the status is 1. All of them are listed there, in differing.txt.
+lets one see; contacts of all substeps count (`causes/substeps.py`). What docs/differences states is counted
+only (`causes/known.py`), and so is that to which PyBullet has another answer itself, in another process or
+from starts 1e-12 m elsewhere (`causes/rounding.py`). Of everything else the first program of each kind is
+made as short as it can be (`minimise.py`), printed as a script, and written to build/differ, and the status
+is 1. All of them are listed there, in differing.txt.
 
 With `--getters` it is seen instead what every getter says right after every other call (`each_call.py`).
 `record.py` keeps a sample of programs with PyBullet's answers for `make test`.
@@ -27,13 +28,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tools.differ.assets import URDFS
+from tools.differ.causes.known import statement
+from tools.differ.causes.rounding import doubted_by_pybullet
+from tools.differ.causes.substeps import with_contacts_of_substeps
 from tools.differ.compare import Difference, compare
 from tools.differ.each_call import programs_of_getters
-from tools.differ.known import statement
 from tools.differ.minimise import Minimiser
 from tools.differ.pair import ORACLE, ROOT, Pair
 from tools.differ.programs import Call, script
-from tools.differ.rounding import doubted_by_pybullet
 from tools.differ.themes import THEMES, program
 
 LISTED = "differing.txt"
@@ -86,6 +88,9 @@ class Differ:
         """Compare one program, and report what differs."""
         theirs, ours = self._pair.run(calls)
         differences = compare(calls, theirs, ours)
+        if differences:
+            theirs = with_contacts_of_substeps(self._pair.oracle, calls, theirs)
+            differences = compare(calls, theirs, ours)
         self.found.programs += 1
         self.found.died += theirs["died"] is not None
         self.found.agreed += min(len(theirs["results"]), len(ours["results"])) - len(differences)

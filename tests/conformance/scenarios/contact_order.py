@@ -114,3 +114,32 @@ def cubes_are_reset_before_the_first_step(p: Any) -> dict[str, Any]:
             observed = simulate(p, 0.2, lambda b=bodies: _places(p, b), stride=12)
             results |= under(f"{case} on a {name}", observed)
     return results
+
+
+@scenario(tolerance=1e-9)
+def rolling_friction_without_a_cone(p: Any) -> dict[str, Any]:
+    """Two balls on a hinge roll on a box and against a wall, and the solver stops after some sweeps.
+
+    Without a cone the rolling friction of each contact is relaxed right before its lateral friction.
+    """
+    results: dict[str, Any] = {}
+    for cone in (0, 1):
+        p.resetSimulation()
+        p.setGravity(0.5, 0.2, -9.81)
+        p.setPhysicsEngineParameter(enableConeFriction=cone, numSolverIterations=7, solverResidualThreshold=0)
+        ground = p.createCollisionShape(p.GEOM_BOX, halfExtents=[5, 5, 0.5])
+        for place in ([0, 0, -0.5], [5.35, 0, 2]):
+            p.createMultiBody(0, ground, basePosition=place)
+        ball = p.createCollisionShape(p.GEOM_SPHERE, radius=HALF)
+        pair = p.createMultiBody(
+            1, ball, basePosition=[0, 0, HALF + 0.005],
+            linkMasses=[0.5], linkCollisionShapeIndices=[ball], linkVisualShapeIndices=[-1],
+            linkPositions=[[0.24, 0.03, 0.01]], linkOrientations=[[0, 0, 0, 1]],
+            linkInertialFramePositions=[[0, 0, 0]], linkInertialFrameOrientations=[[0, 0, 0, 1]],
+            linkParentIndices=[0], linkJointTypes=[p.JOINT_REVOLUTE], linkJointAxis=[[0.6, 0.8, 0]],
+        )  # fmt: skip
+        for link in (-1, 0):
+            p.changeDynamics(pair, link, rollingFriction=0.05, spinningFriction=0.02)
+        p.resetBaseVelocity(pair, [0.4, 0.2, 0], [1, 2, 3])
+        results |= under(f"cone {cone}", simulate(p, 0.25, lambda b=pair: _places(p, [b]), stride=6))
+    return results

@@ -37,6 +37,7 @@ from carom.native.trigonometry import cos, sin
 _FRICTION = 0.5
 _CONTACT_DIMENSIONS = "3"
 _HULL_RINGS, _HULL_SECTORS = 9, 16
+_HALF_A_TURN_ABOUT_Y = (0.0, -1.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +191,9 @@ def _between(ends: tuple[Vector3, Vector3]) -> Pose:
     length = hypot(x, y, z)
     if length * length <= 2.220446049250313e-16:
         return Pose(_middle(ends))
+    if z == -length:
+        # As in PyBullet; MuJoCo turns about the x axis.
+        return Pose(_middle(ends), _HALF_A_TURN_ABOUT_Y)
     return Pose(_middle(ends), turn_of_z((x / length, y / length, z / length)))
 
 

@@ -208,34 +208,57 @@ def relax_contact_friction(
 
 
 @func
+def relax_unit_friction(
+    settings: Settings,
+    scratch: Scratch,
+    pair_rows: PairRows,
+    world: Int32,
+    code: Int32,
+    kind: Int32,
+    before: real,
+) -> real:
+    """Relax the spinning, rolling or lateral rows of a unit; returns as `relax_normals`."""
+    residual = before + 0.0
+    if code >= SINGLES:
+        if kind == LATERAL_ROW:
+            change = relax_single_friction(settings, scratch, pair_rows, world, single_of(code))
+            residual = later_maximum(residual, change * change)
+        elif code >= SINGLES + TWISTING:
+            change = relax_single_torsion(settings, scratch, pair_rows, world, single_of(code), kind)
+            residual = later_maximum(residual, change * change)
+    elif code >= 0:
+        residual = later_maximum(
+            residual, relax_contact_friction(settings, scratch, pair_rows, world, code, kind)
+        )
+    elif kind == LATERAL_ROW:
+        residual = relax_friction(settings, scratch, pair_rows, world, -1 - code, residual)
+    return residual
+
+
+@func
 def friction_sweep(
     settings: Settings,
     scratch: Scratch,
     pair_rows: PairRows,
     world: Int32,
     units: Int32,
-    kind: Int32,
+    first: Int32,
+    last: Int32,
     before: real,
 ) -> real:
-    """Relax the spinning, rolling or lateral rows of an island's contacts; returns as `normal_sweep`."""
+    """Relax the friction rows of an island's contacts, one after the other; returns as `normal_sweep`.
+
+    Of each contact those from the first kind to the last are relaxed: spinning, rolling, lateral.
+    """
     residual = before + 0.0
     unit = Int32(0)
     while unit < units:
         code = pair_rows.unit_code[world, unit]
         unit += 1
-        if code >= SINGLES:
-            if kind == LATERAL_ROW:
-                change = relax_single_friction(settings, scratch, pair_rows, world, single_of(code))
-                residual = later_maximum(residual, change * change)
-            elif code >= SINGLES + TWISTING:
-                change = relax_single_torsion(settings, scratch, pair_rows, world, single_of(code), kind)
-                residual = later_maximum(residual, change * change)
-        elif code >= 0:
-            residual = later_maximum(
-                residual, relax_contact_friction(settings, scratch, pair_rows, world, code, kind)
-            )
-        elif kind == LATERAL_ROW:
-            residual = relax_friction(settings, scratch, pair_rows, world, -1 - code, residual)
+        kind = first + 0
+        while kind >= last:
+            residual = relax_unit_friction(settings, scratch, pair_rows, world, code, kind, residual)
+            kind -= 1
     return residual
 
 
@@ -251,17 +274,21 @@ def contact_sweep(
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` and `torsion` are returned by `units.write_units`. Returns the residual after them.
+    `units` and `torsion` are returned by `units.write_units`. Returns the residual after them. As in Bullet
+    spinning friction has no effect without a cone, and the rolling friction of each contact then comes right
+    before its lateral friction.
     """
     residual = normal_sweep(scratch, pair_rows, world, units, before)
     kind = Int32(LATERAL_ROW)
     if torsion != 0:
-        # Without a cone spinning friction has no effect in PyBullet.
-        kind = Int32(SPINNING_ROW) if settings.cone_friction != 0 else Int32(ROLLING_ROW)
-    while kind >= LATERAL_ROW:
-        residual = friction_sweep(settings, scratch, pair_rows, world, units, kind, residual)
-        kind -= 1
-    return residual
+        if settings.cone_friction != 0:
+            kind = Int32(SPINNING_ROW)
+            while kind > LATERAL_ROW:
+                residual = friction_sweep(settings, scratch, pair_rows, world, units, kind, kind, residual)
+                kind -= 1
+        else:
+            kind = Int32(ROLLING_ROW)
+    return friction_sweep(settings, scratch, pair_rows, world, units, kind, Int32(LATERAL_ROW), residual)
 
 
 @func

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Any
 
-from tools.differ.assets import AT_LIMITS, FIXED
-from tools.differ.causes import (
+from tools.differ.assets import AT_LIMITS, FIXED, TIED
+from tools.differ.causes.calls import (
     LEFT_OVER,
     MAKE,
     TOUCHES_ITSELF,
@@ -21,6 +22,7 @@ _ROBOTS = 2
 _STILL = 1e-9
 _MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 _INERTIA_FROM_FILE = 2
+_RENUMBERS = 131072 | 524288
 # Files whose mass matrices lack full rank with this flag: in PyBullet the least eigenvalue is at most 1e-16
 # of the greatest. Those of ant, hopper, walker2d, reacher and the pendulums have full rank.
 _DEPENDENT = tuple(
@@ -89,18 +91,25 @@ def _counts_as_still(made: Call, types: list[int], link: int) -> bool:
 
 
 def touches_itself_rigidly(seen: Seen) -> bool:
-    """Whether what touches in PyBullet only are links of one body each, that has fixed joints alone."""
+    """Whether what touches in PyBullet only are links of one body each, which fixed joints tie together."""
     field, theirs, ours = seen.difference.place[:3]
     if field == ".len":
-        others = [point for point in theirs if point[1] != point[2] or not _is_rigid(seen, point[1])]
+        others = [point for point in theirs if not _are_tied(seen, point[1:4:2], point[2:5:2])]
         return len(others) == len(ours) < len(theirs)
-    return not ours and all(a[0] == b[0] and _is_rigid(seen, a[0]) for a, b in theirs)
+    return not ours and all(_are_tied(seen, a, b) for a, b in theirs)
 
 
-def _is_rigid(seen: Seen, label: int) -> bool:
-    """Whether a body may touch itself, and has no joint that moves."""
-    body = maker_of(seen, label)
-    return body is not None and body["k"].get("flags", 0) & TOUCHES_ITSELF > 0 and not has_joints(seen, body)
+def _are_tied(seen: Seen, a: Sequence[int], b: Sequence[int]) -> bool:
+    """Whether fixed joints tie two links (each a body and a link) of a body that may touch itself."""
+    body = maker_of(seen, a[0])
+    if a[0] != b[0] or body is None or not body["k"].get("flags", 0) & TOUCHES_ITSELF:
+        return False
+    if not has_joints(seen, body):
+        return True
+    if body["f"] != "loadURDF" or body["k"].get("flags", 0) & _RENUMBERS:
+        return False
+    first = [*TIED.get(body["a"][0], ()), -1]
+    return max(a[1], b[1]) < len(first) - 1 and first[a[1]] == first[b[1]]
 
 
 def drives_from_a_limit(seen: Seen) -> bool:

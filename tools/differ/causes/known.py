@@ -1,6 +1,6 @@
 """Differences that docs/differences states: they are counted, and not reported.
 
-Each is recognised by what differs and by what the program has done before (`causes.py`). A new one belongs
+Each is recognised by what differs and by what the program has done before (`calls.py`). A new one belongs
 here only with the words that docs/differences has about it, or with a reason why it is no difference.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from tools.differ.causes import (
+from tools.differ.causes.calls import (
     GLOBAL_VELOCITIES,
     MASSES,
     NO_SUCH_LINK,
@@ -59,10 +59,8 @@ from tools.differ.causes import (
     starts_with_a_ball_joint,
     turns_by_no_rotation,
 )
-from tools.differ.compare import Difference
-from tools.differ.pose_causes import looks_from_within, starts_half_a_turn_away
-from tools.differ.programs import Call
-from tools.differ.row_causes import (
+from tools.differ.causes.poses import has_ends_that_stand_out, looks_from_within, starts_half_a_turn_away
+from tools.differ.causes.rows import (
     drives_before_restoring,
     drives_from_a_limit,
     fixes_what_touches_itself,
@@ -72,6 +70,8 @@ from tools.differ.row_causes import (
     ties_a_link_taken_for_still,
     touches_itself_rigidly,
 )
+from tools.differ.compare import Difference
+from tools.differ.programs import Call
 
 
 @dataclass(frozen=True)
@@ -208,6 +208,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "A camera between the two",
         lambda seen: seen.differs("getCameraImage segments") and looks_from_within(seen),
+    ),
+    Known(
+        "The flat ends of its cylinders stand out by up to 1 mm",
+        lambda seen: seen.differs("getCameraImage depth") and has_ends_that_stand_out(seen),
     ),
     Known(
         "Which way a link turns that is exactly half a turn from its target",

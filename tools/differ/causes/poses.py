@@ -6,11 +6,13 @@ import math
 import re
 from typing import Any
 
-from tools.differ.causes import Seen, made_for, maker_of
+from tools.differ.causes.calls import Seen, made_for, maker_of, shows_something_long_and_round
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})
 _HALF_A_TURN = 1e-9
+_MARGIN = 2e-3
+"""PyBullet's flat ends stand out by up to 1 mm; depths [m] are along the camera's axis."""
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _MOVES = ("reset", "restore", "step")
 
@@ -34,6 +36,21 @@ def looks_from_within(seen: Seen) -> bool:
         default=0.0,
     )
     return math.dist(made["a"][0], body["a"][3]) < reach
+
+
+def has_ends_that_stand_out(seen: Seen) -> bool:
+    """Whether depths of an image are greater than PyBullet's, by little, where it shows flat ends."""
+    said, ours = seen.difference.place[1:3]
+    found = re.search(r"differ: (\S+) of (-?\d+)", str(said))
+    asked = seen.call["a"][3:4]
+    made = next((call for call in seen.before if asked and call["id"] == asked[0].get("whole")), None)
+    body = maker_of(seen, int(found[2])) if found else None
+    if found is None or made is None or body is None or not shows_something_long_and_round(seen, body):
+        return False
+    place = 4 if made["f"] == "computeProjectionMatrix" else 2
+    near, far = made["a"][place : place + 2]
+    theirs, own = (near * far / (far - (far - near) * depth) for depth in (float(found[1]), ours))
+    return 0.0 < own - theirs < _MARGIN
 
 
 def starts_half_a_turn_away(seen: Seen) -> bool:

@@ -76,6 +76,8 @@ _NO_ROTATION = 1e-6
 LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
+# What PyBullet's search leaves in the normal and distance of faces that are parallel.
+_OPPOSITE = 1e-6
 # Sizes of files pass through single precision.
 _AS_IN_FILES = 1e-8
 SEEN_TO_BE_NEARER = 1e-6
@@ -259,8 +261,8 @@ def exchanges_points(seen: Seen) -> bool:
     exchanged = all(
         abs(a - b) < _EXCHANGED for a, b in zip(theirs[5] + theirs[6], ours[6] + ours[5], strict=True)
     )
-    opposite = abs(theirs[8] - ours[8]) < _ROUNDED and all(
-        abs(a + b) < _ROUNDED for a, b in zip(theirs[7], ours[7], strict=True)
+    opposite = abs(theirs[8] - ours[8]) < _OPPOSITE and all(
+        abs(a + b) < _OPPOSITE for a, b in zip(theirs[7], ours[7], strict=True)
     )
     return theirs[1] == theirs[2] and (exchanged or opposite)
 
@@ -457,10 +459,10 @@ def shades_as_a_ball(seen: Seen) -> bool:
     else:
         body = maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
         bodies = [] if body is None else [body]
-    return any(_has_something_long_and_round(seen, body) for body in bodies)
+    return any(shows_something_long_and_round(seen, body) for body in bodies)
 
 
-def _has_something_long_and_round(seen: Seen, body: Call) -> bool:
+def shows_something_long_and_round(seen: Seen, body: Call) -> bool:
     """Whether the body that a call makes has cylinders or capsules."""
     if body["f"].startswith("load"):
         return body["a"][:1] != [] and body["a"][0] in LONG_AND_ROUND
