@@ -5,7 +5,7 @@ import pytest
 from tests.physics.contact_scenes import add_box, add_floor, earth
 
 from carom import World
-from carom.world.profile import SOFT_STAGE, STAGES
+from carom.scene.core.profile import SOFT_STAGE, STAGES
 
 
 def scene(substeps: int, *, touching: bool) -> World:

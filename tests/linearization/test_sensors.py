@@ -61,7 +61,7 @@ def assert_outputs_exact(world: World, body: Body, **arguments: Any) -> Any:
     def readings(after: World) -> np.ndarray:
         return np.concatenate([sensor.read() for sensor in after.bodies[body.id].sensors])
 
-    assert all(map(has_jacobian, body.sensors))
+    assert all(has_jacobian(body, spec) for spec in body.spec.sensors)
     exact = world.linearize(outputs=body.sensors, **arguments)
     # Of accelerations, which are divided by the time step, smaller changes leave rounding.
     with pytest.MonkeyPatch.context() as patch:
@@ -130,7 +130,7 @@ def test_other_sensors_have_differences():
     add(body, "Force", site="tip")
     add(body, "JointPosition", joint="slider_to_cart")
     add(body, "JointPosition", "held", joint="slider_to_cart", period=0.1)
-    assert [has_jacobian(sensor) for sensor in body.sensors] == [False, True, False]
+    assert [has_jacobian(body, spec) for spec in body.spec.sensors] == [False, True, False]
     step = world.linearize(outputs=[body.sensors[1], body.sensors[0]])
     near = world.linearize(outputs=lambda after: after.bodies[body.id].sensors["Force"].read())
     assert step.outputs == (f"{body.name}.JointPosition", *(f"{body.name}.Force.{k}" for k in range(3)))

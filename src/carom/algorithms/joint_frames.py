@@ -16,7 +16,7 @@ from carom.description.transform import compose, conjugate, multiplied, turn_of_
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 
@@ -27,7 +27,7 @@ class JointFrames:
     Joints of the links in `moving`, parents first, count as moving.
     """
 
-    def __init__(self, body: Body, moving: Sequence[int]) -> None:
+    def __init__(self, body: BodyCore, moving: Sequence[int]) -> None:
         self._body = body
         self._model = body.world.arrays.model.numpy
         self._place_of = {link: place for place, link in enumerate(moving)}

@@ -14,14 +14,14 @@ from carom.native.gates import alone
 from carom.native.kernels import link_derivatives_kernel, link_motions_kernel
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 Numbers = Sequence[float] | np.ndarray
 
 
 @alone("world.lock")
 def link_motions(
-    body: Body,
+    body: BodyCore,
     positions: Numbers,
     velocities: Numbers,
     accelerations: Numbers,
@@ -57,7 +57,7 @@ def link_motions(
 
 @alone("world.lock")
 def link_motion_derivatives(
-    body: Body, link: int, positions: Numbers, velocities: Numbers, accelerations: Numbers
+    body: BodyCore, link: int, positions: Numbers, velocities: Numbers, accelerations: Numbers
 ) -> LinkMotionDerivatives:
     """Derivatives of velocity and acceleration of a link frame's origin, in world axes.
 

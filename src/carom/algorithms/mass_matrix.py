@@ -12,11 +12,11 @@ from carom.checks import Array
 from carom.native.gates import alone
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 @alone("world.lock")
-def mass_matrix(body: Body, positions: Sequence[float] | np.ndarray) -> Array:
+def mass_matrix(body: BodyCore, positions: Sequence[float] | np.ndarray) -> Array:
     """Joint-space inertia matrix at the given joint positions, by the composite rigid body algorithm.
 
     The armature of joints, and of a free base, is part of it; what damping and springs add in a time step is

@@ -24,7 +24,7 @@ from carom.native.made_once import made_once
 from carom.native.tables import NUMPY_REAL, ArrayTable, array_view, numbers_of, writer_of
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 Rows = tuple[tuple[float, ...], ...]
 Numbers = Sequence[float] | np.ndarray
@@ -219,7 +219,7 @@ def _finite(rows: Rows, name: str) -> Rows:
     return rows
 
 
-def mechanism_of(body: Body) -> Mechanism:
+def mechanism_of(body: BodyCore) -> Mechanism:
     """The mechanism of a body as it is now; cached until masses, inertias or the base's fixation change."""
     mechanism = body.derived.get(Mechanism)
     if mechanism is None:
@@ -227,7 +227,7 @@ def mechanism_of(body: Body) -> Mechanism:
     return mechanism
 
 
-def mechanism_in_pybullet(body: Body) -> Mechanism:
+def mechanism_in_pybullet(body: BodyCore) -> Mechanism:
     """The mechanism of a body as PyBullet's algorithms have it: with joint axes of length 1.
 
     Steps, there as here, use axes as long as they are given. Cached as in `mechanism_of`.

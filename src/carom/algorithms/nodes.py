@@ -16,7 +16,7 @@ from carom.native.products import dots, length, product
 from carom.native.trigonometry import cos, sin
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 # Axes whose length differs from 1 by less are rounded ones of length 1.
@@ -66,7 +66,7 @@ class End:
     origin: np.ndarray
 
 
-def body_nodes(body: Body, *, unit_axes: bool = False) -> tuple[list[Node], list[End]]:
+def body_nodes(body: BodyCore, *, unit_axes: bool = False) -> tuple[list[Node], list[End]]:
     """The nodes of a body, parents first, and its links, the base first.
 
     With `unit_axes`, hinges and sliders whose axis has another length than 1 are taken as if it had that.
@@ -95,7 +95,7 @@ def body_nodes(body: Body, *, unit_axes: bool = False) -> tuple[list[Node], list
 
 
 def node_inertias(
-    body: Body, ends: list[End], masses: np.ndarray, inertias: np.ndarray
+    body: BodyCore, ends: list[End], masses: np.ndarray, inertias: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mass, moment and inertia of each node, as in `Node`, for masses and inertias of the links.
 
@@ -125,13 +125,13 @@ def _parts(frame: Pose) -> tuple[np.ndarray, np.ndarray]:
     return np.array(rotation_matrix(frame.orientation)), np.array(frame.position)
 
 
-def _com_from_joint(body: Body, link: int) -> np.ndarray:
+def _com_from_joint(body: BodyCore, link: int) -> np.ndarray:
     if link == BASE:
         return np.zeros(3)
     return body.world.arrays.model.numpy["link_com_from_pivot"][body.first_link + 1 + link]
 
 
-def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
+def _axes(body: BodyCore, link: int, kind: JointCode) -> np.ndarray:
     """Axes of a joint's dofs, as in `Node`; z is the axis of a hinge or slider."""
     if kind == JointCode.SPHERICAL:
         return joint_axes(kind)
@@ -143,7 +143,7 @@ def _axes(body: Body, link: int, kind: JointCode) -> np.ndarray:
     return np.array([(model["link_axis"][row], none), *((none, slide) for slide in slides)])
 
 
-def has_long_axis(body: Body, link: int) -> bool:
+def has_long_axis(body: BodyCore, link: int) -> bool:
     """Whether a joint is a hinge or slider whose axis is longer or shorter than 1."""
     if body.joint_types[link] not in (JointCode.REVOLUTE, JointCode.PRISMATIC):
         return False
@@ -172,7 +172,7 @@ def skew(v: np.ndarray) -> np.ndarray:
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
-def joint_motion(body: Body, link: int, numbers: list[float]) -> Pose:
+def joint_motion(body: BodyCore, link: int, numbers: list[float]) -> Pose:
     """The motion of a joint, in its frame with the axes of the link's inertial frame."""
     first = sum(body.position_count[:link])
     q = numbers[first : first + body.position_count[link]]

@@ -20,12 +20,12 @@ from carom.native.products import dots, product
 from carom.native.tables import ArrayTable, put_zeros
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 Numbers = Sequence[float] | np.ndarray
 
 
-def sweep_table(body: Body, mechanism: Mechanism, ends: Sequence[End]) -> Any:
+def sweep_table(body: BodyCore, mechanism: Mechanism, ends: Sequence[End]) -> Any:
     """The workspace of a mechanism of a body, whose links are `ends`, with frames of its links."""
     table = ArrayTable(SweepTable)
     nodes = mechanism.structs[0].nodes
@@ -62,7 +62,7 @@ class Sweeps:
         structs: The structs of the mechanism, that of sweeps last.
     """
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: BodyCore) -> None:
         self._body = body
         self._mechanism = mechanism_of(body)
         self._ends = body_nodes(body)[1]
@@ -158,7 +158,7 @@ class Sweeps:
         return question, answer, launch.brief_function
 
 
-def sweeps_of(body: Body) -> Sweeps:
+def sweeps_of(body: BodyCore) -> Sweeps:
     """Questions about a body as it is now; cached until masses, inertias or the base's fixation change."""
     sweeps = body.derived.get(Sweeps)
     if sweeps is None:
@@ -166,7 +166,7 @@ def sweeps_of(body: Body) -> Sweeps:
     return sweeps
 
 
-def link_numbers(body: Body, links: Sequence[int] | None) -> list[int]:
+def link_numbers(body: BodyCore, links: Sequence[int] | None) -> list[int]:
     """Indices of links; all but the base by default. Raises `IndexError` if there is no such link."""
     chosen = list(range(body.joint_count)) if links is None else list(links)
     for link in chosen:

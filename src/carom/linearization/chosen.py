@@ -13,7 +13,7 @@ from carom.linearization.stepping import made_for
 from carom.linearization.tangent import TangentSpace
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 _MAX_KEPT = 16
 
@@ -52,7 +52,7 @@ class Chosen:
                 )
 
 
-def chosen_parts(world: World, controls: Sequence[str], parameters: Sequence[str]) -> Chosen:
+def chosen_parts(world: WorldCore, controls: Sequence[str], parameters: Sequence[str]) -> Chosen:
     """The parts of a world that calls have chosen.
 
     Raises:
@@ -71,7 +71,7 @@ def chosen_parts(world: World, controls: Sequence[str], parameters: Sequence[str
     return found
 
 
-def _choose(world: World, controls: Sequence[str], parameters: Sequence[str]) -> Chosen:
+def _choose(world: WorldCore, controls: Sequence[str], parameters: Sequence[str]) -> Chosen:
     space = TangentSpace(world)
     given = chosen_inputs(world, space, CONTROLS, controls, "control")
     count = len(given)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from carom.linearization.step_memory import StepMemory
     from carom.linearization.stepping import Copies
     from carom.linearization.tangent import TangentSpace
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 # Singular values of the rows' equations below this share of the greatest one are those of redundant rows.
 _REDUNDANT = 1e-7
@@ -222,7 +222,7 @@ class StepLinearizer:
 
 
 def step_derivatives(
-    world: World, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
+    world: WorldCore, space: TangentSpace, inputs: Sequence[Input], copies: Copies, smoothing: float
 ) -> StepDerivatives:
     """Perform a step of a copy of a world, and differentiate it; the copy is at its end afterwards.
 

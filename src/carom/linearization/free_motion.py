@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from carom.linearization.inputs import Input
     from carom.linearization.taken_step import TakenStep
     from carom.linearization.tangent import TangentSpace
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _PARTS = 10
 _ANGULAR, _LINEAR = slice(0, 3), slice(3, 6)
@@ -137,7 +137,7 @@ class FreeMotion:
                 found[own, column] = self._by_inertia(given, body, own, regressors[place], spatial)
 
     def _by_inertia(
-        self, given: Input, body: Body, own: slice, regressor: np.ndarray, spatial: Spatial
+        self, given: Input, body: BodyCore, own: slice, regressor: np.ndarray, spatial: Spatial
     ) -> np.ndarray:
         """Generalized forces (dofs,) by a mass or a moment of inertia."""
         taken, link = self._taken, given.row - body.first_link
@@ -188,7 +188,7 @@ def of_motion(inputs: Sequence[Input]) -> bool:
 
 
 def _regressor(
-    body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
+    body: BodyCore, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
 ) -> np.ndarray:
     """Forces per inertial parameter; those of a free base along axes of the world."""
     question = motion_questions(body, taken, own, accelerations[None])

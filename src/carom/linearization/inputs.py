@@ -19,8 +19,8 @@ from carom.linearization.tangent import TangentSpace, body_label
 from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 _AXES = "xyz"
 INERTIAL = "inertial_parameters"
@@ -56,10 +56,12 @@ class Input(NamedTuple):
     row: int
 
 
-Finder = Callable[["World", TangentSpace, str], Iterator[Input]]
+Finder = Callable[["WorldCore", TangentSpace, str], Iterator[Input]]
 
 
-def _joint_dofs(world: World, space: TangentSpace, *, driven: bool) -> Iterator[tuple[Body, int, int, str]]:
+def _joint_dofs(
+    world: WorldCore, space: TangentSpace, *, driven: bool
+) -> Iterator[tuple[BodyCore, int, int, str]]:
     """Bodies, rows of velocities, dofs and names of joints, or of those that a motor can drive."""
     for body, (first, _) in zip(space.bodies, space.places, strict=True):
         offset = first - (body.first_velocity if not body.fixed_base else body.first_velocity + 6)
@@ -73,7 +75,7 @@ def _joint_dofs(world: World, space: TangentSpace, *, driven: bool) -> Iterator[
 
 
 def _of_dofs(field: str, *columns: int, driven: bool = False, impulse: bool = False) -> Finder:
-    def find(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+    def find(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
         scale = world.parameters.substep_time if impulse else 1.0
         table = "model" if field in world.arrays.model.numpy else "state"
         for _, row, dof, name in _joint_dofs(world, space, driven=driven):
@@ -82,14 +84,14 @@ def _of_dofs(field: str, *columns: int, driven: bool = False, impulse: bool = Fa
     return find
 
 
-def _damping(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+def _damping(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
     for body, row, dof, name in _joint_dofs(world, space, driven=False):
         field = "dof_" + body.spec.damping_field.removeprefix("dof_")
         yield Input(kind, name.format(ENDS[kind]), "model", field, (row,), 1.0, dof)
 
 
 def _of_links(table: str, field: str, count: int = 0) -> Finder:
-    def find(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+    def find(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
         for body in world.bodies.values():
             for link in range(BASE, body.joint_count):
                 if table == "model" and ((link < 0 and body.fixed_base) or body not in space.bodies):
@@ -104,7 +106,7 @@ def _of_links(table: str, field: str, count: int = 0) -> Finder:
     return find
 
 
-def _inertial(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+def _inertial(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
     for body in space.bodies:
         for link in range(BASE, body.joint_count):
             if link < 0 and body.fixed_base:
@@ -116,7 +118,7 @@ def _inertial(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
                 yield Input(kind, name, "model", "link_mass", (row, place), 1.0, row)
 
 
-def _offsets(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+def _offsets(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
     for body in space.bodies:
         for link, spec in enumerate(body.spec.links):
             row = body.first_link + 1 + link
@@ -126,7 +128,7 @@ def _offsets(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
 
 
 def _of_actuators(table: str, field: str, count: int = 0) -> Finder:
-    def find(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+    def find(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
         for body in space.bodies:
             for index, spec in enumerate(body.spec.actuators):
                 row = body.rows.first["actuator"] + index
@@ -138,7 +140,7 @@ def _of_actuators(table: str, field: str, count: int = 0) -> Finder:
     return find
 
 
-def _joint_friction(world: World, space: TangentSpace, kind: str) -> Iterator[Input]:
+def _joint_friction(world: WorldCore, space: TangentSpace, kind: str) -> Iterator[Input]:
     model = world.arrays.model.numpy
     names = {row: (dof, name) for _, row, dof, name in _joint_dofs(world, space, driven=True)}
     for constraint in range(world.arrays.used["constraint"]):
@@ -192,7 +194,7 @@ ENDS = {
 
 
 def chosen_inputs(
-    world: World, space: TangentSpace, kinds: dict[str, Finder], chosen: Sequence[str], what: str
+    world: WorldCore, space: TangentSpace, kinds: dict[str, Finder], chosen: Sequence[str], what: str
 ) -> list[Input]:
     """The inputs that are chosen by kind, such as "torques", or by their full names, in this order.
 

@@ -11,12 +11,12 @@ from carom.linearization.turns import rotation_of
 
 if TYPE_CHECKING:
     from carom.linearization.taken_step import TakenStep
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _GRAVITY = 3
 
 
-def motion_questions(body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray) -> np.ndarray:
+def motion_questions(body: BodyCore, taken: TakenStep, own: slice, accelerations: np.ndarray) -> np.ndarray:
     """Questions (k, numbers) about the motion of a body before a step with some accelerations.
 
     Args:

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from carom.linearization.taken_step import TakenStep
     from carom.linearization.tangent import TangentSpace
     from carom.native.tables import ArrayTable
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def offset_direction(body: Body, given: Input) -> np.ndarray:
+def offset_direction(body: BodyCore, given: Input) -> np.ndarray:
     """The direction of an offset in the inertial frame of the parent, (3,)."""
     parent = body.spec.links[given.row - body.first_link - 1].parent
     turn = matrix_of(np.array(body.link_inertial_frame(parent).orientation))
@@ -47,7 +47,7 @@ class OffsetForces:
     """
 
     def __init__(
-        self, body: Body, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
+        self, body: BodyCore, taken: TakenStep, own: slice, accelerations: np.ndarray, spatial: Spatial
     ) -> None:
         self._body, self._spatial = body, spatial
         links = slice(body.first_link, body.first_link + 1 + body.joint_count)
@@ -97,7 +97,7 @@ class OffsetForces:
         return total - spatial.moves[parent] * (spatial.angular @ moment)
 
 
-def _links_after(body: Body) -> dict[int, list[int]]:
+def _links_after(body: BodyCore) -> dict[int, list[int]]:
     """Each link and all links after it, by rows in the body."""
     found: dict[int, list[int]] = {row: [row] for row in range(1, 1 + body.joint_count)}
     for row in range(1, 1 + body.joint_count):
@@ -134,7 +134,7 @@ def refuse_rows(
             )
 
 
-def shift_offset(model: ArrayTable, body: Body, given: Input, change: float) -> None:
+def shift_offset(model: ArrayTable, body: BodyCore, given: Input, change: float) -> None:
     """Change an offset in the model of copies of a world, which share it."""
     model.numpy[OFFSET_FIELD][given.row] += change * offset_direction(body, given)
     model.written(OFFSET_FIELD)

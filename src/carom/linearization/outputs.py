@@ -57,13 +57,13 @@ class OutputDerivatives:
         if callable(outputs):
             return *self._by_differences(outputs), ()
         sensors = [self._checked(sensor) for sensor in outputs]
-        exact = [sensor for sensor in sensors if has_jacobian(sensor)]
-        others = [sensor for sensor in sensors if not has_jacobian(sensor)]
+        exact = [sensor for sensor in sensors if has_jacobian(sensor.body, sensor.spec)]
+        others = [sensor for sensor in sensors if not has_jacobian(sensor.body, sensor.spec)]
         seen: dict[BodySensor, tuple[np.ndarray, np.ndarray]] = {}
         if exact:
             motion = self._motion()
             for sensor in exact:
-                before, after = motion.derivatives(sensor)
+                before, after = motion.derivatives(sensor.body.id, sensor.index)
                 by_state, by_input = (before @ by[0] + after @ by[1] for by in (states, inputs))
                 seen[sensor] = by_state, by_input
         if others:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.algorithms.link_motions import link_motion_derivatives
-from carom.description.sensor import OF_STEPS, SUBTREE_KINDS, UNBOUNDED, SensorKind
+from carom.description.sensor import OF_STEPS, SUBTREE_KINDS, UNBOUNDED, SensorKind, SensorSpec
 from carom.layouts.codes import BASE_POSITIONS
 from carom.linearization.turns import cross, cross_matrix, matrix_of, multiplied
 from carom.scene.sensors.frames import motion, object_frame
@@ -21,9 +21,8 @@ if TYPE_CHECKING:
     from carom.engine.engine import Engine
     from carom.engine.parameters import EngineParameters
     from carom.linearization.tangent import TangentSpace
-    from carom.scene.body import Body
-    from carom.scene.sensors.sensor import BodySensor
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 # Numbers with this imaginary part times their derivative have the derivative of a smooth function in the
 # imaginary part of its value, to rounding (W. Squire, G. Trapp, Using Complex Variables to Estimate
@@ -41,16 +40,15 @@ _EXACT = {
 _OF_ACTUATORS = (SensorKind.ACTUATOR_POSITION, SensorKind.ACTUATOR_VELOCITY)
 
 
-def has_jacobian(sensor: BodySensor) -> bool:
+def has_jacobian(body: BodyCore, spec: SensorSpec) -> bool:
     """Whether a sensor has exact derivatives: it follows from positions, velocities, and those before a step.
 
     Forces and torques, distances along rays and tendons have none, nor what is held or late.
     """
-    spec = sensor.spec
     if spec.delay > 0.0 or spec.period > 0.0:
         return False
     if spec.kind in _OF_ACTUATORS:
-        return any(it.name == spec.object and it.joint for it in sensor.body.spec.actuators)
+        return any(it.name == spec.object and it.joint for it in body.spec.actuators)
     return spec.kind in _EXACT
 
 
@@ -62,7 +60,7 @@ class SensorMotion:
         space: The tangent space, of this world or of one that it is a copy of.
     """
 
-    def __init__(self, scene: World, space: TangentSpace) -> None:
+    def __init__(self, scene: WorldCore, space: TangentSpace) -> None:
         self._scene, self._space = scene, space
         self._before = _Changes(scene, space, 0)
         self._after: _Changes | None = None
@@ -71,9 +69,10 @@ class SensorMotion:
         """Take the motion after the step, which the scene has performed."""
         self._after = _Changes(self._scene, self._space, 1)
 
-    def derivatives(self, sensor: BodySensor) -> tuple[np.ndarray, np.ndarray]:
+    def derivatives(self, body_id: int, sensor: int) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of what a sensor shows by the states before and after the step, (dim, nx) each."""
-        body, spec, after = self._scene.bodies[sensor.body.id], sensor.spec, self._after
+        body, after = self._scene.bodies[body_id], self._after
+        spec = body.spec.sensors[sensor]
         if after is None:
             raise RuntimeError("the step has not been performed")
         if spec.kind in OF_STEPS:
@@ -82,7 +81,7 @@ class SensorMotion:
             values = measured(after, body, spec)
         found = np.imag(values).T / _SMALL
         if spec.cutoff > 0.0 and spec.kind not in UNBOUNDED:
-            shown = reading(LoneSource(self._scene), body, sensor.index)[0]
+            shown = reading(LoneSource(self._scene), body, sensor)[0]
             found[np.abs(shown) >= spec.cutoff] = 0.0
         width = found.shape[1] // 2
         return found[:, :width], found[:, width:]
@@ -100,7 +99,7 @@ class _Changes(Source):
         half: 0 for the state before a step, 1 for that after it.
     """
 
-    def __init__(self, scene: World, space: TangentSpace, half: int) -> None:
+    def __init__(self, scene: WorldCore, space: TangentSpace, half: int) -> None:
         super().__init__(scene.bodies)
         self._scene = scene
         self._lone = LoneSource(scene)
@@ -152,11 +151,11 @@ class _Changes(Source):
         """Twice the length of the state."""
         return self._count
 
-    def poses(self, body: Body) -> Array:
+    def poses(self, body: BodyCore) -> Array:
         """See `Source`."""
         return self._fields["link_pose"]
 
-    def velocities(self, body: Body) -> Array:
+    def velocities(self, body: BodyCore) -> Array:
         """See `Source`."""
         return self._fields["link_twist"]
 
@@ -172,7 +171,7 @@ class _Changes(Source):
         """The changes of a field."""
         return np.imag(self._fields[name])
 
-    def _change_links(self, body: Body, first: int, count: int, rates: np.ndarray) -> None:
+    def _change_links(self, body: BodyCore, first: int, count: int, rates: np.ndarray) -> None:
         """Write how the links of a body move with its dofs."""
         own = slice(first, first + count)
         of_positions = np.arange(self._count)[self._of_positions][own]

@@ -10,7 +10,7 @@ from carom.layouts.codes import BASE_VELOCITIES
 from carom.linearization.turns import cross, matrix_of
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 class Spatial:
@@ -26,7 +26,7 @@ class Spatial:
         rotations: Rotations of their inertial frames, (links, 3, 3).
     """
 
-    def __init__(self, body: Body, poses: np.ndarray, columns: tuple[np.ndarray, np.ndarray]) -> None:
+    def __init__(self, body: BodyCore, poses: np.ndarray, columns: tuple[np.ndarray, np.ndarray]) -> None:
         """Find them for link poses (links, 7), and `angular` and `linear` (n, 3) about the base's centre."""
         free = 0 if body.fixed_base else BASE_VELOCITIES
         own, about = columns
@@ -45,7 +45,7 @@ class Spatial:
         self.shifts: np.ndarray = follows[:, :, None] * moved
 
 
-def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
+def _tree_of(body: BodyCore, free: int) -> tuple[np.ndarray, np.ndarray]:
     """Which dof moves which link, (links, n), and the axes of which dof i follow dof j, [i, j]."""
     known = body.derived.get(Spatial)
     if known is None:
@@ -66,7 +66,7 @@ def _tree_of(body: Body, free: int) -> tuple[np.ndarray, np.ndarray]:
     return known
 
 
-def moving_dofs(body: Body) -> np.ndarray:
+def moving_dofs(body: BodyCore) -> np.ndarray:
     """1 where a link, in the rows of a body, is moved by a dof, else 0, (links, n)."""
     return _tree_of(body, 0 if body.fixed_base else BASE_VELOCITIES)[0]
 

@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from carom.linearization.inputs import Input
     from carom.linearization.stepping import Copies
     from carom.linearization.tangent import TangentSpace
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _MAX_USER_ROWS = 6
 _SINGLE_ROWS = (UserConstraintKind.GEAR, UserConstraintKind.COUPLING)
 _GRAVITY = 3
 _PARAMETERS = ("mass", "moment", "inertia", "armature")
 # The structs of the mechanism of a body on each thread, and parameters that differ between worlds, or None.
-Mechanisms = Callable[["Body"], tuple[list[list[Any]], Any]]
+Mechanisms = Callable[["BodyCore"], tuple[list[list[Any]], Any]]
 
 
-def lone_mechanisms(body: Body) -> tuple[list[list[Any]], Any]:
+def lone_mechanisms(body: BodyCore) -> tuple[list[list[Any]], Any]:
     """The mechanism of a body of a lone world."""
     return [sweeps_of(body).structs], None
 
@@ -206,7 +206,7 @@ def _rows_of_joints(copies: Copies) -> int:
     return int(model["link_dof_count"][links[kinds != ConstraintKind.USER]].sum())
 
 
-def _batch(body: Body, dofs: int, places: int, varied: Any) -> Any:
+def _batch(body: BodyCore, dofs: int, places: int, varied: Any) -> Any:
     """Questions and answers about a body in so many places, two in each."""
     batch: Any = MechanismBatch()
     length = _GRAVITY + BASE_POSITIONS + sum(body.position_count) + 2 * dofs

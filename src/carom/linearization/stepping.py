@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from carom.linearization.inputs import Input
     from carom.linearization.tangent import TangentSpace
     from carom.native.tables import ArrayTable
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 
 class _OwnRows(Engine):
@@ -50,7 +50,7 @@ class Copies:
         linearizer: What has linearised steps of them last.
     """
 
-    def __init__(self, world: World, count: int) -> None:
+    def __init__(self, world: WorldCore, count: int) -> None:
         """Make copies of a world, which are stepped on one thread."""
         world.prepare()
         self._parameters: EngineParameters = world.parameters
@@ -157,13 +157,13 @@ def greatest(numbers: np.ndarray) -> int:
     return int(numbers[0]) if len(numbers) == 1 else int(numbers.max())
 
 
-def made_for(world: World) -> tuple[object, ...]:
+def made_for(world: WorldCore) -> tuple[object, ...]:
     """What is the same as long as a copy can follow its world."""
     counts = world.contact_arrays.user_count, *world.arrays.used.values()
     return world.engine, world.engine.changes, counts
 
 
-def copy_of(world: World) -> Copies:
+def copy_of(world: WorldCore) -> Copies:
     """One copy of a world, in its present state; it is kept for the next call."""
     world.prepare()
     now = made_for(world)
@@ -176,7 +176,7 @@ def copy_of(world: World) -> Copies:
 
 
 def differences(
-    world: World,
+    world: WorldCore,
     space: TangentSpace,
     inputs: Sequence[Input],
     steps: int,
@@ -238,7 +238,7 @@ def _stepped(copies: Copies, steps: int) -> dict[str, np.ndarray]:
 
 
 def _with_offsets(
-    world: World,
+    world: WorldCore,
     space: TangentSpace,
     inputs: Sequence[Input],
     steps: int,

@@ -19,8 +19,8 @@ from carom.linearization.turns import (
 )
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 _AXES = "xyz"
 _QUATERNION = ("qx", "qy", "qz", "qw")
@@ -57,9 +57,9 @@ class TangentSpace:
         column_of_actuator: The columns of activations by rows of actuators.
     """
 
-    def __init__(self, world: World, bodies: Iterable[Body] | None = None) -> None:
+    def __init__(self, world: WorldCore, bodies: Iterable[BodyCore] | None = None) -> None:
         """Set up the tangent space of a world, or the part of some bodies."""
-        self.bodies: list[Body] = []
+        self.bodies: list[BodyCore] = []
         self.places: list[tuple[int, int]] = []
         rows: list[int] = []
         labels: list[tuple[str, str]] = []
@@ -297,7 +297,7 @@ def _plane_turn(angle: float) -> np.ndarray:
     return np.array([[cosine, -sine], [sine, cosine]])
 
 
-def body_label(world: World, body: Body) -> str:
+def body_label(world: WorldCore, body: BodyCore) -> str:
     """Name of a body, with its number if another has the same name."""
     same = [other for other in world.bodies.values() if other.name == body.name]
     return body.name if len(same) == 1 else f"{body.name}[{body.id}]"

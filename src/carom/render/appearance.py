@@ -27,8 +27,8 @@ from carom.render.meshes import shape_mesh
 from carom.render.textures import CHECKER, NO_TEXTURE, Textures
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 _log = Logger("carom")
 
@@ -85,15 +85,15 @@ class Appearance:
     textures: Textures = field(default_factory=Textures)
     light: Light = field(default_factory=Light)
     changes: int = 0
-    _looks: WeakKeyDictionary[Body, list[list[ShapeLook]]] = field(default_factory=WeakKeyDictionary)
+    _looks: WeakKeyDictionary[BodyCore, list[list[ShapeLook]]] = field(default_factory=WeakKeyDictionary)
 
-    def shapes(self, body: Body, link: int) -> Sequence[ShapeLook]:
+    def shapes(self, body: BodyCore, link: int) -> Sequence[ShapeLook]:
         """The visible shapes of a link; -1 is the base."""
         return self._of(body)[link - BASE]
 
     def change(
         self,
-        body: Body,
+        body: BodyCore,
         link: int,
         shape: int | None = None,
         *,
@@ -121,11 +121,11 @@ class Appearance:
         change.set(self, "changes", self.changes + 1)
         change.commit()
 
-    def knows(self, body: Body) -> bool:
+    def knows(self, body: BodyCore) -> bool:
         """Whether the appearance of a body has been read or changed already."""
         return body in self._looks
 
-    def add_texture(self, image: Texels, bodies: Sequence[Body]) -> int:
+    def add_texture(self, image: Texels, bodies: Sequence[BodyCore]) -> int:
         """Add a texture, after those of bodies, in the order these were loaded, and return its number."""
         change = Change()
         self._note_first(change, bodies)
@@ -133,13 +133,13 @@ class Appearance:
         change.commit()
         return number
 
-    def number_textures(self, bodies: Sequence[Body]) -> None:
+    def number_textures(self, bodies: Sequence[BodyCore]) -> None:
         """Number the textures of bodies, in the order the bodies were loaded."""
         change = Change()
         self._note_first(change, bodies)
         change.commit()
 
-    def _of(self, body: Body) -> list[list[ShapeLook]]:
+    def _of(self, body: BodyCore) -> list[list[ShapeLook]]:
         if body not in self._looks:
             # The textures of bodies that were loaded before come first.
             self.number_textures(list(body.world.bodies.values()))
@@ -147,7 +147,7 @@ class Appearance:
             self.number_textures([body])
         return self._looks[body]
 
-    def _note_first(self, change: Change, bodies: Sequence[Body]) -> None:
+    def _note_first(self, change: Change, bodies: Sequence[BodyCore]) -> None:
         """Give bodies that have no looks yet their first ones with a change."""
         first = {body: self._first_of(change, body) for body in bodies if body not in self._looks}
         if first:
@@ -155,7 +155,7 @@ class Appearance:
             looks.update(first)
             change.set(self, "_looks", looks)
 
-    def _first_of(self, change: Change, body: Body) -> list[list[ShapeLook]]:
+    def _first_of(self, change: Change, body: BodyCore) -> list[list[ShapeLook]]:
         """The looks of a body as it was loaded; a change numbers its textures."""
         flags = LoadFlags(body.spec.flags)
         looks = [
@@ -254,7 +254,7 @@ def _undefined_colour(link: int, flags: LoadFlags) -> Rgba:
     return WHITE
 
 
-def appearance_of(world: World) -> Appearance:
+def appearance_of(world: WorldCore) -> Appearance:
     """Colours and textures of a world. A reset of the world removes all textures."""
     entry = _appearances.get(world)
     if entry is None:
@@ -269,7 +269,7 @@ def appearance_of(world: World) -> Appearance:
     return appearance
 
 
-def copy_appearance(world: World, other: World) -> None:
+def copy_appearance(world: WorldCore, other: WorldCore) -> None:
     """Copy the appearance of a world to a copy of the world, whose bodies have the same numbers."""
     if world not in _appearances:
         return
@@ -284,7 +284,7 @@ def copy_appearance(world: World, other: World) -> None:
             ]
 
 
-def take_over_appearance(change: Change, world: World, draft: World) -> None:
+def take_over_appearance(change: Change, world: WorldCore, draft: WorldCore) -> None:
     """Give a world the appearance of its draft, which has the same bodies and new ones, with a change."""
     if draft not in _appearances:
         return
@@ -294,4 +294,4 @@ def take_over_appearance(change: Change, world: World, draft: World) -> None:
     change.set(ours, "changes", ours.changes + 1)
 
 
-_appearances: WeakKeyDictionary[World, tuple[ref, Appearance]] = WeakKeyDictionary()
+_appearances: WeakKeyDictionary[WorldCore, tuple[ref, Appearance]] = WeakKeyDictionary()

@@ -18,7 +18,7 @@ from carom.render.projection import Matrix, is_singular, poses_to_matrices
 from carom.render.scene import SceneArrays
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 MAX_SIDE = 16384
 MAX_PIXELS = 64 << 20
@@ -41,7 +41,7 @@ class Renderer:
 
     def draw(
         self,
-        world: World,
+        world: WorldCore,
         view: Matrix,
         projection: Matrix,
         width: int,
@@ -84,7 +84,7 @@ class Renderer:
 
     def draw_worlds(
         self,
-        world: World,
+        world: WorldCore,
         link_poses: NDArray[np.float64],
         views: Matrix,
         projection: Matrix,
@@ -121,7 +121,7 @@ class Renderer:
             matrices[absent[:, scene.link_rows]] = 0.0
         return self._batch[1].draw(matrices, views, projection, light)
 
-    def _present_scene(self, world: World) -> SceneArrays:
+    def _present_scene(self, world: WorldCore) -> SceneArrays:
         appearance = appearance_of(world)
         scene = self._scene
         if scene is None or not scene.shows(world, appearance):
@@ -146,7 +146,7 @@ class Renderer:
         return target
 
 
-def renderer_of(world: World) -> Renderer:
+def renderer_of(world: WorldCore) -> Renderer:
     """The renderer of a world."""
     renderer = _renderers.get(world)
     if renderer is None:
@@ -154,7 +154,7 @@ def renderer_of(world: World) -> Renderer:
     return renderer
 
 
-_renderers: WeakKeyDictionary[World, Renderer] = WeakKeyDictionary()
+_renderers: WeakKeyDictionary[WorldCore, Renderer] = WeakKeyDictionary()
 
 
 def _check_size(width: int, height: int) -> None:

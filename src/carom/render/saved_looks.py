@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,8 +18,8 @@ from carom.render.textures import NO_TEXTURE
 from carom.world_files.records import Reader, Writer
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 
 @dataclass(slots=True)
@@ -49,7 +50,7 @@ class SavedLooks:
     bodies: list[list[list[SavedLook]] | None]
 
 
-def save(world: World, writer: Writer) -> Any:
+def save(world: WorldCore, writer: Writer) -> Any:
     """The colours and textures of a world as data for its file."""
     appearance = appearance_of(world)
     places: dict[int, int] = {}
@@ -72,12 +73,12 @@ def save(world: World, writer: Writer) -> Any:
     return writer.write(SavedLooks(images, bodies))
 
 
-def begin(world: World, draft: World) -> None:
+def begin(world: WorldCore, draft: WorldCore) -> None:
     """Give the draft of a world its colours and textures."""
     copy_appearance(world, draft)
 
 
-def load(bodies: list[Body], reader: Reader, data: Any) -> None:
+def load(bodies: Sequence[BodyCore], reader: Reader, data: Any) -> None:
     """Apply the saved colours and textures to these bodies.
 
     Raises:
@@ -116,6 +117,6 @@ def load(bodies: list[Body], reader: Reader, data: Any) -> None:
                 )
 
 
-def publish(change: Change, world: World, draft: World) -> None:
+def publish(change: Change, world: WorldCore, draft: WorldCore) -> None:
     """Give a world the colours and textures of its draft, with a change."""
     take_over_appearance(change, world, draft)

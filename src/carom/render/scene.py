@@ -20,11 +20,11 @@ from carom.render.appearance import Appearance, ShapeLook
 from carom.render.parallel import worker_count
 from carom.render.soft_surfaces import SoftSurface
 from carom.render.textures import NO_TEXTURE, Textures
-from carom.scene.soft_body import SoftBody
+from carom.scene.core.soft_core import SoftCore
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 MAX_PART_TRIANGLES = 2048
 """Larger meshes are cut into parts, so that parts out of view are skipped and threads share the others."""
@@ -103,7 +103,7 @@ class SceneArrays:
         chunk_count: Number of chunks of parts, each of which one task projects.
     """
 
-    def __init__(self, world: World, appearance: Appearance) -> None:
+    def __init__(self, world: WorldCore, appearance: Appearance) -> None:
         self._bodies = [ref(body) for body in world.bodies.values()]
         self._texture_slots: dict[int, int] = {}
         columns = _Columns()
@@ -116,7 +116,7 @@ class SceneArrays:
                     for shape in shapes:
                         first = len(columns.vertex_counts)
                         self._add_shape(columns, body, link, shape, len(rows))
-                        if isinstance(body, SoftBody):
+                        if isinstance(body, SoftCore):
                             self._surfaces.append(_soft_surface(columns, body, first))
                     rows.append(body.first_link + link - BASE)
         self.link_rows: np.ndarray = np.array(rows, dtype=np.int64)
@@ -131,7 +131,7 @@ class SceneArrays:
         self._changes = appearance.changes
         self._take_textures(appearance.textures)
 
-    def shows(self, world: World, appearance: Appearance) -> bool:
+    def shows(self, world: WorldCore, appearance: Appearance) -> bool:
         """Whether the arrays are up to date, apart from the textures."""
         return self._changes == appearance.changes and [body() for body in self._bodies] == list(
             world.bodies.values()
@@ -142,7 +142,7 @@ class SceneArrays:
         for surface in self._surfaces:
             surface.write(self.struct.__dict__["memory"], self.part_centres, self.part_radii)
 
-    def _add_shape(self, columns: _Columns, body: Body, link: int, shape: ShapeLook, slot: int) -> None:
+    def _add_shape(self, columns: _Columns, body: BodyCore, link: int, shape: ShapeLook, slot: int) -> None:
         frame = compose(inverse(body.link_inertial_frame(link)), shape.frame)
         rotation = np.array(rotation_matrix(frame.orientation))
         for piece in pieces_of(shape.mesh):
@@ -186,7 +186,7 @@ class SceneArrays:
         put_array(self.struct, "texel", np.concatenate([np.zeros((0, 3), np.uint8), *texels]))
 
 
-def _soft_surface(columns: _Columns, body: SoftBody, first_part: int) -> SoftSurface:
+def _soft_surface(columns: _Columns, body: SoftCore, first_part: int) -> SoftSurface:
     counts = columns.vertex_counts
     starts = np.concatenate([[0], np.cumsum(counts[first_part:-1])]).astype(np.int64)
     return SoftSurface(body, sum(counts[:first_part]), first_part, len(counts), starts)

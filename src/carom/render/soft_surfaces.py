@@ -13,7 +13,7 @@ from carom.description.transform import rotation_matrix
 from carom.formats.visuals.render_mesh import NO_TEXTURE_UV, RenderMesh, mesh_of
 
 if TYPE_CHECKING:
-    from carom.scene.soft_body import SoftBody
+    from carom.scene.core.soft_core import SoftCore
 
 
 def node_normals(nodes: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -26,7 +26,7 @@ def node_normals(nodes: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArra
     return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
-def nodes_at_base(body: SoftBody) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+def nodes_at_base(body: SoftCore) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """The surface of a soft body in the inertial frame of its base: (v, 3) vertices and (t, 3) triangles."""
     world, first = body.world, body.first_position
     x, y, z, w = world.position[first + 3 : first + 7].tolist()
@@ -35,7 +35,7 @@ def nodes_at_base(body: SoftBody) -> tuple[NDArray[np.float64], NDArray[np.int32
     return (vertices - world.position[first : first + 3]) @ turn, triangles
 
 
-def surface_mesh(body: SoftBody) -> RenderMesh:
+def surface_mesh(body: SoftCore) -> RenderMesh:
     """The present surface of a soft body, in the link frame of its base.
 
     With texture coordinates each triangle has vertices of its own, in the order of its visual shape.
@@ -63,7 +63,7 @@ class SoftSurface:
         part_starts: First vertex of each of these parts, relative to `first_vertex`.
     """
 
-    body: SoftBody
+    body: SoftCore
     first_vertex: int
     first_part: int
     end_part: int

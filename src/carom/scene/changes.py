@@ -16,17 +16,16 @@ from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import change_base_freedom
-from carom.scene.handles import world_of
 from carom.scene.pattern import pattern_of
-from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 
 @alone("lock")
 def add_bodies(
-    world: World,
+    world: WorldCore,
     bodies: Sequence[tuple[BodySpec, Pose]],
     also: Callable[[list[Body]], None] | None = None,
     note: Callable[[Change, list[Body]], None] | None = None,
@@ -53,7 +52,7 @@ def add_bodies(
 
 
 def _add_to_draft(
-    world: World,
+    world: WorldCore,
     bodies: Sequence[tuple[BodySpec, Pose]],
     also: Callable[[list[Body]], None] | None,
     note: Callable[[Change, list[Body]], None] | None,
@@ -76,7 +75,7 @@ def _add_to_draft(
     return added
 
 
-def append(change: Change, world: World, spec: BodySpec, pose: Pose) -> Body:
+def append(change: Change, world: WorldCore, spec: BodySpec, pose: Pose) -> Body:
     """Add a body, which is not soft, with a change; its link poses are computed later."""
     base_pose = compose(pose, spec.base.inertial_frame)
     *free_ids, body_id = change.get(world, "free_ids") or [change.get(world, "next_id")]
@@ -109,7 +108,7 @@ def _body_class(spec: BodySpec) -> type[Body]:
     return SoftBody
 
 
-def append_now(world: World, spec: BodySpec, pose: Pose) -> Body:
+def append_now(world: WorldCore, spec: BodySpec, pose: Pose) -> Body:
     """Add a body to a draft of a world, at once; its link poses are computed later."""
     change = Change(world.change_scene)
     body = append(change, world, spec, pose)
@@ -122,7 +121,7 @@ def append_now(world: World, spec: BodySpec, pose: Pose) -> Body:
 
 
 @alone("lock")
-def remove_body(world: World, body: Body) -> None:
+def remove_body(world: WorldCore, body: BodyCore) -> None:
     """Remove a body from a world, with everything that belongs to it."""
     with uninterrupted:
         later = [other for other in world.bodies.values() if other.rows.tree > body.rows.tree]
@@ -146,36 +145,7 @@ def remove_body(world: World, body: Body) -> None:
 
 
 @alone("lock")
-def add_constraint(world: World, constraint: UserConstraint) -> None:
-    """Add a new user constraint.
-
-    Raises:
-        ValueError: One of its bodies is no longer in the world.
-    """
-    with uninterrupted:
-        world_of(constraint.parent)
-        if constraint.child is not None:
-            world_of(constraint.child)
-        change = Change()
-        world.user_constraints.put(change, constraint)
-        world.constraints.add_user(change, constraint)
-        world.change_constraints(change)
-        change.commit()
-
-
-@alone("lock")
-def remove_constraint(world: World, constraint: UserConstraint) -> None:
-    """Remove a user constraint."""
-    with uninterrupted:
-        change = Change()
-        world.user_constraints.discard(change, constraint.id)
-        world.constraints.remove_user(change, constraint)
-        world.change_constraints(change)
-        change.commit()
-
-
-@alone("lock")
-def free_base(world: World, body: Body, *, free: bool) -> None:
+def free_base(world: WorldCore, body: BodyCore, *, free: bool) -> None:
     """Free the base of a body, or fix it in the world."""
     with uninterrupted:
         change = Change()

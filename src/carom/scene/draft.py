@@ -18,8 +18,8 @@ from carom.scene.bodies import Bodies
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 # Attributes of a world that are replaced when it takes over a draft.
 _VALUES = ("parameters", "free_ids", "next_id", "links_loaded", "unspent_time")
@@ -33,12 +33,12 @@ class Draft:
             they are; new bodies belong to the draft until it is published.
     """
 
-    def __init__(self, original: World) -> None:
+    def __init__(self, original: WorldCore) -> None:
         self._original = original
-        self.world: World = _copied(original)
+        self.world: WorldCore = _copied(original)
         self._watches = False
 
-    def measure(self, bodies: Sequence[Body]) -> None:
+    def measure(self, bodies: Sequence[BodyCore]) -> None:
         """Check the sensors of bodies that were added, and switch on what they need."""
         if any(body.spec.sensors for body in bodies):
             from carom.scene.sensors.changes import check_sensor, measure_loads
@@ -84,12 +84,12 @@ class Draft:
         change.commit()
 
 
-def draft_of(world: World) -> Draft:
+def draft_of(world: WorldCore) -> Draft:
     """A draft that is as the world is now."""
     return Draft(world)
 
 
-def _tables(world: World) -> list[ArrayTable]:
+def _tables(world: WorldCore) -> list[ArrayTable]:
     arrays, contacts = world.arrays, world.contact_arrays
     shapes, soft = contacts.shapes.table, contacts.soft.table
     return [arrays.model, arrays.state, shapes, contacts.contacts, contacts.users, soft]
@@ -118,9 +118,9 @@ def _take_over(change: Change, one: Any, other: Any) -> None:
             change.set(one, name, value)
 
 
-def _copied(world: World) -> World:
+def _copied(world: WorldCore) -> WorldCore:
     """A copy of a world with the same handles of bodies and constraints."""
-    other: World = object.__new__(type(world))
+    other: WorldCore = object.__new__(type(world))
     vars(other).update(vars(world))
     memo = {id(shared): shared for shared in _shared(world)}
     memo[id(world)] = other
@@ -141,7 +141,7 @@ def _copied(world: World) -> World:
     return other
 
 
-def _shared(world: World) -> list[Any]:
+def _shared(world: WorldCore) -> list[Any]:
     """What is the same object in a draft: handles that users have, and what these contain."""
     soft, shapes = world.contact_arrays.soft, world.contact_arrays.shapes
     bodies = world.bodies.values()

@@ -28,7 +28,7 @@ from carom.scene.joint_terms.implicit import (
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
     from carom.model.inertia import MassTerms
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.scene.link_dynamics import LinkDynamics
 
 
@@ -50,7 +50,7 @@ _NOT_OF_SURFACE = {
 
 
 @alone("world.lock")
-def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
+def change_dynamics(body: BodyCore, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     with uninterrupted:
         change = Change()
@@ -58,7 +58,7 @@ def change_dynamics(body: Body, link: int, changes: Mapping[str, Any]) -> None:
         change.commit()
 
 
-def note_dynamics(change: Change, body: Body, link: int, changes: Mapping[str, Any]) -> None:
+def note_dynamics(change: Change, body: BodyCore, link: int, changes: Mapping[str, Any]) -> None:
     """Note a change of the dynamics of a link.
 
     Raises:
@@ -106,7 +106,7 @@ def _check_number(value: Any) -> None:
     float(value)
 
 
-def _note_others(change: Change, body: Body, link: int, changes: Mapping[str, Any]) -> bool:
+def _note_others(change: Change, body: BodyCore, link: int, changes: Mapping[str, Any]) -> bool:
     """Note all changes except those of contact parameters; whether what is derived from the scene changes."""
     model, tree = body.world.arrays.model.numpy, body.rows.tree
     renews = False
@@ -133,7 +133,7 @@ def _note_others(change: Change, body: Body, link: int, changes: Mapping[str, An
     return renews
 
 
-def _note_activation(change: Change, body: Body, wanted: ActivationChange) -> None:
+def _note_activation(change: Change, body: BodyCore, wanted: ActivationChange) -> None:
     """Put a body to sleep, wake it up, or change whether it may fall asleep by itself.
 
     As in Bullet, this takes effect at the end of the next step, and whether a body may fall asleep cannot be
@@ -157,7 +157,7 @@ def _note_activation(change: Change, body: Body, wanted: ActivationChange) -> No
     change.write(model["tree_can_wake"][one], can_wake)
 
 
-def _note_joint(change: Change, body: Body, joint: int, changes: Mapping[str, Any]) -> bool:
+def _note_joint(change: Change, body: BodyCore, joint: int, changes: Mapping[str, Any]) -> bool:
     """Note changes of a joint's terms and limits; whether what is derived from the scene changes."""
     world, dynamics = body.world, body.dynamics(joint)
     terms = checked_terms(body, joint, changes)
@@ -184,7 +184,7 @@ def _note_joint(change: Change, body: Body, joint: int, changes: Mapping[str, An
     return renews
 
 
-def set_dynamics(body: Body, link: int, dynamics: LinkDynamics) -> None:
+def set_dynamics(body: BodyCore, link: int, dynamics: LinkDynamics) -> None:
     """Set all parameters of a link, except the limits of its joint, at once; see `Body.set_dynamics`."""
     change, row = Change(), body.first_link + 1 + link
     world, present = body.world, body.dynamics(link)
@@ -201,7 +201,7 @@ def set_dynamics(body: Body, link: int, dynamics: LinkDynamics) -> None:
     change.commit()
 
 
-def _note_mass(change: Change, body: Body, link: int, mass: float, inertia: Vector3 | None) -> bool:
+def _note_mass(change: Change, body: BodyCore, link: int, mass: float, inertia: Vector3 | None) -> bool:
     """Note mass and inertia (by default scaled with the mass); whether the base is freed or fixed by it."""
     world, dynamics = body.world, body.dynamics(link)
     change.set(dynamics, "inertia", scaled_inertia(body, link, mass) if inertia is None else inertia)
@@ -215,7 +215,7 @@ def _note_mass(change: Change, body: Body, link: int, mass: float, inertia: Vect
     return frees_or_fixes
 
 
-def change_base_freedom(change: Change, body: Body, *, free: bool) -> None:
+def change_base_freedom(change: Change, body: BodyCore, *, free: bool) -> None:
     """Free the base of a body, or fix it in the world, with a change."""
     world = body.world
     world.arrays.set_base_freedom(body.rows, free=free, change=change)
@@ -224,7 +224,7 @@ def change_base_freedom(change: Change, body: Body, *, free: bool) -> None:
     world.constraints.free_base(change, body, free=free)
 
 
-def scaled_inertia(body: Body, link: int, mass: float) -> Vector3:
+def scaled_inertia(body: BodyCore, link: int, mass: float) -> Vector3:
     """Principal moments of inertia [kg m²] of a link whose mass changes and whose shape and density do not.
 
     Args:
@@ -243,7 +243,7 @@ def scaled_inertia(body: Body, link: int, mass: float) -> Vector3:
     return (x * mass, y * mass, z * mass)
 
 
-def unit_inertia(body: Body, link: int) -> Vector3 | None:
+def unit_inertia(body: BodyCore, link: int) -> Vector3 | None:
     """The moments of `scaled_inertia` at 1 kg [m²]; None if those of the collision shapes are asked for."""
     for known in (body.dynamics(link), body.link_spec(link)):
         if known.mass > 0.0:
@@ -252,12 +252,12 @@ def unit_inertia(body: Body, link: int) -> Vector3 | None:
     return None
 
 
-def shape_inertia(body: Body, link: int, mass: float) -> Vector3:
+def shape_inertia(body: BodyCore, link: int, mass: float) -> Vector3:
     """Principal moments of inertia [kg m²] of a link's collision shapes for a given mass [kg]."""
     return moments_at(mass, shape_terms(body, link))
 
 
-def shape_terms(body: Body, link: int) -> MassTerms:
+def shape_terms(body: BodyCore, link: int) -> MassTerms:
     """The principal moments of inertia of a link's collision shapes as a function of the mass.
 
     The margin that `collision_margin` has set widens the box that several shapes, or a hull, count as.
@@ -270,12 +270,12 @@ def shape_terms(body: Body, link: int) -> MassTerms:
     return mass_terms(replace(spec, compound_margin=margin), implicit_cylinder=implicit, margin=margin)
 
 
-def has_margin(body: Body, link: int) -> bool:
+def has_margin(body: BodyCore, link: int) -> bool:
     """Whether a link's margin can change: that of a ball or a capsule is its radius, as in Bullet."""
     return not margin_is_radius(body.link_spec(link))
 
 
-def _note_inertia(change: Change, body: Body, link: int) -> None:
+def _note_inertia(change: Change, body: BodyCore, link: int) -> None:
     dynamics = body.dynamics(link)
     mass, inertia = (change.get(dynamics, name) for name in ("mass", "inertia"))
     change.set(body, "derived", {})
@@ -283,7 +283,7 @@ def _note_inertia(change: Change, body: Body, link: int) -> None:
 
 
 @alone("world.lock")
-def set_present(body: Body, present: bool) -> None:
+def set_present(body: BodyCore, present: bool) -> None:
     """Let a body come or go, or leave it as it is; see `Body.present`."""
     world = body.world
     with uninterrupted:

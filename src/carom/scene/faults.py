@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _MOTOR = (
     "target position",
@@ -22,7 +22,7 @@ _MOTOR = (
 _PD = ("target position", "target velocity", "position gain", "velocity gain", "greatest force")
 
 
-def cause_in(body: Body) -> str:
+def cause_in(body: BodyCore) -> str:
     """Describe the first NaN among a body's drives and coordinates; an empty string if there is none.
 
     Infinite limits of drives are allowed.

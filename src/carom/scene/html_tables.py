@@ -10,11 +10,12 @@ from carom.model.body_spec import BASE
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
     from carom.scene.joint import Joint
-    from carom.world.world import World
 
 
-def world_table(world: World) -> str:
+def world_table(world: WorldCore) -> str:
     """The bodies of a world, and its time and gravity."""
     gravity = ", ".join(f"{value:g}" for value in world.parameters.gravity)
     count = len(world.bodies)
@@ -65,11 +66,11 @@ def table(caption: str, header: Sequence[str], rows: Iterable[Sequence[object]])
     return f"<table><caption>{escape(caption)}</caption><tr>{head}</tr>{body}</table>"
 
 
-def _mass(body: Body) -> float:
+def _mass(body: BodyCore) -> float:
     return sum(body.dynamics(link).mass for link in range(BASE, body.joint_count))
 
 
-def _position(body: Body) -> Sequence[float]:
+def _position(body: BodyCore) -> Sequence[float]:
     return body.world.link_pose[body.first_link, :3].tolist()
 
 

@@ -18,6 +18,7 @@ from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
 from carom.scene.joint_terms.friction import friction_of, set_friction
+from carom.scene.link_dynamics import enforced_limits
 from carom.scene.named import Named
 
 if TYPE_CHECKING:
@@ -88,11 +89,7 @@ class Joint:
     @property
     def limits(self) -> tuple[float, float]:
         """Minimum and maximum position that are enforced now; -inf and inf without a limit."""
-        spec, dynamics = self.spec, self.body.dynamics(self.index)
-        limits = (dynamics.joint_lower_limit, dynamics.joint_upper_limit)
-        # Some limits of a file are ignored, those of a continuous joint for example.
-        only_stated = not spec.limited and limits == (spec.lower, spec.upper)
-        return (-np.inf, np.inf) if only_stated or limits[0] > limits[1] else limits
+        return enforced_limits(self.spec, self.body.dynamics(self.index))
 
     @property
     def effort_limit(self) -> float:

@@ -16,7 +16,7 @@ from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
 if TYPE_CHECKING:
     from carom.description.compliance import Compliance, Four
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.scene.user_constraints import UserConstraint
 
 NONE: Four = (0.0, 0.0, 0.0, 0.0)
@@ -41,7 +41,7 @@ class JointConstraint:
         margin: Distance from a limit at which it begins to act [rad or m].
     """
 
-    body: Body
+    body: BodyCore
     joint: int
     kind: ConstraintKind
     lower: float = 0.0
@@ -68,7 +68,7 @@ class JointConstraint:
             self.reference, self.impedance = compliance.reference, compliance.impedance
 
     @property
-    def sorted_with(self) -> Body:
+    def sorted_with(self) -> BodyCore:
         """The body with whose rows it is sorted: `body`, or that at the other end if it ties a still link."""
         other = None if self.user is None else self.user.child
         if self.user is None or other is None or other is self.body:
@@ -90,7 +90,7 @@ class JointConstraints:
         self.tags: IslandTags = IslandTags()
         self.rows: ConstraintRows = ConstraintRows()
 
-    def add_body(self, change: Change, body: Body) -> None:
+    def add_body(self, change: Change, body: BodyCore) -> None:
         """Append the limits, the motors, the friction, then the actuators, of a new body with a change.
 
         A body that is read as PyBullet reads it has no friction.
@@ -131,7 +131,7 @@ class JointConstraints:
             added.append(JointConstraint(body, joint, ConstraintKind.ACTUATOR, actuator=number))
         change.extend(self.all, added)
 
-    def remove(self, change: Change, body: Body) -> None:
+    def remove(self, change: Change, body: BodyCore) -> None:
         """Remove the constraints of a body, the last first, with a change."""
         kept = self.all.copy()
         for constraint in reversed(self.all):
@@ -141,7 +141,7 @@ class JointConstraints:
         self.tags.remove(change, body.id, 1 + body.joint_count)
 
     def set_limit(
-        self, change: Change, body: Body, joint: int, lower: float, upper: float
+        self, change: Change, body: BodyCore, joint: int, lower: float, upper: float
     ) -> JointConstraint | None:
         """Set, add or (with lower > upper) remove the limit of a joint with a change.
 
@@ -186,7 +186,7 @@ class JointConstraints:
         """Body and link (the base is 0) of all links that can move, as Bullet numbers them."""
         return cast("list[tuple[int, int]]", self.tags.moving_links)
 
-    def limit_of(self, body: Body, joint: int) -> JointConstraint | None:
+    def limit_of(self, body: BodyCore, joint: int) -> JointConstraint | None:
         """The limit of a revolute or prismatic joint, if it has one."""
         for constraint in self.all:
             if (
@@ -197,14 +197,14 @@ class JointConstraints:
                 return constraint
         return None
 
-    def free_base(self, change: Change, body: Body, *, free: bool) -> None:
+    def free_base(self, change: Change, body: BodyCore, *, free: bool) -> None:
         """Renumber the islands with a change that frees or fixes the base of a body."""
         self.tags.move_base_to_end(change, body.id, island_links(body, free=free))
 
     def write(
         self,
         arrays: WorldArrays,
-        bodies: Mapping[int, Body],
+        bodies: Mapping[int, BodyCore],
         user_rows: dict[int, int],
         minimum_island_size: int,
     ) -> None:
@@ -226,7 +226,7 @@ class JointConstraints:
         self.rows.sort(arrays, active, self.tags.tags(), user_rows, minimum_island_size)
 
 
-def moving_links(body: Body, *, free: bool | None = None) -> list[bool]:
+def moving_links(body: BodyCore, *, free: bool | None = None) -> list[bool]:
     """Which links, base first, are not rigidly connected to a fixed base.
 
     `free` says whether the base is free, if it is not to be as it is now.
@@ -237,7 +237,7 @@ def moving_links(body: Body, *, free: bool | None = None) -> list[bool]:
     return moving
 
 
-def island_links(body: Body, *, free: bool | None = None) -> list[bool]:
+def island_links(body: BodyCore, *, free: bool | None = None) -> list[bool]:
     """Which links, base first, belong to islands; `free` is as for `moving_links`.
 
     For bodies that are read as written these are `moving_links`. Bullet decides when it loads a body which

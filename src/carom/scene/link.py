@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
-from carom.description.transform import compose, inverse, rotate
+from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
 from carom.native.gates import alone
-from carom.scene.handles import world_of
+from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
 from carom.scene.named import Named
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Link:
     @alone("body.world.lock")
     def inertial_pose(self) -> LinkPose:
         """World pose of the inertial frame: centre of mass and principal axes."""
-        return _as_arrays(self._inertial_frame())
+        return _as_arrays(present_inertial_frame(self.body, self.index))
 
     @property
     @alone("body.world.lock")
@@ -139,7 +139,7 @@ class Link:
         Raises:
             ValueError: A vector is not three finite numbers, or the frame is unknown.
         """
-        centre = np.array(self._inertial_frame().position)
+        centre = np.array(present_inertial_frame(self.body, self.index).position)
         world_force = self._in_world(vector(force, 3, "force"), frame)
         arm = np.zeros(3)
         if point is not None:
@@ -167,15 +167,8 @@ class Link:
     def _row(self) -> int:
         return self.body.first_link + 1 + self.index
 
-    def _inertial_frame(self) -> Pose:
-        world = world_of(self.body)
-        # After a step these rows contain the poses at the start of its last substep.
-        self.body.update_link_poses()
-        x, y, z, qx, qy, qz, qw = world.link_pose[self._row].tolist()
-        return Pose((x, y, z), (qx, qy, qz, qw))
-
     def _link_frame(self) -> Pose:
-        return compose(self._inertial_frame(), inverse(self.inertial_frame))
+        return present_link_frame(self.body, self.index)
 
     def _in_world(self, direction: Array, frame: Frame) -> Array:
         if frame == "world":

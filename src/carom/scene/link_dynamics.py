@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from math import inf
 from operator import attrgetter
 
 from carom.description.pose import Vector3
@@ -113,3 +114,11 @@ class LinkDynamics(Printed):
 
 
 _values = attrgetter(*[known.name for known in fields(LinkDynamics)])
+
+
+def enforced_limits(spec: LinkSpec, dynamics: LinkDynamics) -> tuple[float, float]:
+    """Minimum and maximum position of a link's joint that are enforced; -inf and inf without a limit."""
+    lower, upper = dynamics.joint_lower_limit, dynamics.joint_upper_limit
+    # Some limits of a file are ignored, those of a continuous joint for example.
+    only_stated = not spec.limited and (lower, upper) == (spec.lower, spec.upper)
+    return (-inf, inf) if only_stated or lower > upper else (lower, upper)

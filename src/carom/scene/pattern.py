@@ -11,7 +11,7 @@ from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.model.shape_arrays import ShapeArrays, Surface
 from carom.native.change import Change
-from carom.scene.body import Outline
+from carom.scene.core.body_core import Outline
 
 MAX_BYTES = 1 << 20
 """Bodies with larger rows, those of large triangle meshes, are written anew each time [bytes]."""

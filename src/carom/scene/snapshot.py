@@ -20,7 +20,7 @@ from carom.native.change import Change
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 # Axes of arrays that are not state of bodies: status of the last step, impulses of user constraints, and what
 # is solved together, which steps find out.
@@ -114,7 +114,7 @@ class Layout:
         return cls(bodies, rows[within >= BASE_VELOCITIES])
 
 
-def layout(world: World) -> Layout:
+def layout(world: WorldCore) -> Layout:
     """The present layout of a world."""
     shape_count = world.contact_arrays.shapes.table.numpy["link_shape_count"]
     bodies = []
@@ -141,7 +141,7 @@ class Shape:
     rows: dict[str, np.ndarray] = field(default_factory=dict)
     _replacements: int = -1
 
-    def look(self, world: World) -> None:
+    def look(self, world: WorldCore) -> None:
         """Bring `rows` up to date if arrays were replaced; bodies are as when the layout was made."""
         state = world.arrays.state
         if state.replacements != self._replacements:
@@ -149,7 +149,7 @@ class Shape:
             self._replacements = state.replacements
 
 
-def take(world: World, shape: Shape) -> Snapshot:
+def take(world: WorldCore, shape: Shape) -> Snapshot:
     """The present state of a world, which has this shape."""
     layout = shape.layout
     snapshot = Snapshot(layout, world.time, world.unspent_time)
@@ -168,7 +168,7 @@ def take(world: World, shape: Shape) -> Snapshot:
     return snapshot
 
 
-def return_to(change: Change, world: World, shape: Shape, snapshot: Snapshot) -> None:
+def return_to(change: Change, world: WorldCore, shape: Shape, snapshot: Snapshot) -> None:
     """Restore a world, which has this shape, from a snapshot with a change, which notes nothing before.
 
     Contacts are dropped, and detected again at the next step, if bodies have other shapes now or were removed
@@ -225,7 +225,7 @@ def counted_rows(counts: np.ndarray) -> dict[str, int]:
     return {axis: int(counts[column]) for axis, column in _COUNTED.items()}
 
 
-def _contact_rows(world: World, counts: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+def _contact_rows(world: WorldCore, counts: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
     used = counted_rows(counts)
     for name, array in world.contact_arrays.contacts.numpy.items():
         axis = name.partition("_")[0]

@@ -17,7 +17,7 @@ from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
     from carom.description.tendon import Path
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 # An impulse per substep, as in Bullet, until a force is set.
 DEFAULT_MAX_IMPULSE = 500.0
@@ -136,9 +136,9 @@ class UserConstraint(Printed):
 
     id: int
     kind: UserConstraintKind
-    parent: Body
+    parent: BodyCore
     parent_link: int
-    child: Body | None
+    child: BodyCore | None
     child_link: int
     axis: Vector3 = (0.0, 0.0, 0.0)
     parent_frame: Pose = IDENTITY
@@ -263,9 +263,9 @@ class UserConstraints:
     def new(
         self,
         kind: UserConstraintKind,
-        parent: Body,
+        parent: BodyCore,
         parent_link: int,
-        child: Body | None,
+        child: BodyCore | None,
         child_link: int,
         axis: Vector3,
         parent_frame: Pose,
@@ -303,7 +303,7 @@ class UserConstraints:
         """Remove the constraint with a number, if it exists, with a change."""
         change.drop(self._by_id, constraint_id)
 
-    def remove(self, change: Change, body: Body) -> None:
+    def remove(self, change: Change, body: BodyCore) -> None:
         """Remove every constraint of a body with a change."""
         for number, constraint in self._by_id.items():
             if body is constraint.parent or body is constraint.child:

@@ -14,8 +14,8 @@ from carom.viewer.protocol import to_page
 from carom.viewer.rays import Rays
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 # How long a frame waits for a step to end before it repeats the last details [s].
 _PATIENCE = 0.005
@@ -86,11 +86,11 @@ class Details:
         rays: The rays that scripts cast.
     """
 
-    def __init__(self, world: World, lock: Any, latest: LatestMessages, *, always: bool = False) -> None:
+    def __init__(self, world: WorldCore, lock: Any, latest: LatestMessages, *, always: bool = False) -> None:
         self._always = always
         self._links: list[tuple[int, int]] = []
         self._joint_total = 0
-        self._bodies: list[Body] = []
+        self._bodies: list[BodyCore] = []
         self._world = world
         self._world_lock = lock
         self._latest = latest
@@ -171,7 +171,7 @@ class Details:
             blocks.append(("tendons", readings.tendons(world)))
         return [(name, rows) for name, rows in blocks if len(rows)]
 
-    def _find_readings(self, bodies: list[Body]) -> None:
+    def _find_readings(self, bodies: list[BodyCore]) -> None:
         """Finds the links whose readings are always recorded: bases that move, and joints with sensors."""
         self._links = []
         self._joint_total = 0
@@ -201,7 +201,7 @@ class Details:
             self._latest.put("constraints", to_page.CONSTRAINTS(constraints=constraints))
 
 
-def _dynamics(body: Body) -> dict[str, Any]:
+def _dynamics(body: BodyCore) -> dict[str, Any]:
     links = []
     for link in range(BASE, body.joint_count):
         dynamics = body.dynamics(link)
@@ -210,7 +210,7 @@ def _dynamics(body: Body) -> dict[str, Any]:
     return to_page.DYNAMICS(dynamics=body.id, body=body.id, links=links)
 
 
-def _constraints(world: World) -> list[dict[str, Any]]:
+def _constraints(world: WorldCore) -> list[dict[str, Any]]:
     return [
         {
             "constraint": constraint.id,

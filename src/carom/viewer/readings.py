@@ -21,13 +21,14 @@ from carom.layouts.codes import (
     PathKind,
 )
 from carom.model.body_spec import BASE
+from carom.scene.named_constraints.named_constraint import forces_of
 from carom.scene.sensors.lone_source import LoneSource
+from carom.scene.sensors.shown import shown
 from carom.scene.tendons.making import tendons_of
 from carom.scene.tendons.measure import pieces
-from carom.scene.tendons.tendon import BodyTendon
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 Columns = NDArray[np.float32]
 
@@ -47,7 +48,7 @@ _MAX_CONTACTS = 5000
 _MAX_FRICTION = 10.0
 
 
-def contacts(world: World) -> Columns:
+def contacts(world: WorldCore) -> Columns:
     """The contacts of the last step.
 
     Returns:
@@ -82,7 +83,7 @@ def contacts(world: World) -> Columns:
     ).astype(np.float32)
 
 
-def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
+def links(world: WorldCore, wanted: Iterable[tuple[int, int]]) -> Columns:
     """Velocities of links, and readings of their joints' force-torque sensors.
 
     Returns:
@@ -103,7 +104,7 @@ def links(world: World, wanted: Iterable[tuple[int, int]]) -> Columns:
     return np.array(rows, dtype=np.float32).reshape(-1, LINK_COLUMNS)
 
 
-def actuators(world: World, wanted: frozenset[int] | Literal["all"]) -> Columns:
+def actuators(world: WorldCore, wanted: frozenset[int] | Literal["all"]) -> Columns:
     """Controls and forces of the actuators of some bodies.
 
     Returns:
@@ -123,7 +124,7 @@ def actuators(world: World, wanted: frozenset[int] | Literal["all"]) -> Columns:
     return np.vstack(parts).astype(np.float32) if parts else np.zeros((0, ACTUATOR_COLUMNS), np.float32)
 
 
-def sensors(world: World, wanted: Iterable[int]) -> Columns:
+def sensors(world: WorldCore, wanted: Iterable[int]) -> Columns:
     """What the sensors of some bodies show.
 
     Returns:
@@ -133,16 +134,18 @@ def sensors(world: World, wanted: Iterable[int]) -> Columns:
     rows: list[tuple[float, ...]] = []
     for number in sorted(wanted):
         body = world.bodies.get(number)
-        for sensor in () if body is None else body.sensors:
+        if body is None:
+            continue
+        for sensor in range(len(body.spec.sensors)):
             try:
-                values = np.ravel(sensor.read()).tolist()
+                values = np.ravel(shown(body, sensor)).tolist()
             except StateError:
                 continue
-            rows += [(number, sensor.index, place, value) for place, value in enumerate(values)]
+            rows += [(number, sensor, place, value) for place, value in enumerate(values)]
     return np.array(rows, dtype=np.float32).reshape(-1, SENSOR_COLUMNS)
 
 
-def tendons(world: World) -> Columns:
+def tendons(world: WorldCore) -> Columns:
     """The straight pieces of all tendons that go through sites.
 
     Returns:
@@ -153,8 +156,8 @@ def tendons(world: World) -> Columns:
     for number, body in list(world.bodies.items()):
         for tendon in tendons_of(body):
             if tendon.path[0].kind is PathKind.SITE:
-                handle = BodyTendon(tendon)
-                values = (handle.force, float(handle.limit_force > 0.0))
+                forces = forces_of(tendon, 3)
+                values = (float(forces.sum()), float(abs(forces[2]) > 0.0))
                 rows += [(number, *start, *end, *values) for start, end in pieces(source, body, tendon.path)]
     return np.array(rows, dtype=np.float32).reshape(-1, TENDON_COLUMNS)
 
@@ -162,7 +165,7 @@ def tendons(world: World) -> Columns:
 class JointReadings:
     """States and targets of joints; one of `World.observers` while torques of scripts are watched."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: WorldCore) -> None:
         self._world = world
         # Torques that scripts have applied for the last step, which has cleared them; none if not watched.
         self._applied = np.zeros(0)

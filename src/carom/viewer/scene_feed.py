@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from carom.layouts.codes import Activity
 from carom.model.body_spec import BASE
 from carom.render.appearance import Appearance, appearance_of
-from carom.scene.soft_body import SoftBody
+from carom.scene.core.soft_core import SoftCore
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.messages import encoded
 from carom.viewer.protocol import to_page
 from carom.viewer.shapes import Assets, described
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 Blocks = Sequence[tuple[str, NDArray[np.float32]]]
 
@@ -46,15 +46,15 @@ class SceneFeed:
         moved: Whether the last frame has another time, or other numbers, than the one before it.
     """
 
-    def __init__(self, world: World, lock: Any, latest: LatestMessages) -> None:
+    def __init__(self, world: WorldCore, lock: Any, latest: LatestMessages) -> None:
         self.collisions = False
         self.moved: bool = False
         self._world = world
         self._lock = lock
         self._latest = latest
         self._assets = Assets(latest)
-        self._bodies: list[Body] = []
-        self._all: list[Body] = []
+        self._bodies: list[BodyCore] = []
+        self._all: list[BodyCore] = []
         self._absent = b""
         self._arrays: object = None
         self._appearance: Appearance | None = None
@@ -154,7 +154,7 @@ class SceneFeed:
     def _describe_nodes(self) -> None:
         appearance = self._appearance
         for body in self._bodies:
-            if not isinstance(body, SoftBody) or body.world.bodies.get(body.id) is not body:
+            if not isinstance(body, SoftCore) or body.world.bodies.get(body.id) is not body:
                 continue
             shape = body.nodes.tobytes()
             if appearance is None or self._shapes.get(body.id) == shape:
@@ -207,6 +207,6 @@ class SceneFeed:
         self._looks = looks
 
 
-def _absent_trees(world: World) -> bytes:
+def _absent_trees(world: WorldCore) -> bytes:
     """For each tree whether it is absent; a script may have added bodies since."""
     return (world.arrays.state.numpy["tree_activity"][0] == _ABSENT).tobytes()

@@ -24,14 +24,15 @@ from carom.render.soft_surfaces import surface_mesh
 from carom.render.texture_files import texture_file
 from carom.render.textures import NO_TEXTURE
 from carom.scene.actuators.actuated_joint import control_range
+from carom.scene.core.soft_core import SoftCore
 from carom.scene.joint_constraints import moving_links
-from carom.scene.soft_body import SoftBody
+from carom.scene.link_dynamics import enforced_limits
 from carom.viewer.input.picking import follows_hand
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _MAX_TEXTURE_SIDE = 4096
 # Patterns of so few bytes are sent as they are, and shown at once; others as files, which browsers decode.
@@ -147,13 +148,13 @@ class Assets:
         return self._next
 
 
-def described(body: Body, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
+def described(body: BodyCore, appearance: Appearance, assets: Assets, *, collisions: bool) -> dict[str, Any]:
     """Message that describes a body, without the poses of its links; a soft body has its present shape."""
     shapes = []
     for link in range(BASE, body.joint_count):
         to_inertial = inverse(body.link_inertial_frame(link))
         for look in appearance.shapes(body, link):
-            seen = replace(look, mesh=surface_mesh(body)) if isinstance(body, SoftBody) else look
+            seen = replace(look, mesh=surface_mesh(body)) if isinstance(body, SoftCore) else look
             if not look.coloured and look.texture == NO_TEXTURE:
                 seen = replace(seen, rgba=_colour_in_turn(body, link))
             shapes.append(_shape(seen, link, to_inertial, appearance, assets))
@@ -174,7 +175,7 @@ def described(body: Body, appearance: Appearance, assets: Assets, *, collisions:
     )
 
 
-def _driven(body: Body) -> dict[str, Any]:
+def _driven(body: BodyCore) -> dict[str, Any]:
     """Actuators and sensors of a body, if it has any."""
     facts: dict[str, Any] = {}
     if body.spec.actuators:
@@ -188,7 +189,7 @@ def _driven(body: Body) -> dict[str, Any]:
     return facts
 
 
-def _colour_in_turn(body: Body, link: int) -> Rgba:
+def _colour_in_turn(body: BodyCore, link: int) -> Rgba:
     """The colour that PyBullet's window gives to a link without visual shapes.
 
     Every link that is loaded takes the next of four colours, whether it needs one or not.
@@ -197,14 +198,14 @@ def _colour_in_turn(body: Body, link: int) -> Rgba:
     return WINDOW_COLOURS[(body.links_before + link - BASE + 1) % len(WINDOW_COLOURS)]
 
 
-def _link(body: Body, link: int) -> dict[str, Any]:
+def _link(body: BodyCore, link: int) -> dict[str, Any]:
     spec = body.link_spec(link)
     frame = inverse(body.link_inertial_frame(link))
     facts: dict[str, Any] = {"name": spec.name, "position": frame.position, "orientation": frame.orientation}
     if link != BASE:
         facts |= {"joint": spec.joint_name, "kind": spec.joint_type.value, "axis": spec.joint_axis}
         facts["parent"] = spec.parent - BASE
-        lower, upper = body.joints[link].limits
+        lower, upper = enforced_limits(spec, body.dynamics(link))
         if isfinite(lower) and isfinite(upper) and lower < upper:
             facts["limits"] = (lower, upper)
         facts |= {
@@ -235,7 +236,7 @@ def _shape(
     }
 
 
-def _collisions(body: Body, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
+def _collisions(body: BodyCore, link: int, to_inertial: Pose, assets: Assets) -> Iterator[dict[str, Any]]:
     for shape in body.link_spec(link).collisions:
         levels, scale = _shared(shape.geometry, None)
         frame = compose(to_inertial, shape.frame)

@@ -12,19 +12,19 @@ from carom.scene.named_constraints.base_friction import new_base_friction
 from carom.scene.named_constraints.connect import Connect, Weld, new_connection
 from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling
 from carom.scene.named_constraints.named_constraint import yield_as
-from carom.scene.tendons.tendon import TendonCoupling
+from carom.scene.tendons.coupling import TendonCoupling
 from carom.world.file_tendons import add_tendons
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.scene.user_constraints import UserConstraint
 
 WORLD = "world"
 NamedConstraint = JointCoupling | Connect | TendonCoupling
 
 
-def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list[NamedConstraint]:
+def constrain(bodies: Sequence[BodyCore], model: CompiledModel, place: Pose) -> list[NamedConstraint]:
     """Make the constraints of a file, whose frame is at `place`; called while bodies are added."""
     made: list[NamedConstraint] = []
     joints = {link.joint_name: (body, i) for body in bodies for i, link in enumerate(body.spec.links)}
@@ -54,6 +54,6 @@ def constrain(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list
     return made
 
 
-def _put(body: Body, constraint: UserConstraint, *, enabled: bool) -> None:
+def _put(body: BodyCore, constraint: UserConstraint, *, enabled: bool) -> None:
     constraint.enabled = enabled
     body.world.add_constraint(constraint)

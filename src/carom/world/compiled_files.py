@@ -9,17 +9,18 @@ from typing import TYPE_CHECKING
 from carom.description.sensor import SensorObject
 from carom.model.body_spec import BASE
 from carom.scene.joint_terms.implicit import rest_base_spring
-from carom.scene.sensors.changes import put_sensor
+from carom.scene.sensors.changes import add_site, put_sensor
+from carom.scene.tendons.making import tendons_of
 from carom.world.file_keyframes import give_keyframes
 from carom.world.file_muscles import find_forces
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.world.scene import Scene
 
 
-def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
+def finish(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
     """Put joints where the file has them, and let links collide or not as in MuJoCo."""
     for body in bodies:
         if body.spec.base.stiffness:
@@ -37,7 +38,7 @@ def finish(bodies: Sequence[Body], model: CompiledModel) -> None:
         filters.set(a, b, enabled=True, contact=model.paired[names])
 
 
-def equip(bodies: Sequence[Body], model: CompiledModel) -> None:
+def equip(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
     """Give bodies the sites, sensors and keyframes of their file, and muscles their forces.
 
     The constraints of the file have been made.
@@ -62,22 +63,22 @@ def describe(scene: Scene, model: CompiledModel) -> None:
     scene.actuators = {it.name: of_bodies[it.name] for it in model.actuators if it.spec is not None}
 
 
-def _give_sites(places: Mapping[str, tuple[Body, int]], model: CompiledModel) -> None:
+def _give_sites(places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel) -> None:
     """Add the sites of the file to the bodies with their links; those of the world stay with the scene."""
     for site in model.sites.values():
         if site.body in places:
             body, link = places[site.body]
-            body.add_site(site.name, link, site.frame, shape=site.kind, size=site.size)
+            add_site(body, site.name, link, site.frame, site.kind, site.size)
 
 
 def _give_sensors(
-    bodies: Sequence[Body], places: Mapping[str, tuple[Body, int]], model: CompiledModel
+    bodies: Sequence[BodyCore], places: Mapping[str, tuple[BodyCore, int]], model: CompiledModel
 ) -> None:
     """Add the sensors of the file to the bodies that have what they measure."""
     owners = {
         **{(SensorObject.JOINT, link.joint_name): body for body in bodies for link in body.spec.links},
         **{(SensorObject.ACTUATOR, it.name): body for body in bodies for it in body.spec.actuators},
-        **{(SensorObject.TENDON, it.name): body for body in bodies for it in body.tendons},
+        **{(SensorObject.TENDON, it.name): body for body in bodies for it in tendons_of(body)},
         **{(SensorObject.SITE, site.name): body for body in bodies for site in body.spec.sites},
         **{
             (kind, name): body
@@ -94,7 +95,7 @@ def _give_sensors(
 
 
 def _rows_of(
-    bodies: Sequence[Body], pairs: Sequence[tuple[str, str]]
+    bodies: Sequence[BodyCore], pairs: Sequence[tuple[str, str]]
 ) -> Iterator[tuple[tuple[int, int], tuple[str, str]]]:
     """Rows of pairs of links with shapes, in order, by the names of bodies, and these names."""
     rows: dict[str, int] = {}

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from carom.native.change import Change
 from carom.render.appearance import copy_appearance
 from carom.scene.bodies import Bodies
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 # Attributes that a body computes on demand and that refer to its world.
 _COMPUTED = ("joints", "links", "actuators", "sites", "sensors")
 
+W = TypeVar("W", bound="WorldCore")
 
-def copy_world(world: World) -> World:
+
+def copy_world(world: W) -> W:
     """Copy a world; see `World.copy`."""
     other = type(world)()
     # Specifications of bodies are never changed, so copies share them.
@@ -44,7 +46,7 @@ def copy_world(world: World) -> World:
     return other
 
 
-def _copy_body(body: Body, world: World, memo: dict[int, Any]) -> Body:
+def _copy_body(body: BodyCore, world: WorldCore, memo: dict[int, Any]) -> BodyCore:
     # `copy` would pickle the handle, with its world.
     other = memo[id(body)] = object.__new__(type(body))
     other.__dict__.update({name: it for name, it in body.__dict__.items() if name not in _COMPUTED})

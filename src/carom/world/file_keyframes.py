@@ -13,10 +13,12 @@ from carom.description.keyframe import BodyKeyframe
 from carom.description.pose import Pose, Quaternion, Vector3
 from carom.description.transform import rotate
 from carom.model.body_spec import BASE
+from carom.scene.handles import present_link_frame
+from carom.scene.keyframes.changes import add_keyframe
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel, FileKeyframe
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _FREE, _BALL = "free", "spherical"
 # Numbers of a joint in `qpos` and `qvel`.
@@ -34,21 +36,22 @@ class _Part:
     velocities: dict[int, list[float]] = field(default_factory=dict)
 
 
-def give_keyframes(bodies: Sequence[Body], model: CompiledModel) -> None:
+def give_keyframes(bodies: Sequence[BodyCore], model: CompiledModel) -> None:
     """Add the keyframes of a file to its bodies, to those that can move or have actuators."""
     for state in model.keyframes.values():
         for body, part in zip(bodies, _parts(bodies, model, state), strict=True):
             controls, activations = _of_actuators(body, model, state)
             if part.positions or part.velocities or part.pose or part.linear or controls:
-                body.add_keyframe(
+                add_keyframe(
+                    body,
                     BodyKeyframe(
                         state.name, state.time, part.pose, part.linear, part.angular,
                         _in_order(part.positions), _in_order(part.velocities), controls, activations,
-                    )
+                    ),
                 )  # fmt: skip
 
 
-def _parts(bodies: Sequence[Body], model: CompiledModel, state: FileKeyframe) -> list[_Part]:
+def _parts(bodies: Sequence[BodyCore], model: CompiledModel, state: FileKeyframe) -> list[_Part]:
     places = {
         link.joint_name: (number, index)
         for number, body in enumerate(bodies)
@@ -81,27 +84,26 @@ def _unit(quaternion: Quaternion) -> Quaternion:
     return (x / size, y / size, z / size, w / size) if size > 0.0 else (0.0, 0.0, 0.0, 1.0)
 
 
-def _put_base(body: Body, part: _Part, q: list[float], v: list[float]) -> None:
+def _put_base(body: BodyCore, part: _Part, q: list[float], v: list[float]) -> None:
     """The state of a free body: that of its link frame, its angular velocity in its own axes."""
     if q:
         px, py, pz, w, x, y, z = q
         part.pose = Pose((px, py, pz), _unit((x, y, z, w)))
     if v:
         x, y, z, wx, wy, wz = v
-        turn = body.links[BASE].pose.orientation.tolist() if part.pose is None else part.pose.orientation
-        i, j, k, w = turn
-        part.linear, part.angular = (x, y, z), rotate((i, j, k, w), (wx, wy, wz))
+        pose = present_link_frame(body, BASE) if part.pose is None else part.pose
+        part.linear, part.angular = (x, y, z), rotate(pose.orientation, (wx, wy, wz))
 
 
 def _of_actuators(
-    body: Body, model: CompiledModel, state: FileKeyframe
+    body: BodyCore, model: CompiledModel, state: FileKeyframe
 ) -> tuple[tuple[float, ...] | None, tuple[float, ...] | None]:
     """Controls and activations of a body's actuators, in their order; None if it has none."""
     if not body.spec.actuators:
         return None, None
     controls = _by_name([it.name for it in model.actuators], state.controls)
     activations = _by_name([it.name for it in model.actuators if it.has_activation], state.activations)
-    names = [it.name for it in body.actuators]
+    names = [it.name for it in body.spec.actuators]
     return tuple(controls.get(name, 0.0) for name in names), tuple(
         activations.get(name, 0.0) for name in names
     )

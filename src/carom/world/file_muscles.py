@@ -16,10 +16,10 @@ from carom.scene.sensors.joints import along_actuator
 from carom.scene.sensors.lone_source import LoneSource
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def find_forces(bodies: Sequence[Body]) -> None:
+def find_forces(bodies: Sequence[BodyCore]) -> None:
     """Find the forces of muscles that are stated as accelerations, where the bodies are now.
 
     MuJoCo's rule: the force is the acceleration over the length of the vector of accelerations that a force
@@ -36,7 +36,7 @@ def find_forces(bodies: Sequence[Body]) -> None:
                 write_actuator(world_of(body).arrays.model.numpy, row, found)
 
 
-def _acceleration(body: Body, actuator: int) -> float:
+def _acceleration(body: BodyCore, actuator: int) -> float:
     """Length of the vector of accelerations of a fixed body that a unit force of an actuator causes."""
     world = world_of(body)
     state, first = world.arrays.state.numpy, body.rows.first

@@ -12,18 +12,18 @@ from carom.layouts.codes import PathKind
 from carom.model.body_spec import BASE
 from carom.scene.actuators.actuated_joint import drives_joint
 from carom.scene.named_constraints.named_constraint import yield_as
+from carom.scene.tendons.coupling import TendonCoupling
 from carom.scene.tendons.making import new_tendon, new_tendon_coupling, new_transmission
-from carom.scene.tendons.tendon import TendonCoupling
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled.model import CompiledModel, FilePart, FileTendon
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.scene.user_constraints import UserConstraint
 
 _WORLD = "world"
 
 
-def add_tendons(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> list[TendonCoupling]:
+def add_tendons(bodies: Sequence[BodyCore], model: CompiledModel, place: Pose) -> list[TendonCoupling]:
     """Make the tendons of a file, whose frame is at `place`; called while bodies are added.
 
     Returns:
@@ -52,7 +52,7 @@ def add_tendons(bodies: Sequence[Body], model: CompiledModel, place: Pose) -> li
     return made
 
 
-def new_tendon_at_rest(body: Body, spec: TendonSpec) -> UserConstraint:
+def new_tendon_at_rest(body: BodyCore, spec: TendonSpec) -> UserConstraint:
     """The constraint of a tendon; where its spring is at rest follows from where those of joints are."""
     world = body.world
     positions = world.arrays.state.numpy["position"][0]
@@ -68,11 +68,11 @@ def new_tendon_at_rest(body: Body, spec: TendonSpec) -> UserConstraint:
     return made
 
 
-def _links(body: Body) -> dict[str, int]:
+def _links(body: BodyCore) -> dict[str, int]:
     return {body.spec.link(i).name: i for i in reversed(range(BASE, len(body.spec.links)))}
 
 
-def _spec(body: Body, tendon: FileTendon, place: Pose) -> TendonSpec:
+def _spec(body: BodyCore, tendon: FileTendon, place: Pose) -> TendonSpec:
     links = _links(body)
     joints = {link.joint_name: index for index, link in enumerate(body.spec.links)}
 
@@ -103,7 +103,7 @@ def _spec(body: Body, tendon: FileTendon, place: Pose) -> TendonSpec:
     )
 
 
-def _sites(body: Body, model: CompiledModel, place: Pose) -> Callable[[str], tuple[int, Pose]]:
+def _sites(body: BodyCore, model: CompiledModel, place: Pose) -> Callable[[str], tuple[int, Pose]]:
     """Where the sites of a file are, by name: a link of a body, or the world."""
     links = _links(body)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from numpy.typing import ArrayLike
 
@@ -18,15 +18,6 @@ if TYPE_CHECKING:
 
 class Linearizing:
     """Linearisation of a world's steps."""
-
-    _kept_linearization: dict[Any, Any] | None = None
-
-    @property
-    def kept_linearization(self) -> dict[Any, Any]:
-        """What is kept for the next call of `linearize`, by its type. It refers to bodies of the world."""
-        if self._kept_linearization is None:
-            self._kept_linearization = {}
-        return self._kept_linearization
 
     @alone("lock")
     def linearize(

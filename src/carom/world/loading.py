@@ -130,7 +130,7 @@ class DescriptionLoading(BodyAdding):
         from carom.formats.reading.ignored import IgnoredList
         from carom.scene.named_constraints.connect import connections_of
         from carom.scene.named_constraints.joint_coupling import couplings_of
-        from carom.scene.tendons.tendon import tendon_couplings_of
+        from carom.scene.tendons.coupling import tendon_couplings_of
         from carom.world.scene import Scene
 
         world, bodies = self._as_world(), self.load_saved(path)

@@ -10,7 +10,7 @@ from carom.checks import Array
 from carom.errors import StateError
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 _FIRST_ROOM = 256
 
@@ -27,7 +27,7 @@ class Log:
         every: Record every n-th step.
     """
 
-    def __init__(self, world: World, names: tuple[str, ...], every: int) -> None:
+    def __init__(self, world: WorldCore, names: tuple[str, ...], every: int) -> None:
         self._world = world
         self._every = every
         self._steps = 0

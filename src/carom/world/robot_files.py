@@ -22,7 +22,7 @@ from carom.model.body_spec import BodySpec
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.scene.named_constraints.joint_coupling import JointCoupling
 
 _log = Logger("carom.world")
@@ -168,7 +168,7 @@ def has_mimics(spec: BodySpec) -> bool:
     return not spec.is_held and any(link.mimic is not None for link in spec.links)
 
 
-def couple(bodies: Sequence[Body]) -> list[JointCoupling]:
+def couple(bodies: Sequence[BodyCore]) -> list[JointCoupling]:
     """Couple the joints that mimic others, and place them; called while bodies are added."""
     from carom.scene.named_constraints.joint_coupling import JointCoupling, new_coupling, place_followers
 

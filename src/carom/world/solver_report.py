@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from carom.scene.joint_constraints import island_links
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 
-def solver_report(world: World) -> list[dict[str, float]]:
+def solver_report(world: WorldCore) -> list[dict[str, float]]:
     """Statistics of the last substep, as returned by `World.analytics`."""
     state = world.arrays.state.numpy
-    bodies: dict[int, list[Body]] = {}
+    bodies: dict[int, list[BodyCore]] = {}
     for body in world.bodies.values():
         if body.rows.tree < world.arrays.used["tree"]:
             bodies.setdefault(int(state["tree_island"][0, body.rows.tree]), []).append(body)

@@ -2,47 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from ctypes import c_double
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.checks import Array, vector
-from carom.closed import Closed
-from carom.description.pose import IDENTITY, Pose, Vector3
-from carom.engine.contact_arrays import ContactArrays
-from carom.engine.engine import Engine
+from carom.description.pose import Pose
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
-from carom.engine.quick_scene import QuickScene
-from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BodySpec
-from carom.model.builder import WorldArrays
 from carom.native.change import Change
-from carom.native.gates import alone, new_lock
-from carom.native.launch import KernelStructs
-from carom.native.tables import ArrayTable
+from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.body import Body
-from carom.scene.changes import add_bodies, add_constraint, free_base, remove_body, remove_constraint
-from carom.scene.joint_constraints import JointConstraints
-from carom.scene.observers import Observer, SubstepObserver
-from carom.scene.state_views import VIEWS, StateViews
-from carom.scene.user_constraints import UserConstraint, UserConstraints
-from carom.scene.user_data import UserData
+from carom.scene.changes import add_bodies, free_base, remove_body
+from carom.scene.core.world_core import WorldCore
+from carom.scene.state_views import VIEWS
 from carom.world.linearizing import Linearizing
 from carom.world.loading import DescriptionLoading
 from carom.world.pickling import Picklable
-from carom.world.poses import Derived
 from carom.world.recordable import Recordable
 from carom.world.shape_adding import ShapeAdding
 from carom.world.soft_loading import SoftLoading
-from carom.world.stepping import STRUCTURE, Stepping
 
 if TYPE_CHECKING:
-    from carom.queries.queries import Queries
     from carom.scene.snapshot import Shape, Snapshot
     from carom.world.log import Log
 
@@ -51,12 +36,10 @@ class World(
     DescriptionLoading,
     ShapeAdding,
     SoftLoading,
-    Stepping,
     Linearizing,
     Recordable,
     Picklable,
-    StateViews,
-    Closed,
+    WorldCore,
 ):
     """Bodies that move under gravity, motors and limits.
 
@@ -92,70 +75,17 @@ class World(
     # quick: Addresses of its data for the fast paths in the native library.
     # `position_memory` and so on are the memory of the flat arrays as flat `memoryview`s of doubles.
 
-    arrays: WorldArrays
-    contact_arrays: ContactArrays
-    constraints: JointConstraints
-    user_constraints: UserConstraints
-    user_data: UserData
-    free_ids: list[int]
-    next_id: int
-    links_loaded: int
-    engine: Engine
-    _status: memoryview[int]
-    _growths: int
+    # A base class declares these for any bodies; all that are added to a world are of this class.
+    bodies: Bodies[Body]  # pyright: ignore[reportIncompatibleVariableOverride]
+    listing: dict[int, Body]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def __init__(self, time_step: float = DEFAULT_TIME_STEP) -> None:
-        self.lock: Any = new_lock()
-        self.parameters: EngineParameters = EngineParameters(time_step=time_step)
-        self.bodies: Bodies[Body] = Bodies()
-        self.listing: dict[int, Body] = {}
-        self._clock = c_double(0.0)
-        self.observers: list[Observer] = []
-        self._substep_observers: list[SubstepObserver] = []
-        self.unspent_time: float = 0.0
-        self._viewed: ArrayTable | None = None
-        self._replacements = 0
-        self._derived: Derived = Derived()
-        self._made_for: list[int] | None = None
-        self.quick: QuickScene = QuickScene()
-        change = Change()
-        self._start_empty(change)
-        change.commit()
+        super().__init__(time_step)
         self._close(World)
 
     def __repr__(self) -> str:
         names = ", ".join(repr(body.name) for body in self.bodies.values())
         return f"<World at {self.time:.4f} s with {names or 'no bodies'}>"
-
-    def _start_empty(self, change: Change) -> None:
-        """Remove everything with a change."""
-        arrays = WorldArrays()
-        change.set_all(
-            self,
-            constraints=JointConstraints(),
-            user_constraints=UserConstraints(),
-            user_data=UserData(),
-            free_ids=[],
-            next_id=0,
-            links_loaded=0,
-            unspent_time=0.0,
-        )
-        change.refill(self.bodies, {})
-        change.refill(self.listing, {})
-        self.take_arrays(change, arrays, ContactArrays(arrays))
-
-    def take_arrays(self, change: Change, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
-        """Replace all arrays with a change, which has noted the constraints that go with them."""
-        engine = Engine(arrays, contact_arrays)
-        change.set_all(
-            self,
-            arrays=arrays,
-            contact_arrays=contact_arrays,
-            engine=engine,
-            _status=memoryview(engine.status[0]),
-            _growths=0,
-        )
-        self.change_scene(change)
 
     def __enter__(self) -> World:
         return self
@@ -232,47 +162,6 @@ class World(
         from carom.world.copying import copy_world
 
         return copy_world(self)
-
-    @alone("lock")
-    def constrain(
-        self,
-        kind: UserConstraintKind,
-        parent: Body,
-        parent_link: int,
-        child: Body | None,
-        child_link: int,
-        *,
-        axis: Vector3 = (0.0, 0.0, 0.0),
-        parent_frame: Pose = IDENTITY,
-        child_frame: Pose = IDENTITY,
-        hidden: bool = False,
-    ) -> UserConstraint:
-        """Constrain a link to another, or to the world; see `UserConstraint` for the arguments.
-
-        A hidden constraint is not among `user_constraints.all`.
-
-        Raises:
-            ValueError: One of the bodies is no longer in the world.
-        """
-        places = (parent, parent_link, child, child_link)
-        frames = (axis, parent_frame, child_frame)
-        with uninterrupted:
-            # Its number is the next one until it has been added.
-            constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
-            add_constraint(self, constraint)
-        return constraint
-
-    def add_constraint(self, constraint: UserConstraint) -> None:
-        """Add a constraint that `user_constraints.new` has made for a body of this world.
-
-        Raises:
-            ValueError: One of its bodies is no longer in the world.
-        """
-        add_constraint(self, constraint)
-
-    def remove_constraint(self, constraint: UserConstraint) -> None:
-        """Remove a user constraint."""
-        remove_constraint(self, constraint)
 
     def set_base_freedom(self, body: Body, *, free: bool) -> None:
         """Free the base of a body, or fix it in the world."""
@@ -363,131 +252,6 @@ class World(
     def gravity(self, value: Sequence[float]) -> None:
         x, y, z = vector(value, 3, "gravity").tolist()
         self.change_parameters(gravity=(x, y, z))
-
-    @alone("lock")
-    def change_parameters(self, **values: Any) -> None:
-        """Set some of `parameters` and apply them, all at once."""
-        with uninterrupted:
-            change = Change()
-            self.note_parameters(change, **values)
-            change.commit()
-            self.resume_step()
-
-    def apply_parameters(self) -> None:
-        """Apply changes of `parameters`."""
-        self.change_parameters()
-
-    def note_parameters(self, change: Change, **values: Any) -> None:
-        """Set parameters with a change, and let the next step use them."""
-        if values:
-            change.set_all(self.parameters, **values)
-        breaking, *structure = (
-            change.get(self.parameters, name) for name in ("contact_breaking_threshold", *STRUCTURE)
-        )
-        shapes = self.contact_arrays.shapes
-        if breaking != shapes.breaking_fraction or structure != self._made_for:
-            shapes.set_breaking_fraction(change, breaking)
-            self.change_scene(change)
-        else:
-            self.engine.note_parameters(change)
-            self.pause_step(change)
-
-    @alone("lock")
-    def scene_changed(self) -> None:
-        """Discard derived data: bodies, constraints or arrays have changed."""
-        change = Change()
-        self.change_scene(change)
-        change.commit()
-
-    def change_scene(self, change: Change) -> None:
-        """Discard derived data with a change of bodies, constraints or arrays, which has noted all else."""
-        self.quick.forget(change)
-        change.set_all(self, _derived=Derived(), _made_for=None)
-        change.get(self, "constraints").rows.forget(change)
-        change.get(self, "user_constraints").forget_written(change)
-        change.get(self, "engine").note_change(change)
-        state = change.get(change.get(self, "arrays"), "state")
-        replacements = change.get(state, "replacements")
-        if state is not self._viewed or replacements != self._replacements:
-            self.view(change, state)
-            change.set_all(self, _viewed=state, _replacements=replacements)
-
-    @alone("lock")
-    def constraints_changed(self) -> None:
-        """Set the prepared step aside: constraints have changed, and nothing else."""
-        change = Change()
-        self.change_constraints(change)
-        change.commit()
-
-    def change_constraints(self, change: Change) -> None:
-        """Set the prepared step aside with a change of constraints, and of nothing else."""
-        self.pause_step(change)
-        self.engine.note_constraints(change)
-
-    def change_constraint(self, constraint: UserConstraint, values: Mapping[str, Any]) -> None:
-        """Change attributes of a constraint, by name: numbers, which change nothing else."""
-        change = Change()
-        if self.user_constraints.note_values(change, constraint, values, self.contact_arrays):
-            change.commit()
-            return
-        self.pause_step(change)
-        change.commit()
-        self.user_constraints.write(self.contact_arrays, self.arrays.state)
-        self.resume_step()
-
-    def pause_step(self, change: Change) -> None:
-        """Set the prepared step aside with a change, after which it needs other numbers."""
-        derived = self._derived
-        if derived.step is not None:
-            change.set_all(derived, step=None, step_before=derived.step)
-        self.quick.pause_step(change)
-
-    def resume_step(self) -> None:
-        """Give a step that was set aside its numbers if that is all it needs; else the next step does."""
-        derived = self._derived
-        if derived.step is None and derived.step_before is not None and self.engine.is_planned:
-            self.engine.update_settings(self.parameters)
-            self.quick.resume_step()
-            derived.step = derived.step_before
-
-    def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
-        """Make room for rows of a table of this world; nothing else of the world changes."""
-        if table.lacks(needed):
-            change = Change()
-            table.grow(change, needed)
-            self.change_scene(change)
-            change.commit()
-
-    # Questions
-
-    def queries(self) -> Queries:
-        """Rays, nearest points and overlaps for the present coordinates."""
-        return self._derived.queries or self._new_queries()
-
-    @alone("lock")
-    def _new_queries(self) -> Queries:
-        if self._derived.queries is None:
-            from carom.queries.queries import Queries
-
-            self._derived.queries = Queries(
-                self.lock,
-                self.queries,
-                self._kernel_structs(),
-                self.position_memory,
-                self.link_places,
-                self.present_poses,
-                self.contact_arrays,
-                self.engine.workspace.pairs,
-                self.arrays,
-                self.engine.workspace.soft_work,
-                self.quick,
-            )
-        return self._derived.queries
-
-    def _kernel_structs(self) -> KernelStructs:
-        """Structs of the present arrays, by the names of kernel arguments."""
-        self.engine.update_settings(self.parameters)
-        return self.engine.structs()
 
     @alone("lock")
     def analytics(self) -> list[dict[str, float]]:

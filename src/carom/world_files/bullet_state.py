@@ -16,11 +16,11 @@ from carom.formats.bullet import BulletState, MultiBodyState, RigidBodyState, is
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
-from carom.scene.soft_body import SoftBody
+from carom.scene.core.soft_core import SoftCore
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 # Rows of the state arrays with their new content: positions, then velocities.
 _Rows = tuple[int, tuple[float, ...]]
@@ -41,7 +41,7 @@ def refuse_to_load(data: bytes, path: Path) -> None:
 
 
 def restore_bullet(
-    world: World, data: bytes, path: Path, *, maximal: Collection[int] = (), update_poses: bool = False
+    world: WorldCore, data: bytes, path: Path, *, maximal: Collection[int] = (), update_poses: bool = False
 ) -> None:
     """Restore the state of bodies from the content of a file that PyBullet wrote.
 
@@ -62,9 +62,9 @@ def restore_bullet(
 
 
 def _matched(
-    world: World, state: BulletState, maximal: Collection[int]
-) -> Iterator[tuple[Body, MultiBodyState | RigidBodyState]]:
-    bodies = [body for body in world.listing.values() if not isinstance(body, SoftBody)]
+    world: WorldCore, state: BulletState, maximal: Collection[int]
+) -> Iterator[tuple[BodyCore, MultiBodyState | RigidBodyState]]:
+    bodies = [body for body in world.listing.values() if not isinstance(body, SoftCore)]
     reduced = [body for body in bodies if body.id not in maximal]
     others = sorted((body for body in bodies if body.id in maximal), key=lambda body: body.id)
     if len(reduced) != len(state.multi_bodies):
@@ -87,7 +87,7 @@ def _matched(
     yield from zip(others, state.rigid_bodies, strict=False)
 
 
-def _rows(body: Body, saved: MultiBodyState | RigidBodyState) -> Iterator[tuple[_Rows, _Rows]]:
+def _rows(body: BodyCore, saved: MultiBodyState | RigidBodyState) -> Iterator[tuple[_Rows, _Rows]]:
     yield (
         (body.first_position, (*saved.position, *saved.orientation)),
         (body.first_velocity, (*saved.angular, *saved.linear)),
@@ -110,7 +110,7 @@ def _rows(body: Body, saved: MultiBodyState | RigidBodyState) -> Iterator[tuple[
 
 
 @alone("lock")
-def _put(world: World, rows: list[tuple[_Rows, _Rows]], update_poses: bool) -> None:
+def _put(world: WorldCore, rows: list[tuple[_Rows, _Rows]], update_poses: bool) -> None:
     with uninterrupted:
         change = Change()
         positions, velocities = world.position, world.velocity

@@ -14,8 +14,8 @@ from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_ro
 from carom.world_files.records import Reader
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 _FIELDS = {"bodies", "time", "unspent_time", "state", "contacts", "user_impulses"}
 _ARRAYS = ("state", "contacts")
@@ -30,7 +30,7 @@ _OF_SENSORS = ("dof_joint_impulse", "dof_limit_impulse")
 _OF_NODES = ("node_position", "node_velocity", "node_force")
 
 
-def state_of(world: World) -> dict[str, Any]:
+def state_of(world: WorldCore) -> dict[str, Any]:
     """The present state of a world, as a value for `Writer.write`."""
     snapshot = take(world, Shape(layout(world)))
     return {
@@ -143,7 +143,7 @@ def _arrays(reader: Reader, part: str, data: Any) -> dict[str, np.ndarray]:
     return arrays
 
 
-def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: bool) -> None:
+def write_state(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapshot, *, whole: bool) -> None:
     """Set bodies that were just loaded, in the order they were saved, to their state in a snapshot.
 
     They are the last of the world. If they are the `whole` of it, contacts, time and impulses of constraints
@@ -170,13 +170,13 @@ def write_state(world: World, bodies: list[Body], snapshot: Snapshot, *, whole: 
     _return_to(world, present, others)
 
 
-def _return_to(world: World, present: Layout, snapshot: Snapshot) -> None:
+def _return_to(world: WorldCore, present: Layout, snapshot: Snapshot) -> None:
     change = Change()
     return_to(change, world, Shape(present), snapshot)
     change.commit()
 
 
-def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> None:
+def check_arrays(world: WorldCore, bodies: Sequence[BodyCore], snapshot: Snapshot) -> None:
     """Raise `ValueError` unless the arrays of a snapshot from a file fit its bodies, in its order."""
     saved = snapshot.layout.bodies
     counts = snapshot.contacts["count_contacts"]
@@ -213,7 +213,7 @@ def check_arrays(world: World, bodies: Sequence[Body], snapshot: Snapshot) -> No
     _check_overlaps(world, snapshot)
 
 
-def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
+def _check_turns(bodies: Sequence[BodyCore], snapshot: Snapshot) -> None:
     """Check that orientations of links, bases and spherical joints are quaternions of about length 1."""
     turns = [snapshot.state["link_pose"][:, 3:]]
     first = 0
@@ -231,7 +231,7 @@ def _check_turns(bodies: Sequence[Body], snapshot: Snapshot) -> None:
         raise ValueError("a quaternion does not have length 1")
 
 
-def _check_contacts(world: World, snapshot: Snapshot) -> None:
+def _check_contacts(world: WorldCore, snapshot: Snapshot) -> None:
     """Check that contacts refer to shapes that exist, and to their links."""
     shapes, links = np.hsplit(snapshot.contacts["contact_shapes"], 2)
     if not shapes.size:
@@ -242,7 +242,7 @@ def _check_contacts(world: World, snapshot: Snapshot) -> None:
         raise ValueError("a contact refers to a link that does not have its shape")
 
 
-def _check_overlaps(world: World, snapshot: Snapshot) -> None:
+def _check_overlaps(world: WorldCore, snapshot: Snapshot) -> None:
     """Check that overlaps refer to shapes that exist, are sorted, and have one place each in both orders."""
     shape_count = world.contact_arrays.shapes.shape_count
     if not 0 <= snapshot.contacts["count_contacts"][KNOWN] <= shape_count:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from math import inf
@@ -35,12 +35,12 @@ from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.actuators.actuated_joint import actuated_joint
 from carom.scene.changes import append_now, free_base
+from carom.scene.core.soft_core import SoftCore
 from carom.scene.draft import draft_of
 from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.joint_constraints import JointConstraint
 from carom.scene.link_dynamics import LinkDynamics
 from carom.scene.snapshot import check_same, layout
-from carom.scene.soft_body import SoftBody
 from carom.scene.user_constraints import UserConstraint
 from carom.scene.user_data import UserDatum
 from carom.version import __version__
@@ -54,6 +54,8 @@ from carom.writing import write_whole
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
     from carom.world.world import World
 
 _NONE = -1
@@ -64,19 +66,19 @@ _MEANINGLESS = (ValueError, TypeError, LookupError, ArithmeticError, RecursionEr
 class Part(Protocol):
     """Interface of a package above the engine that keeps data in world files."""
 
-    def save(self, world: World, writer: Writer) -> Any:
+    def save(self, world: WorldCore, writer: Writer) -> Any:
         """The data for the file, in the form that `Writer.write` returns."""
         ...
 
-    def begin(self, world: World, draft: World) -> None:
+    def begin(self, world: WorldCore, draft: WorldCore) -> None:
         """Give the draft of a world what the world has."""
         ...
 
-    def load(self, bodies: list[Body], reader: Reader, data: Any) -> None:
+    def load(self, bodies: Sequence[BodyCore], reader: Reader, data: Any) -> None:
         """Apply the saved data to bodies that have just been loaded into the draft of a world."""
         ...
 
-    def publish(self, change: Change, world: World, draft: World) -> None:
+    def publish(self, change: Change, world: WorldCore, draft: WorldCore) -> None:
         """Give a world what its draft has, with a change."""
         ...
 
@@ -195,7 +197,7 @@ class SavedWorld:
         bodies: The bodies in the order of their rows.
         free_ids: Numbers of removed bodies, to be reused; the next one is the last.
         next_id: The lowest number that no body has had.
-        objects: Body and link, the base being 0, in the order of Bullet's list of objects.
+        objects: BodyCore and link, the base being 0, in the order of Bullet's list of objects.
         constraints: All constraints in the order of the solver's list.
         ties: The user constraints.
         next_tie: The number of the next user constraint.
@@ -221,7 +223,7 @@ class SavedWorld:
     links_loaded: int | None = None
 
 
-def save_world(world: World, path: Path, parts: Parts) -> None:
+def save_world(world: WorldCore, path: Path, parts: Parts) -> None:
     """Write a world to a file, as `World.save` does."""
     writer = Writer()
     document = {
@@ -234,7 +236,7 @@ def save_world(world: World, path: Path, parts: Parts) -> None:
 
 
 @alone("lock")
-def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
+def load_world(world: WorldCore, path: Path, parts: Parts) -> list[Body]:
     """Add the bodies of a file to a world, as `World.load` does."""
     data, _ = read_bounded(path, MAX_BYTES)
     refuse_to_load(data, path)
@@ -254,7 +256,7 @@ def load_world(world: World, path: Path, parts: Parts) -> list[Body]:
 
 
 def _load(
-    world: World, document: dict[str, Any], reader: Reader, saved: SavedWorld, parts: Parts
+    world: WorldCore, document: dict[str, Any], reader: Reader, saved: SavedWorld, parts: Parts
 ) -> list[Body]:
     """Add the bodies of a file to the draft of a world."""
     state = read_state(reader, document.get("state"))
@@ -314,7 +316,7 @@ def _read(data: bytes, path: Path) -> tuple[dict[str, Any], Reader, SavedWorld]:
     return document, reader, saved
 
 
-def _saved(world: World) -> SavedWorld:
+def _saved(world: WorldCore) -> SavedWorld:
     bodies = list(world.bodies.values())
     specs = list({id(body.spec): body.spec for body in bodies}.values())
     places = {id(spec): place for place, spec in enumerate(specs)}
@@ -349,19 +351,19 @@ def _saved(world: World) -> SavedWorld:
                 anchor.late_force,
             )
             for body in bodies
-            if isinstance(body, SoftBody)
+            if isinstance(body, SoftCore)
             for anchor in body.anchors
         ],
         links_loaded=world.links_loaded,
     )
 
 
-def _holder(world: World, anchor: Anchor) -> int:
+def _holder(world: WorldCore, anchor: Anchor) -> int:
     """The number of the body that holds a node; -1 for the world."""
     return next((body.id for body in world.bodies.values() if body.rows is anchor.body), _NONE)
 
 
-def _saved_body(body: Body, spec: int) -> SavedBody:
+def _saved_body(body: BodyCore, spec: int) -> SavedBody:
     model = body.world.arrays.model.numpy
     shapes = body.world.contact_arrays.shapes.table.numpy
     tree, links = body.rows.tree, slice(body.first_link, body.first_link + 1 + body.joint_count)
@@ -396,7 +398,7 @@ def _saved_tie(tie: UserConstraint) -> SavedTie:
     return SavedTie(**values)
 
 
-def _append(world: World, saved: SavedWorld, alone: bool) -> list[Body]:
+def _append(world: WorldCore, saved: SavedWorld, alone: bool) -> list[Body]:
     """Add the bodies, constraints, filters and texts, without appearance and state."""
     bodies: dict[int, Body] = {}
     for record in saved.bodies:
@@ -425,12 +427,12 @@ def _index(number: int, items: list[Any]) -> int:
     return number
 
 
-def _check_link(body: Body, link: int) -> None:
+def _check_link(body: BodyCore, link: int) -> None:
     if not BASE <= link < body.joint_count:
         raise ValueError(f"body {body.id} has no link {link}")
 
 
-def _give_dynamics(body: Body, record: SavedBody) -> None:
+def _give_dynamics(body: BodyCore, record: SavedBody) -> None:
     count = 1 + body.joint_count
     if not len(record.links) == len(record.groups) == len(record.masks) == len(record.sensors) + 1 == count:
         raise ValueError(f"body {record.id} has {count} links, but a list of another length")
@@ -459,7 +461,7 @@ def _give_dynamics(body: Body, record: SavedBody) -> None:
 
 
 def _make_ties(
-    world: World, saved: SavedWorld, bodies: dict[int, Body], alone: bool
+    world: WorldCore, saved: SavedWorld, bodies: Mapping[int, BodyCore], alone: bool
 ) -> dict[int, UserConstraint]:
     ties = {}
     for record in saved.ties:
@@ -483,7 +485,7 @@ def _make_ties(
     return ties
 
 
-def _check_path(body: Body, record: SavedTie) -> None:
+def _check_path(body: BodyCore, record: SavedTie) -> None:
     """Raise `ValueError` unless the path of a constraint is one, and its actuator exists."""
     if record.kind < UserConstraintKind.TENDON or record.kind is UserConstraintKind.BASE_FRICTION:
         return
@@ -515,10 +517,10 @@ def _check_path(body: Body, record: SavedTie) -> None:
         _index(record.actuator, list(body.spec.actuators))
 
 
-def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alone: bool) -> None:
+def _make_anchors(world: WorldCore, saved: SavedWorld, bodies: Mapping[int, BodyCore], alone: bool) -> None:
     for record in saved.anchors:
         soft, body = bodies[record.soft], None if record.body == _NONE else bodies[record.body]
-        if not isinstance(soft, SoftBody) or not 0 <= record.node < soft.rows.count["node"]:
+        if not isinstance(soft, SoftCore) or not 0 <= record.node < soft.rows.count["node"]:
             raise ValueError(f"body {record.soft} has no node {record.node}")
         if body is not None and (body.spec.soft is not None or not BASE <= record.link < body.joint_count):
             raise ValueError(f"body {body.id} has no link {record.link} to which a node could be anchored")
@@ -536,7 +538,7 @@ def _make_anchors(world: World, saved: SavedWorld, bodies: dict[int, Body], alon
 
 
 def _order_constraints(
-    world: World, saved: SavedWorld, bodies: dict[int, Body], ties: dict[int, UserConstraint]
+    world: WorldCore, saved: SavedWorld, bodies: Mapping[int, BodyCore], ties: dict[int, UserConstraint]
 ) -> None:
     """Restore the order of constraints and of objects, from which the solver's order follows."""
     ours = {id(body) for body in bodies.values()}
@@ -565,7 +567,7 @@ def _order_constraints(
     tags.reorder([*others, *objects])
 
 
-def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bool:
+def _fits(record: SavedConstraint, body: BodyCore, tie: UserConstraint | None) -> bool:
     """Whether the kind of a constraint is one that its joint, or its user constraint, can have."""
     if tie is not None:
         kind_and_place = (ConstraintKind.USER, tie.parent, tie.parent_link)
@@ -578,7 +580,7 @@ def _fits(record: SavedConstraint, body: Body, tie: UserConstraint | None) -> bo
     return record.kind in (MOTOR_KIND.get(joint), LIMIT_KIND.get(joint), friction)
 
 
-def _set_filters(world: World, saved: SavedWorld, bodies: dict[int, Body]) -> None:
+def _set_filters(world: WorldCore, saved: SavedWorld, bodies: Mapping[int, BodyCore]) -> None:
     for it in saved.filters:
         rows = []
         for body, link in ((bodies[it.body_a], it.link_a), (bodies[it.body_b], it.link_b)):

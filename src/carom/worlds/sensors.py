@@ -11,6 +11,7 @@ from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
 from carom.native.gates import alone
 from carom.scene.body import Body
+from carom.scene.core.body_core import BodyCore
 from carom.scene.sensors.frames import frame_of, placement
 from carom.scene.sensors.reading import StepWatch, forget, reading, remembered
 from carom.scene.sensors.source import Source
@@ -35,7 +36,7 @@ class BatchSource(Source):
         )
         self._finders: dict[int, PoseFinder] = {}
         self._casters: dict[int, RayCaster] = {}
-        self.remembered: list[tuple[Body, int]] = remembered(list(scene.bodies.values()))
+        self.remembered: list[tuple[BodyCore, int]] = remembered(list(scene.bodies.values()))
 
     @property
     def engine(self) -> Engine:
@@ -57,11 +58,11 @@ class BatchSource(Source):
         """See `Source`."""
         return self.own_seeds.view(np.uint64)
 
-    def poses(self, body: Body) -> Array:
+    def poses(self, body: BodyCore) -> Array:
         """See `Source`."""
         return np.asarray(self._finder(body).poses())
 
-    def velocities(self, body: Body) -> Array:
+    def velocities(self, body: BodyCore) -> Array:
         """See `Source`."""
         return np.asarray(self._finder(body).velocities())
 
@@ -79,11 +80,11 @@ class BatchSource(Source):
         """Begin to measure in a step, if some sensor has a memory."""
         return StepWatch(self, self.remembered) if self.remembered else None
 
-    def forget(self, body: Body, worlds: np.ndarray) -> None:
+    def forget(self, body: BodyCore, worlds: np.ndarray) -> None:
         """Empty the memories of a body's sensors in some worlds."""
         forget(self, body, worlds)
 
-    def _finder(self, body: Body) -> PoseFinder:
+    def _finder(self, body: BodyCore) -> PoseFinder:
         if body.id not in self._finders:
             self._finders[body.id] = PoseFinder(self._engine, body.rows.tree)
         return self._finders[body.id]

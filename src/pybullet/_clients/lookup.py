@@ -10,6 +10,7 @@ from pybullet._clients.clients import Client, client_of
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from pybullet._bodies.body_access import BodyAccess
 
 BASE = -1
@@ -49,7 +50,7 @@ def body_of(client: Client, body_id: Any, problem: str) -> Body:
     return body
 
 
-def link_of(body: Body, link_index: Any, name: str, problem: str) -> int:
+def link_of(body: BodyCore, link_index: Any, name: str, problem: str) -> int:
     """The index of a link, -1 for the base; raises `pybullet.error` with `problem` if there is none."""
     link = integer(link_index, name)
     if not BASE <= link < body.joint_count:

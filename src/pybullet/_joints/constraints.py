@@ -210,7 +210,7 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
     number = integer(userConstraintUniqueId, "userConstraintUniqueId")
     constraint = client.world.user_constraints.get(number)
     if number in client.world.contact_arrays.soft.anchors:
-        from carom.scene.soft_anchors import remove_anchor
+        from carom.scene.core.soft_core import remove_anchor
 
         with client.lock:
             remove_anchor(client.world, number)

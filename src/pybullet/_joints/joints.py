@@ -31,7 +31,8 @@ from pybullet._clients.lookup import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from carom.scene.body import Body, JointReset
+    from carom.scene.body import Body
+    from carom.scene.core.body_core import JointReset
     from pybullet._bodies.body_access import JointState, MultiDofState
     from pybullet._joints.joint_info import JointInfo
 

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from carom.errors import DescriptionError
 from carom.layouts.codes import DRIVEN, ActivationDynamics
+from carom.scene.link_dynamics import enforced_limits
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 def drives_joint(spec: ActuatorSpec) -> bool:
@@ -18,7 +19,7 @@ def drives_joint(spec: ActuatorSpec) -> bool:
     return not spec.tendon and not spec.site
 
 
-def control_range(body: Body, spec: ActuatorSpec) -> tuple[float, float]:
+def control_range(body: BodyCore, spec: ActuatorSpec) -> tuple[float, float]:
     """The controls that an actuator is usually given, for sliders and action spaces.
 
     They are those within its bounds if it has any, the lengths that the limits of its joint allow if it is a
@@ -29,13 +30,18 @@ def control_range(body: Body, spec: ActuatorSpec) -> tuple[float, float]:
         return lower, upper
     is_servo = spec.gain[0] != 0.0 and spec.gain[0] == -spec.bias[1]
     if is_servo and spec.joint and spec.dynamics is not ActivationDynamics.INTEGRATOR:
-        ends = [spec.gear * limit for limit in body.joints[spec.joint].limits]
+        ends = [spec.gear * limit for limit in _limits(body, spec.joint)]
         if all(map(isfinite, ends)) and ends[0] != ends[1]:
             return min(ends), max(ends)
     return -1.0, 1.0
 
 
-def actuated_joint(body: Body, spec: ActuatorSpec) -> int:
+def _limits(body: BodyCore, name: str) -> tuple[float, float]:
+    joint = next(joint for joint, link in enumerate(body.spec.links) if link.joint_name == name)
+    return enforced_limits(body.spec.links[joint], body.dynamics(joint))
+
+
+def actuated_joint(body: BodyCore, spec: ActuatorSpec) -> int:
     """Index of the joint of an actuator.
 
     Raises:

@@ -17,11 +17,11 @@ from carom.scene.joint_constraints import JointConstraint
 from carom.scene.tendons.making import new_transmission
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 @alone("world.lock")
-def add_actuator(body: Body, name: str, actuator: Actuator) -> None:
+def add_actuator(body: BodyCore, name: str, actuator: Actuator) -> None:
     """Add an actuator to a body, as `Body.add_actuator` does."""
     world, spec = world_of(body), actuator.spec(name)
     spec.check()

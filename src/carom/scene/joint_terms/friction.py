@@ -10,10 +10,10 @@ from carom.native.gates import alone
 from carom.scene.joint_constraints import JointConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def friction_of(body: Body, joint: int) -> JointConstraint | None:
+def friction_of(body: BodyCore, joint: int) -> JointConstraint | None:
     """The friction of a joint, if it ever had some."""
     for constraint in body.world.constraints.all:
         if (
@@ -26,7 +26,7 @@ def friction_of(body: Body, joint: int) -> JointConstraint | None:
 
 
 @alone("world.lock")
-def set_friction(body: Body, joint: int, friction: float) -> None:
+def set_friction(body: BodyCore, joint: int, friction: float) -> None:
     """Set the friction of a joint [N m or N]; of a spherical one, that about each axis of the link.
 
     Raises:

@@ -14,7 +14,7 @@ from carom.native.change import Change
 if TYPE_CHECKING:
     import numpy as np
 
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.scene.link_dynamics import LinkDynamics
 
 SPRING_REFERENCE = "joint_spring_reference"
@@ -23,7 +23,7 @@ OF_DOFS = {"joint_armature": "dof_armature", "joint_stiffness": "dof_stiffness"}
 TERMS = ("joint_damping", *OF_DOFS, SPRING_REFERENCE)
 
 
-def checked_terms(body: Body, joint: int, changes: Mapping[str, Any]) -> dict[str, Any]:
+def checked_terms(body: BodyCore, joint: int, changes: Mapping[str, Any]) -> dict[str, Any]:
     """The terms among the changes of a joint's dynamics.
 
     Raises:
@@ -38,7 +38,7 @@ def checked_terms(body: Body, joint: int, changes: Mapping[str, Any]) -> dict[st
     return terms
 
 
-def _reference(body: Body, joint: int, value: Any) -> tuple[float, ...]:
+def _reference(body: BodyCore, joint: int, value: Any) -> tuple[float, ...]:
     numbers = tuple(float(number) for number in (value if hasattr(value, "__len__") else (value,)))
     count = body.position_count[joint]
     if len(numbers) != count:
@@ -52,7 +52,7 @@ def _reference(body: Body, joint: int, value: Any) -> tuple[float, ...]:
     return numbers
 
 
-def note_terms(change: Change, body: Body, joint: int, terms: Mapping[str, Any]) -> None:
+def note_terms(change: Change, body: BodyCore, joint: int, terms: Mapping[str, Any]) -> None:
     """Set terms that were checked, with a change."""
     dynamics = body.dynamics(joint)
     after = dynamics.copy()
@@ -64,12 +64,12 @@ def note_terms(change: Change, body: Body, joint: int, terms: Mapping[str, Any])
         change.set(body, "derived", {})
 
 
-def note_all_terms(change: Change, body: Body, joint: int, dynamics: LinkDynamics) -> None:
+def note_all_terms(change: Change, body: BodyCore, joint: int, dynamics: LinkDynamics) -> None:
     """Write the terms in the dynamics that a joint will have to the engine, with a change."""
     _write_terms(change.arrays(body.world.arrays.model.numpy), body, joint, dynamics)
 
 
-def _write_terms(model: Mapping[str, np.ndarray], body: Body, joint: int, dynamics: LinkDynamics) -> None:
+def _write_terms(model: Mapping[str, np.ndarray], body: BodyCore, joint: int, dynamics: LinkDynamics) -> None:
     """Write the terms of a joint to the arrays of the model; `dynamics` are those it has then."""
     first, count = body.velocity_index[joint], body.velocity_count[joint]
     dofs = slice(first, first + count)
@@ -86,7 +86,7 @@ def _write_terms(model: Mapping[str, np.ndarray], body: Body, joint: int, dynami
     )
 
 
-def rest_base_spring(body: Body) -> None:
+def rest_base_spring(body: BodyCore) -> None:
     """Let the spring of a free base be at rest at its present pose."""
     arrays, first = body.world.arrays, body.rows.first["position"]
     rest = arrays.state.numpy["position"][0, first : first + BASE_POSITIONS].tolist()
@@ -94,7 +94,7 @@ def rest_base_spring(body: Body) -> None:
     arrays.model.numpy["position_spring"][:, first : first + BASE_POSITIONS] = rest
 
 
-def body_term_check(body: Body) -> Any:
+def body_term_check(body: BodyCore) -> Any:
     """A function that tells whether a joint of the body has terms that are implicit in velocity."""
     implicit = not body.spec.is_held
 

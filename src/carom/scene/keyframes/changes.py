@@ -14,11 +14,11 @@ from carom.scene.handles import world_of
 from carom.scene.keyframes.state import captured, changes, check_keyframe, keyframe_of
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 @alone("world.lock")
-def add_keyframe(body: Body, keyframe: BodyKeyframe | str) -> None:
+def add_keyframe(body: BodyCore, keyframe: BodyKeyframe | str) -> None:
     """Add a keyframe to a body, as `Body.add_keyframe` does."""
     world = world_of(body)
     if isinstance(keyframe, str):
@@ -30,7 +30,7 @@ def add_keyframe(body: Body, keyframe: BodyKeyframe | str) -> None:
     body.spec = replace(body.spec, keyframes=(*body.spec.keyframes, keyframe))
 
 
-def reset(bodies: Sequence[Body], name: str, *, with_time: bool) -> None:
+def reset(bodies: Sequence[BodyCore], name: str, *, with_time: bool) -> None:
     """Reset bodies of a world to their keyframes of a name, and if asked for its time, all at once."""
     world = world_of(bodies[0])
     with world.lock:

@@ -13,7 +13,7 @@ from carom.description.transform import compose, inverse
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _QUATERNION = 4
 
@@ -32,7 +32,7 @@ class Change(NamedTuple):
     values: Array
 
 
-def keyframe_of(body: Body, name: str) -> BodyKeyframe:
+def keyframe_of(body: BodyCore, name: str) -> BodyKeyframe:
     """A keyframe of a body by name.
 
     Raises:
@@ -45,7 +45,7 @@ def keyframe_of(body: Body, name: str) -> BodyKeyframe:
     raise KeyError(f"body {body.name!r} has no keyframe {name!r}; it has {known}")
 
 
-def changes(body: Body, keyframe: BodyKeyframe) -> list[Change]:
+def changes(body: BodyCore, keyframe: BodyKeyframe) -> list[Change]:
     """What a reset of a body to a keyframe writes."""
     found: list[Change] = []
     first = body.first_position
@@ -75,7 +75,7 @@ def changes(body: Body, keyframe: BodyKeyframe) -> list[Change]:
     return found
 
 
-def _velocities(body: Body, keyframe: BodyKeyframe) -> Change:
+def _velocities(body: BodyCore, keyframe: BodyKeyframe) -> Change:
     """Velocities of the base's centre of mass and of the joints."""
     angular = np.array(keyframe.angular_velocity or (0.0, 0.0, 0.0))
     linear = np.array(keyframe.linear_velocity or (0.0, 0.0, 0.0))
@@ -88,7 +88,7 @@ def _velocities(body: Body, keyframe: BodyKeyframe) -> Change:
     return Change("dof_velocity", rows, np.array([*angular, *linear, *joints]))
 
 
-def captured(body: Body, name: str, time: float) -> BodyKeyframe:
+def captured(body: BodyCore, name: str, time: float) -> BodyKeyframe:
     """The present state of a body as a keyframe."""
     state = {field: array[0] for field, array in body.world.arrays.state.numpy.items()}
     first = body.first_position
@@ -112,7 +112,7 @@ def captured(body: Body, name: str, time: float) -> BodyKeyframe:
     )
 
 
-def check_keyframe(body: Body, keyframe: BodyKeyframe) -> None:
+def check_keyframe(body: BodyCore, keyframe: BodyKeyframe) -> None:
     """Raise `DescriptionError` unless a keyframe fits a body."""
     actuators = len(body.spec.actuators)
     keyframe.check(sum(body.position_count), sum(body.velocity_count), actuators)

@@ -12,10 +12,10 @@ from carom.scene.named_constraints.named_constraint import yield_as
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def new_base_friction(body: Body, friction: float, compliance: Compliance) -> UserConstraint:
+def new_base_friction(body: BodyCore, friction: float, compliance: Compliance) -> UserConstraint:
     """The friction of a free body whose base has the frame of its free joint, to be put into its world.
 
     Args:

@@ -13,13 +13,15 @@ from carom.layouts.codes import UserConstraintKind
 from carom.native.gates import alone
 from carom.native.products import dots, length
 from carom.native.trigonometry import atan2
+from carom.scene.handles import present_inertial_frame
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
+from carom.scene.named_constraints.owners import handle_of
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
     from carom.scene.link import Link
-    from carom.world.world import World
 
 
 class Connect(NamedConstraint):
@@ -35,7 +37,7 @@ class Connect(NamedConstraint):
     @property
     def first(self) -> Link:
         """The first link."""
-        return self._constraint.parent.links[self._constraint.parent_link]
+        return handle_of(self._constraint.parent).links[self._constraint.parent_link]
 
     @property
     def second(self) -> Link | None:
@@ -43,7 +45,7 @@ class Connect(NamedConstraint):
         return (
             None
             if self._constraint.child is None
-            else self._constraint.child.links[self._constraint.child_link]
+            else handle_of(self._constraint.child).links[self._constraint.child_link]
         )
 
     @property
@@ -61,10 +63,10 @@ class Connect(NamedConstraint):
     def _frames(self) -> tuple[Pose, Pose]:
         """World poses of the frames that coincide where it holds."""
         it = self._constraint
-        first = compose(_centre_frame(it.parent, it.parent_link), it.parent_frame)
+        first = compose(present_inertial_frame(it.parent, it.parent_link), it.parent_frame)
         if it.child is None:
             return first, it.child_frame
-        return first, compose(_centre_frame(it.child, it.child_link), it.child_frame)
+        return first, compose(present_inertial_frame(it.child, it.child_link), it.child_frame)
 
 
 class Weld(Connect):
@@ -86,18 +88,10 @@ class Weld(Connect):
         return dots(np.array(rotation_matrix(first.orientation)), self._forces(6)[3:])
 
 
-def _centre_frame(body: Body, link: int) -> Pose:
-    """World pose of a link's inertial frame."""
-    pose = body.links[link].inertial_pose
-    x, y, z = (float(value) for value in pose.position)
-    i, j, k, w = (float(value) for value in pose.orientation)
-    return Pose((x, y, z), (i, j, k, w))
-
-
 def new_connection(
     name: str,
-    first: tuple[Body, int, Pose],
-    second: tuple[Body, int, Pose] | None,
+    first: tuple[BodyCore, int, Pose],
+    second: tuple[BodyCore, int, Pose] | None,
     fixed_frame: Pose = IDENTITY,
     *,
     is_weld: bool,
@@ -124,12 +118,12 @@ def new_connection(
     return constraint
 
 
-def _from_centre(body: Body, link: int, frame: Pose) -> Pose:
+def _from_centre(body: BodyCore, link: int, frame: Pose) -> Pose:
     """A frame in a link's frame as one in its inertial frame."""
     return compose(inverse(body.link_inertial_frame(link)), frame)
 
 
-def connections_of(world: World, bodies: Sequence[Body]) -> list[Connect]:
+def connections_of(world: WorldCore, bodies: Sequence[BodyCore]) -> list[Connect]:
     """The named connections of some bodies of a world."""
     kinds = {UserConstraintKind.FIXED: Weld, UserConstraintKind.POINT_TO_POINT: Connect}
     return [

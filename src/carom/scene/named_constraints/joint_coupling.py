@@ -9,12 +9,13 @@ from carom.description.pose import IDENTITY
 from carom.layouts.codes import UserConstraintKind
 from carom.native.gates import alone
 from carom.scene.named_constraints.named_constraint import UNBOUNDED, NamedConstraint, constraints_of
+from carom.scene.named_constraints.owners import handle_of
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
     from carom.scene.joint import Joint
-    from carom.world.world import World
 
 _SINGLE_DOF = 1
 
@@ -37,7 +38,7 @@ class JointCoupling(NamedConstraint):
     @property
     def follower(self) -> Joint:
         """The joint that follows."""
-        return self._constraint.parent.joints[self._constraint.parent_link]
+        return handle_of(self._constraint.parent).joints[self._constraint.parent_link]
 
     @property
     def leader(self) -> Joint | None:
@@ -45,7 +46,7 @@ class JointCoupling(NamedConstraint):
         return (
             None
             if self._constraint.child is None
-            else self._constraint.child.joints[self._constraint.child_link]
+            else handle_of(self._constraint.child).joints[self._constraint.child_link]
         )
 
     @property
@@ -86,12 +87,12 @@ class JointCoupling(NamedConstraint):
         return float(self._forces(1)[0])
 
 
-def couplings_of(world: World, bodies: Sequence[Body]) -> list[JointCoupling]:
+def couplings_of(world: WorldCore, bodies: Sequence[BodyCore]) -> list[JointCoupling]:
     """The couplings of some bodies of a world."""
     return [JointCoupling(each) for each in constraints_of(world, bodies, (UserConstraintKind.COUPLING,))]
 
 
-def place_followers(body: Body, joint: int) -> None:
+def place_followers(body: BodyCore, joint: int) -> None:
     """Place the joints of a body that follow one of its joints, directly or through others."""
     couplings = [coupling for coupling in couplings_of(body.world, [body]) if coupling.enabled]
     placed, pending = {joint}, [joint]
@@ -107,12 +108,12 @@ def place_followers(body: Body, joint: int) -> None:
 
 
 def new_coupling(
-    body: Body,
+    body: BodyCore,
     follower: int,
     leader: int | None,
     coefficients: tuple[float, float, float, float, float],
     name: str,
-    other: Body | None = None,
+    other: BodyCore | None = None,
 ) -> UserConstraint:
     """The constraint between two joints, to be put into their world; None for no leader.
 

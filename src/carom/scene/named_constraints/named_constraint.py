@@ -14,8 +14,8 @@ from carom.native.gates import alone
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 UNBOUNDED = 1e30
 """Greatest impulse of each row of a named constraint per substep [N s or N m s]; no solver gets there."""
@@ -44,14 +44,18 @@ class NamedConstraint:
         if self._constraint.enabled != bool(value):
             change_constraint(self._constraint, enabled=bool(value))
 
-    @alone("_constraint.parent.world.lock")
     def _forces(self, rows: int) -> np.ndarray:
-        """Impulse of each row of the last substep per its duration [N or N m]; 0 while disabled."""
-        world, result = self._constraint.parent.world, np.zeros(rows)
-        if self.enabled:
-            impulses = world.user_constraints.impulses(self._constraint, world.arrays.state)
-            result[: len(impulses)] = impulses
-        return result / (world.parameters.time_step / max(1, world.parameters.substeps))
+        return forces_of(self._constraint, rows)
+
+
+@alone("parent.world.lock")
+def forces_of(constraint: UserConstraint, rows: int) -> np.ndarray:
+    """Impulse of each row of the last substep per its duration [N or N m]; 0 while disabled."""
+    world, result = constraint.parent.world, np.zeros(rows)
+    if constraint.enabled:
+        impulses = world.user_constraints.impulses(constraint, world.arrays.state)
+        result[: len(impulses)] = impulses
+    return result / (world.parameters.time_step / max(1, world.parameters.substeps))
 
 
 @alone("parent.world.lock")
@@ -70,7 +74,7 @@ def yield_as(constraint: UserConstraint, compliance: Compliance) -> None:
 
 
 def constraints_of(
-    world: World, bodies: Sequence[Body], kinds: Sequence[UserConstraintKind]
+    world: WorldCore, bodies: Sequence[BodyCore], kinds: Sequence[UserConstraintKind]
 ) -> list[UserConstraint]:
     """The constraints of some kinds of some bodies of a world."""
     return [

@@ -22,8 +22,8 @@ from carom.scene.sensors.observer import SensorObserver
 from carom.scene.tendons.making import tendon_of
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 _OF_LOADS = (SensorKind.FORCE, SensorKind.TORQUE)
 _OF_JOINTS = "joint", "ball"
@@ -31,7 +31,7 @@ _OF_JOINTS = "joint", "ball"
 
 @alone("world.lock")
 def add_site(
-    body: Body, name: str, link: int | str, pose: Pose, shape: SiteShape | str, size: Sequence[float]
+    body: BodyCore, name: str, link: int, pose: Pose, shape: SiteShape | str, size: Sequence[float]
 ) -> None:
     """Add a site to a body, as `Body.add_site` does."""
     x, y, z = (*map(float, size), 0.0, 0.0)[:3]
@@ -40,7 +40,7 @@ def add_site(
     except ValueError:
         known = ", ".join(it.value for it in SiteShape)
         raise DescriptionError(f"site {name!r}: its shape {shape!r} is none of {known}") from None
-    site = SiteSpec(name, body.links[link].index, pose, volume, (x, y, z))
+    site = SiteSpec(name, link, pose, volume, (x, y, z))
     site.check()
     if not site.name or any(other.name == site.name for other in body.spec.sites):
         raise DescriptionError(f"site {site.name!r}: each one of a body needs a name of its own")
@@ -51,13 +51,13 @@ def add_site(
     change.commit()
 
 
-def add_sensor(body: Body, name: str, sensor: Sensor) -> None:
+def add_sensor(body: BodyCore, name: str, sensor: Sensor) -> None:
     """Add a sensor to a body, as `Body.add_sensor` does."""
     put_sensor(body, sensor.spec(name))
 
 
 @alone("world.lock")
-def put_sensor(body: Body, spec: SensorSpec) -> None:
+def put_sensor(body: BodyCore, spec: SensorSpec) -> None:
     """Add a sensor, given as data, to a body; raises as `Body.add_sensor` does."""
     world = world_of(body)
     check_sensor(world, body, spec)
@@ -75,7 +75,7 @@ def put_sensor(body: Body, spec: SensorSpec) -> None:
     change.commit()
 
 
-def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
+def check_sensor(world: WorldCore, body: BodyCore, spec: SensorSpec) -> None:
     """Raise `DescriptionError` unless a sensor fits its body and its world."""
     spec.check()
     kind = spec.kind.value
@@ -92,7 +92,7 @@ def check_sensor(world: World, body: Body, spec: SensorSpec) -> None:
         reference_frame(world.bodies, body, spec)
 
 
-def switch_on(world: World, bodies: Sequence[Body]) -> None:
+def switch_on(world: WorldCore, bodies: Sequence[BodyCore]) -> None:
     """Switch on what the sensors of bodies need: measurements of joints' forces, and of every step."""
     change = Change()
     if measure_loads(change, bodies):
@@ -101,18 +101,18 @@ def switch_on(world: World, bodies: Sequence[Body]) -> None:
     change.commit()
 
 
-def note_watch(change: Change, world: World) -> None:
+def note_watch(change: Change, world: WorldCore) -> None:
     """Measure at every step of a world after a change."""
     if not any(isinstance(it, SensorObserver) for it in world.observers):
         change.extend(world.observers, [SensorObserver(world)])
 
 
-def measure_loads(change: Change, bodies: Sequence[Body]) -> bool:
+def measure_loads(change: Change, bodies: Sequence[BodyCore]) -> bool:
     """Measure the forces of joints that sensors need; whether one needs measurements at every step."""
     return True in [measure_load(change, body, spec) for body in bodies for spec in body.spec.sensors]
 
 
-def measure_load(change: Change, body: Body, spec: SensorSpec) -> bool:
+def measure_load(change: Change, body: BodyCore, spec: SensorSpec) -> bool:
     """Measure the force of the joint that a sensor needs; whether it needs measurements at every step."""
     link = -1
     if spec.kind in _OF_LOADS:

@@ -16,7 +16,7 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, product, turned
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 class Frame(NamedTuple):
@@ -28,7 +28,7 @@ class Frame(NamedTuple):
         pose: The frame in the inertial frame of the link.
     """
 
-    body: Body
+    body: BodyCore
     link: int
     pose: Pose
 
@@ -52,7 +52,7 @@ class Motion(NamedTuple):
     angular: Array
 
 
-def frame_of(body: Body, kind: SensorObject, name: str) -> Frame:
+def frame_of(body: BodyCore, kind: SensorObject, name: str) -> Frame:
     """A frame of a body by the kind of thing that has it, and its name.
 
     Raises:
@@ -75,12 +75,12 @@ def frame_of(body: Body, kind: SensorObject, name: str) -> Frame:
     raise DescriptionError(f"body {body.name!r} has no {what} {name!r}; it has {names}")
 
 
-def object_frame(body: Body, spec: SensorSpec) -> Frame:
+def object_frame(body: BodyCore, spec: SensorSpec) -> Frame:
     """The frame that a sensor measures."""
     return frame_of(body, spec.object_type, spec.object)
 
 
-def reference_frame(bodies: Mapping[int, Body], body: Body, spec: SensorSpec) -> Frame | None:
+def reference_frame(bodies: Mapping[int, BodyCore], body: BodyCore, spec: SensorSpec) -> Frame | None:
     """The frame that it is seen from; None for the world.
 
     Raises:

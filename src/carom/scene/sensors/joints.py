@@ -17,13 +17,13 @@ from carom.scene.tendons.making import tendon_of, transmission_of
 from carom.scene.tendons.measure import measured, measured_wrench
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _SINGLE = (JointCode.REVOLUTE, JointCode.PRISMATIC)
 _OF_BALLS = (SensorKind.BALL_QUATERNION, SensorKind.BALL_ANGULAR_VELOCITY)
 
 
-def joint_of(body: Body, spec: SensorSpec) -> int:
+def joint_of(body: BodyCore, spec: SensorSpec) -> int:
     """Index of the joint of a sensor.
 
     Raises:
@@ -44,7 +44,7 @@ def joint_of(body: Body, spec: SensorSpec) -> int:
     return joint
 
 
-def actuator_of(body: Body, spec: SensorSpec) -> int:
+def actuator_of(body: BodyCore, spec: SensorSpec) -> int:
     """Index of the actuator of a sensor.
 
     Raises:
@@ -59,15 +59,15 @@ def actuator_of(body: Body, spec: SensorSpec) -> int:
     return names.index(spec.object)
 
 
-def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _position(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return source.state("position")[:, body.position_index[joint_of(body, spec)]].copy()
 
 
-def _velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return source.state("dof_velocity")[:, body.velocity_index[joint_of(body, spec)]].copy()
 
 
-def _actuators_force(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _actuators_force(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     first, total = body.rows.first["actuator"], np.zeros(source.count)
     lower, upper = np.full(source.count, -np.inf), np.full(source.count, np.inf)
     is_first = True
@@ -80,19 +80,19 @@ def _actuators_force(source: Source, body: Body, spec: SensorSpec) -> Array:
     return np.minimum(np.maximum(total, lower), upper)
 
 
-def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _quaternion(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     first = body.position_index[joint_of(body, spec)]
     return source.state("position")[:, first : first + 4].copy()
 
 
-def _ball_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _ball_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     joint = joint_of(body, spec)
     first = body.velocity_index[joint]
     to_link = np.array([body.link_inertial_frame(joint).orientation])
     return turned(to_link, source.state("dof_velocity")[:, first : first + 3])
 
 
-def _limit_distance(source: Source, body: Body, spec: SensorSpec) -> tuple[Array, Array]:
+def _limit_distance(source: Source, body: BodyCore, spec: SensorSpec) -> tuple[Array, Array]:
     """Distance to the limit that is passed, else 0, and the sign of the velocity away from it, else 0."""
     joint = joint_of(body, spec)
     kinds, links = source.topology("constraint_kind"), source.topology("constraint_link")
@@ -109,28 +109,28 @@ def _limit_distance(source: Source, body: Body, spec: SensorSpec) -> tuple[Array
     return distance, np.where(distance < 0.0, np.where(above <= below, 1.0, -1.0), 0.0)
 
 
-def _limit_position(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _limit_position(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return _limit_distance(source, body, spec)[0]
 
 
-def _limit_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _limit_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return _limit_distance(source, body, spec)[1] * _velocity(source, body, spec)
 
 
-def _limit_force(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _limit_force(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     impulse = source.state("dof_limit_impulse")[:, body.velocity_index[joint_of(body, spec)]]
     return np.abs(impulse) / source.parameters.substep_time
 
 
-def _actuator_position(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _actuator_position(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return along_actuator(source, body, actuator_of(body, spec))[0]
 
 
-def _actuator_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _actuator_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return along_actuator(source, body, actuator_of(body, spec))[1]
 
 
-def along_actuator(source: Source, body: Body, actuator: int) -> tuple[Array, Array]:
+def along_actuator(source: Source, body: BodyCore, actuator: int) -> tuple[Array, Array]:
     """Length of an actuator of a body in each world, and its velocity, (count,) each."""
     spec = body.spec.actuators[actuator]
     gear = source.parameter("actuator_gear", body.rows.first["actuator"] + actuator)
@@ -147,19 +147,19 @@ def along_actuator(source: Source, body: Body, actuator: int) -> tuple[Array, Ar
     return gear * length, gear * velocity
 
 
-def _actuator_force(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _actuator_force(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return source.state("actuator_force")[:, body.rows.first["actuator"] + actuator_of(body, spec)].copy()
 
 
-def _tendon_position(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _tendon_position(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return measured(source, body, tendon_of(body, spec.object).path)[0]
 
 
-def _tendon_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _tendon_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return measured(source, body, tendon_of(body, spec.object).path)[1]
 
 
-OF_JOINTS: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
+OF_JOINTS: dict[SensorKind, Callable[[Source, BodyCore, SensorSpec], Array]] = {
     SensorKind.JOINT_POSITION: _position,
     SensorKind.JOINT_VELOCITY: _velocity,
     SensorKind.JOINT_ACTUATOR_FORCE: _actuators_force,

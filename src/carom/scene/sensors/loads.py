@@ -18,10 +18,10 @@ from carom.scene.sensors.vectors import cross, turned_back
 from carom.scene.sensors.volumes import is_touched
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def loaded_frame(body: Body, spec: SensorSpec) -> Frame:
+def loaded_frame(body: BodyCore, spec: SensorSpec) -> Frame:
     """The site of a force or torque sensor.
 
     Raises:
@@ -65,19 +65,19 @@ def _wrench(source: Source, frame: Frame) -> tuple[Array, Array]:
     return force, torque
 
 
-def _force(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _force(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame = loaded_frame(body, spec)
     return turned_back(np.array([frame.pose.orientation]), _wrench(source, frame)[0])
 
 
-def _torque(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _torque(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame = loaded_frame(body, spec)
     force, torque = _wrench(source, frame)
     about_site = torque - cross(np.array([frame.pose.position]), force)
     return turned_back(np.array([frame.pose.orientation]), about_site)
 
 
-def _touch(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _touch(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame = object_frame(body, spec)
     site = next(site for site in body.spec.sites if site.name == spec.object)
     number = source.contacts("count_contacts")[:, THERE]
@@ -98,7 +98,7 @@ def _touch(source: Source, body: Body, spec: SensorSpec) -> Array:
     return impulse / source.parameters.substep_time
 
 
-OF_LOADS: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
+OF_LOADS: dict[SensorKind, Callable[[Source, BodyCore, SensorSpec], Array]] = {
     SensorKind.FORCE: _force,
     SensorKind.TORQUE: _torque,
     SensorKind.TOUCH: _touch,

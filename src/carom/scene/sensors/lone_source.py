@@ -12,8 +12,8 @@ from carom.engine.parameters import EngineParameters
 from carom.scene.sensors.source import Source
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
-    from carom.world.world import World
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
 
 
 class LoneSource(Source):
@@ -24,7 +24,7 @@ class LoneSource(Source):
         within_change: Used within a change of the world's bodies; only coordinates and poses are valid then.
     """
 
-    def __init__(self, world: World, *, within_change: bool = False) -> None:
+    def __init__(self, world: WorldCore, *, within_change: bool = False) -> None:
         super().__init__(world.bodies)
         self._world = world
         if not within_change:
@@ -50,12 +50,12 @@ class LoneSource(Source):
         """See `Source`."""
         return np.array([self._world.parameters.sensor_seed], dtype=np.int64).view(np.uint64)
 
-    def poses(self, body: Body) -> Array:
+    def poses(self, body: BodyCore) -> Array:
         """See `Source`."""
         self._world.update_link_poses(body)
         return self.state("link_pose")
 
-    def velocities(self, body: Body) -> Array:
+    def velocities(self, body: BodyCore) -> Array:
         """See `Source`."""
         self._world.update_link_poses(body)
         self._world.update_link_velocities(body)

@@ -17,12 +17,12 @@ from carom.scene.sensors.subtrees import OF_SUBTREES
 from carom.scene.sensors.vectors import conjugate, cross, product, turned, turned_back
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
-Measure = Callable[[Source, "Body", SensorSpec], Array]
+Measure = Callable[[Source, "BodyCore", SensorSpec], Array]
 
 
-def measured(source: Source, body: Body, spec: SensorSpec) -> Array:
+def measured(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     """What a sensor measures at present, (worlds, dim); not for kinds that only steps know.
 
     Raises:
@@ -31,22 +31,22 @@ def measured(source: Source, body: Body, spec: SensorSpec) -> Array:
     return _BY_KIND[spec.kind](source, body, spec).reshape(source.count, spec.dim)
 
 
-def _gyro(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _gyro(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame = object_frame(body, spec)
     return turned_back(placement(source, frame).orientation, motion(source, frame).angular)
 
 
-def _velocimeter(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _velocimeter(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame = object_frame(body, spec)
     return turned_back(placement(source, frame).orientation, motion(source, frame).linear)
 
 
-def _magnetometer(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _magnetometer(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     turn = placement(source, object_frame(body, spec)).orientation
     return turned_back(turn, np.array([spec.magnetic_field]))
 
 
-def _range(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _range(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame = object_frame(body, spec)
     start, turn = placement(source, frame)
     end = start + turned(turn, np.array([[0.0, 0.0, spec.reach]]))
@@ -58,7 +58,7 @@ def _range(source: Source, body: Body, spec: SensorSpec) -> Array:
     return np.where(bodies < 0, -1.0, fraction * spec.reach)
 
 
-def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _position(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     place = placement(source, object_frame(body, spec))
     reference = reference_frame(source.bodies, body, spec)
     if reference is None:
@@ -67,7 +67,7 @@ def _position(source: Source, body: Body, spec: SensorSpec) -> Array:
     return turned_back(origin.orientation, place.position - origin.position)
 
 
-def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _quaternion(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     turn = placement(source, object_frame(body, spec)).orientation
     reference = reference_frame(source.bodies, body, spec)
     return turn if reference is None else product(conjugate(placement(source, reference).orientation), turn)
@@ -76,13 +76,13 @@ def _quaternion(source: Source, body: Body, spec: SensorSpec) -> Array:
 def _axis(number: int) -> Measure:
     direction = np.eye(3)[number : number + 1]
 
-    def measure(source: Source, body: Body, spec: SensorSpec) -> Array:
+    def measure(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
         return turned(_quaternion(source, body, spec), direction)
 
     return measure
 
 
-def _linear_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _linear_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame, reference = object_frame(body, spec), reference_frame(source.bodies, body, spec)
     if reference is None:
         return motion(source, frame).linear
@@ -92,7 +92,7 @@ def _linear_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
     return turned_back(origin.orientation, velocity - carried)
 
 
-def _angular_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _angular_velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     frame, reference = object_frame(body, spec), reference_frame(source.bodies, body, spec)
     if reference is None:
         return motion(source, frame).angular
@@ -101,7 +101,7 @@ def _angular_velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
     return turned_back(placement(source, reference).orientation, angular - moving)
 
 
-def _clock(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _clock(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return source.times.copy()
 
 

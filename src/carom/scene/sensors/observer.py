@@ -11,13 +11,13 @@ from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.reading import StepWatch, remembered
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 
 class SensorObserver:
     """Fills the memories of a world's sensors; one of `World.observers`."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: WorldCore) -> None:
         self._world = ref(world)
         self._watch: StepWatch | None = None
 

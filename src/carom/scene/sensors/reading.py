@@ -17,10 +17,10 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import turned_back
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def reading(source: Source, body: Body, index: int) -> Array:
+def reading(source: Source, body: BodyCore, index: int) -> Array:
     """What a sensor of a body shows in each world, (worlds, dim)."""
     spec = body.spec.sensors[index]
     if not spec.is_remembered:
@@ -40,7 +40,7 @@ def reading(source: Source, body: Body, index: int) -> Array:
 class StepWatch:
     """Fills the memories of sensors: make one before a step, and call `finish` after it."""
 
-    def __init__(self, source: Source, places: Sequence[tuple[Body, int]]) -> None:
+    def __init__(self, source: Source, places: Sequence[tuple[BodyCore, int]]) -> None:
         """Look at the sensors in `places`, bodies and indices, all of which have a memory."""
         self._source = source
         self._places = places
@@ -70,14 +70,14 @@ class StepWatch:
             source.engine.arrays.state.numpy["sensor_memory"][chosen, part] = filled
 
 
-def forget(source: Source, body: Body, worlds: np.ndarray | slice) -> None:
+def forget(source: Source, body: BodyCore, worlds: np.ndarray | slice) -> None:
     """Empty the memories of all sensors of a body in some worlds."""
     first, count = body.rows.first["sensor"], body.rows.count["sensor"]
     if count:
         source.engine.arrays.state.numpy["sensor_memory"][worlds, first : first + count] = 0.0
 
 
-def remembered(bodies: Sequence[Body]) -> list[tuple[Body, int]]:
+def remembered(bodies: Sequence[BodyCore]) -> list[tuple[BodyCore, int]]:
     """The sensors of bodies that have a memory: their bodies and indices."""
     return [
         (body, index)
@@ -88,13 +88,13 @@ def remembered(bodies: Sequence[Body]) -> list[tuple[Body, int]]:
     ]
 
 
-def _part(body: Body, index: int) -> slice:
+def _part(body: BodyCore, index: int) -> slice:
     """Where the memory of a sensor is."""
     first = body.rows.first["sensor"] + sum(spec.memory for spec in body.spec.sensors[:index])
     return slice(first, first + body.spec.sensors[index].memory)
 
 
-def acceleration(source: Source, body: Body, spec: SensorSpec, before: Motion) -> Array:
+def acceleration(source: Source, body: BodyCore, spec: SensorSpec, before: Motion) -> Array:
     """What a sensor of one of the kinds `OF_STEPS` measures after a step, with the motion before it."""
     frame = object_frame(body, spec)
     after, duration = motion(source, frame), source.parameters.time_step
@@ -106,7 +106,7 @@ def acceleration(source: Source, body: Body, spec: SensorSpec, before: Motion) -
     return turned_back(placement(source, frame).orientation, proper)
 
 
-def _imperfect(source: Source, body: Body, spec: SensorSpec, values: Array) -> Array:
+def _imperfect(source: Source, body: BodyCore, spec: SensorSpec, values: Array) -> Array:
     """Measurements with bias and noise, within the cutoff."""
     if spec.bias:
         values = values + np.array(spec.bias)

@@ -11,6 +11,7 @@ from carom.scene.handles import world_of
 from carom.scene.named import Named
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.sensors.reading import reading
+from carom.scene.sensors.shown import shown
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
@@ -59,7 +60,6 @@ class BodySensor:
         """Bound of the absolute values; 0 for none."""
         return self.spec.cutoff
 
-    @alone("body.world.lock")
     def read(self) -> Array:
         """What it shows now, shape (dim,), in the units of its class in `carom.description.sensors`.
 
@@ -69,7 +69,7 @@ class BodySensor:
         Raises:
             StateError: Its delay is longer than the measurements that it keeps reach back.
         """
-        return reading(LoneSource(world_of(self.body)), self.body, self.index)[0].copy()
+        return shown(self.body, self.index)
 
 
 class BodySensors(Named[BodySensor]):

@@ -13,7 +13,7 @@ from carom.engine.engine import Engine
 from carom.engine.parameters import EngineParameters
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 class Source(ABC):
@@ -23,8 +23,8 @@ class Source(ABC):
         bodies: The bodies by their numbers.
     """
 
-    def __init__(self, bodies: Mapping[int, Body]) -> None:
-        self.bodies: Mapping[int, Body] = bodies
+    def __init__(self, bodies: Mapping[int, BodyCore]) -> None:
+        self.bodies: Mapping[int, BodyCore] = bodies
 
     @property
     @abstractmethod
@@ -47,11 +47,11 @@ class Source(ABC):
         """Seed of the noise of each world, (count,) unsigned integers of 64 bits."""
 
     @abstractmethod
-    def poses(self, body: Body) -> Array:
+    def poses(self, body: BodyCore) -> Array:
         """World poses of inertial frames for the present coordinates; rows of links of the body are valid."""
 
     @abstractmethod
-    def velocities(self, body: Body) -> Array:
+    def velocities(self, body: BodyCore) -> Array:
         """Their linear, then angular velocities, likewise, (count, links of all bodies, 6)."""
 
     @abstractmethod

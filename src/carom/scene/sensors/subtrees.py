@@ -14,10 +14,10 @@ from carom.scene.sensors.source import Source
 from carom.scene.sensors.vectors import cross, turned, turned_back
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
-def _rows(body: Body, spec: SensorSpec) -> list[int]:
+def _rows(body: BodyCore, spec: SensorSpec) -> list[int]:
     """Rows of the links of the subtree."""
     link = frame_of(body, SensorObject.LINK, spec.object).link
     members = {link}
@@ -43,20 +43,20 @@ def _mean(source: Source, rows: list[int], values: Array) -> Array:
     return np.where(mass > 0.0, total / np.where(mass > 0.0, mass, 1.0), values[:, rows[0], :3])
 
 
-def _center(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _center(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return _mean(source, _rows(body, spec), source.poses(body))
 
 
-def _velocity(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _velocity(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     return _mean(source, _rows(body, spec), source.velocities(body))
 
 
-def _momentum(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _momentum(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     rows = _rows(body, spec)
     return _mass(source, rows) * _mean(source, rows, source.velocities(body))
 
 
-def _angular_momentum(source: Source, body: Body, spec: SensorSpec) -> Array:
+def _angular_momentum(source: Source, body: BodyCore, spec: SensorSpec) -> Array:
     rows = _rows(body, spec)
     velocities = source.velocities(body)
     poses = source.state("link_pose")
@@ -70,7 +70,7 @@ def _angular_momentum(source: Source, body: Body, spec: SensorSpec) -> Array:
     return total
 
 
-OF_SUBTREES: dict[SensorKind, Callable[[Source, Body, SensorSpec], Array]] = {
+OF_SUBTREES: dict[SensorKind, Callable[[Source, BodyCore, SensorSpec], Array]] = {
     SensorKind.SUBTREE_CENTER_OF_MASS: _center,
     SensorKind.SUBTREE_LINEAR_VELOCITY: _velocity,
     SensorKind.SUBTREE_LINEAR_MOMENTUM: _momentum,

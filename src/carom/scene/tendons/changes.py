@@ -11,11 +11,11 @@ from carom.scene.handles import world_of
 from carom.scene.tendons.making import new_tendon, tendons_of
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 
 @alone("world.lock")
-def add_tendon(body: Body, spec: TendonSpec) -> None:
+def add_tendon(body: BodyCore, spec: TendonSpec) -> None:
     """Add a tendon to a body, as `Body.add_tendon` does."""
     world = world_of(body)
     if not spec.name or any(other.name == spec.name for other in tendons_of(body)):

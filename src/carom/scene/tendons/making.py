@@ -20,12 +20,12 @@ from carom.scene.tendons.measure import measured
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 _UNBOUNDED = 1e30
 
 
-def inertial_path(body: Body, path: Path) -> Path:
+def inertial_path(body: BodyCore, path: Path) -> Path:
     """A path with its poses in inertial frames of links instead of link frames.
 
     Raises:
@@ -34,7 +34,7 @@ def inertial_path(body: Body, path: Path) -> Path:
     return tuple(_inertial(body, part) for part in path)
 
 
-def _inertial(body: Body, part: PathPart) -> PathPart:
+def _inertial(body: BodyCore, part: PathPart) -> PathPart:
     for link in (part.link, part.side_link):
         if link != WORLD and not -1 <= link < body.joint_count:
             raise DescriptionError(f"body {body.name!r} has no link {link}, on which a tendon has a part")
@@ -54,13 +54,13 @@ def _inertial(body: Body, part: PathPart) -> PathPart:
     return replace(part, pose=pose, side=side)
 
 
-def present_length(body: Body, path: Path) -> float:
+def present_length(body: BodyCore, path: Path) -> float:
     """Length of a path whose poses are in inertial frames, for the present coordinates."""
     source = LoneSource(body.world, within_change=True)
     return float(measured(source, body, path)[0][0])
 
 
-def new_tendon(body: Body, spec: TendonSpec, name: str | None = None) -> UserConstraint:
+def new_tendon(body: BodyCore, spec: TendonSpec, name: str | None = None) -> UserConstraint:
     """The constraint of a tendon, to be put into its world.
 
     Without a range in which its spring is slack, the spring is at rest at its present length.
@@ -100,7 +100,7 @@ def new_tendon_coupling(
 
 
 def new_transmission(
-    body: Body, number: int, spec: ActuatorSpec, frame: Callable[[str], tuple[int, Pose]] | None = None
+    body: BodyCore, number: int, spec: ActuatorSpec, frame: Callable[[str], tuple[int, Pose]] | None = None
 ) -> UserConstraint:
     """The constraint by which an actuator acts on a tendon or at a site.
 
@@ -132,7 +132,7 @@ def new_transmission(
     return made
 
 
-def tendon_of(body: Body, name: str) -> UserConstraint:
+def tendon_of(body: BodyCore, name: str) -> UserConstraint:
     """The tendon of a body with a name.
 
     Raises:
@@ -146,20 +146,20 @@ def tendon_of(body: Body, name: str) -> UserConstraint:
     raise DescriptionError(f"body {body.name!r} has no tendon {name!r}; it has {known}")
 
 
-def tendons_of(body: Body) -> list[UserConstraint]:
+def tendons_of(body: BodyCore) -> list[UserConstraint]:
     """The constraints that are tendons of a body."""
     users = body.world.user_constraints
     return [it for it in users.all if it.parent is body and it.kind is UserConstraintKind.TENDON]
 
 
-def transmission_of(body: Body, actuator: int) -> UserConstraint:
+def transmission_of(body: BodyCore, actuator: int) -> UserConstraint:
     """The constraint by which an actuator of a body acts on a tendon or at a site."""
     users = body.world.user_constraints
     kind = UserConstraintKind.TRANSMISSION
     return next(it for it in users.all if it.parent is body and it.kind is kind and it.actuator == actuator)
 
 
-def _site_part(body: Body, name: str, frame: Callable[[str], tuple[int, Pose]] | None) -> PathPart:
+def _site_part(body: BodyCore, name: str, frame: Callable[[str], tuple[int, Pose]] | None) -> PathPart:
     if frame is None:
         found = frame_of(body, SensorObject.SITE, name)
         return PathPart(PathKind.SITE, found.link, found.pose)
@@ -167,7 +167,7 @@ def _site_part(body: Body, name: str, frame: Callable[[str], tuple[int, Pose]] |
     return _inertial(body, PathPart(PathKind.SITE, link, pose))
 
 
-def _new(kind: UserConstraintKind, body: Body, name: str) -> UserConstraint:
+def _new(kind: UserConstraintKind, body: BodyCore, name: str) -> UserConstraint:
     axis: Vector3 = (0.0, 0.0, 0.0)
     made = body.world.user_constraints.new(kind, body, -1, None, -1, axis, IDENTITY, IDENTITY)
     made.name = name

@@ -19,7 +19,7 @@ from carom.scene.sensors.source import Source
 from carom.scene.tendons.wrapping import wrapped
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
 
 # Straight pieces that stand for an arc where a path is drawn.
 _ARC_PIECES = 8
@@ -28,7 +28,7 @@ _ARC_PIECES = 8
 class _Walk:
     """One way along a path in one world; parts are in inertial frames, see `inertial_path`."""
 
-    def __init__(self, source: Source, body: Body, world: int) -> None:
+    def __init__(self, source: Source, body: BodyCore, world: int) -> None:
         self._source = source
         self._body = body
         self._world = world
@@ -155,7 +155,7 @@ class _Walk:
 class _Trace(_Walk):
     """A way along a path that remembers where it went: straight pieces, and those of arcs."""
 
-    def __init__(self, source: Source, body: Body, world: int) -> None:
+    def __init__(self, source: Source, body: BodyCore, world: int) -> None:
         super().__init__(source, body, world)
         self.pieces: list[tuple[Vector3, Vector3]] = []
 
@@ -188,7 +188,7 @@ class _Trace(_Walk):
             last = there
 
 
-def pieces(source: Source, body: Body, path: Sequence[PathPart]) -> list[tuple[Vector3, Vector3]]:
+def pieces(source: Source, body: BodyCore, path: Sequence[PathPart]) -> list[tuple[Vector3, Vector3]]:
     """Start and end of each straight piece of a path in the first world [m]; none of one over joints.
 
     An arc has several.
@@ -198,7 +198,7 @@ def pieces(source: Source, body: Body, path: Sequence[PathPart]) -> list[tuple[V
     return trace.pieces
 
 
-def measured(source: Source, body: Body, path: Sequence[PathPart]) -> tuple[Array, Array]:
+def measured(source: Source, body: BodyCore, path: Sequence[PathPart]) -> tuple[Array, Array]:
     """Length of a path of a body in each world, and its velocity, (count,) each."""
     walks = [_Walk(source, body, world) for world in range(source.count)]
     for walk in walks:
@@ -207,7 +207,7 @@ def measured(source: Source, body: Body, path: Sequence[PathPart]) -> tuple[Arra
 
 
 def measured_wrench(
-    source: Source, body: Body, site: PathPart, origin: PathPart | None, wrench: Wrench
+    source: Source, body: BodyCore, site: PathPart, origin: PathPart | None, wrench: Wrench
 ) -> tuple[Array, Array]:
     """Length and velocity of an actuator of a site in each world, (count,) each.
 
@@ -239,7 +239,7 @@ def measured_wrench(
     return np.array(lengths), np.array(velocities)
 
 
-def _shared_link(body: Body, a: int, b: int) -> int:
+def _shared_link(body: BodyCore, a: int, b: int) -> int:
     """The last link on the ways from the base to two links; the world if one is in it."""
     if WORLD in (a, b):
         return WORLD

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from carom.description.actuator import Range
-from carom.layouts.codes import UserConstraintKind
 from carom.native.gates import alone
 from carom.scene.named import Named
 from carom.scene.named_constraints.named_constraint import NamedConstraint, change_constraint
+from carom.scene.named_constraints.owners import handle_of
 from carom.scene.sensors.lone_source import LoneSource
 from carom.scene.tendons.making import tendons_of
 from carom.scene.tendons.measure import measured
@@ -28,7 +28,7 @@ class BodyTendon(NamedConstraint):
     @property
     def body(self) -> Body:
         """The body that it moves."""
-        return self._constraint.parent
+        return handle_of(self._constraint.parent)
 
     @property
     def length(self) -> float:
@@ -149,43 +149,3 @@ class BodyTendons(Named[BodyTendon]):
 
     def __repr__(self) -> str:
         return f"<Tendons of {self._body.name!r}: {', '.join(map(repr, self.names)) or 'none'}>"
-
-
-class TendonCoupling(NamedConstraint):
-    """Holds the length of a tendon at a polynomial of that of another one, both from where they began."""
-
-    __slots__ = ()
-
-    def __repr__(self) -> str:
-        return f"<TendonCoupling {self.name!r}{'' if self.enabled else ', disabled'}>"
-
-    @property
-    def coefficients(self) -> tuple[float, float, float, float, float]:
-        """Of the polynomial, from the constant to the fourth power."""
-        return (self._constraint.relative_position_target, *self._constraint.polynomial)
-
-    @property
-    @alone("_constraint.parent.world.lock")
-    def error(self) -> float:
-        """Length of the tendon minus what it should be [m]."""
-        it = self._constraint
-        source = LoneSource(it.parent.world)
-        wanted, factor = it.relative_position_target, 1.0
-        if it.second_path:
-            x = float(measured(source, it.parent, it.second_path)[0][0]) - it.range[1]
-            for coefficient in it.polynomial:
-                factor *= x
-                wanted += coefficient * factor
-        return float(measured(source, it.parent, it.path)[0][0]) - it.range[0] - wanted
-
-    @property
-    def force(self) -> float:
-        """Force along the tendon in the last substep [N]; 0 while it is disabled."""
-        return float(self._forces(1)[0])
-
-
-def tendon_couplings_of(bodies: list[Body]) -> list[TendonCoupling]:
-    """The couplings of tendons of some bodies of a world."""
-    kind = UserConstraintKind.TENDON_COUPLING
-    users = bodies[0].world.user_constraints.all if bodies else []
-    return [TendonCoupling(it) for it in users if it.kind is kind and it.parent in bodies]

@@ -15,9 +15,9 @@ from carom.model.body_spec import BASE
 from carom.scene.joint_constraints import moving_links
 
 if TYPE_CHECKING:
-    from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.world_core import WorldCore
     from carom.scene.user_constraints import UserConstraint
-    from carom.world.world import World
 
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 # The maximum force of a pull, per mass of the body [N/kg] and at least [N]: enough to lift and swing a body,
@@ -55,7 +55,7 @@ class Picking:
     bodies always are, without a constraint.
     """
 
-    def __init__(self, world: World, lock: Any, paused: Callable[[], bool]) -> None:
+    def __init__(self, world: WorldCore, lock: Any, paused: Callable[[], bool]) -> None:
         self._paused = paused
         self._world = world
         self._world_lock = lock
@@ -156,6 +156,6 @@ class Picking:
         return True
 
 
-def follows_hand(body: Body, link: int) -> bool:
+def follows_hand(body: BodyCore, link: int) -> bool:
     """Whether a link belongs to the base of a mocap body, which the mouse moves as it is, not by forces."""
     return body.spec.is_mocap and not moving_links(body)[link - BASE]

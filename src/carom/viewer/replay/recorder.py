@@ -18,7 +18,7 @@ from carom.viewer.scene_feed import SceneFeed
 from carom.writing import write_text
 
 if TYPE_CHECKING:
-    from carom.world.world import World
+    from carom.scene.core.world_core import WorldCore
 
 _PAGE = 1
 # Tolerance for rounding errors in sums of time steps, as a fraction of the interval between two frames.
@@ -47,7 +47,7 @@ class ReplayRecorder:
 
     def __init__(
         self,
-        world: World,
+        world: WorldCore,
         path: str | Path,
         *,
         fps: float = 60.0,

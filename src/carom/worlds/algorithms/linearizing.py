@@ -18,7 +18,7 @@ from carom.linearization.exact import StepDerivatives, StepLinearizer
 from carom.linearization.linearized_step import refuse_substeps
 from carom.linearization.stepping import Copies
 from carom.native.gates import alone
-from carom.scene.body import Body
+from carom.scene.core.body_core import BodyCore
 from carom.world.world import World
 from carom.worlds.algorithms.mechanics import MechanicsBatch
 from carom.worlds.checks import Mask
@@ -167,7 +167,7 @@ class _Linearizer:
         self._threads = threads
         self._copies = Copies.of_engine(engine, scene.parameters, threads)
         self._made_for = self._now()
-        self._mechanics: dict[Body, MechanicsBatch] = {}
+        self._mechanics: dict[BodyCore, MechanicsBatch] = {}
 
     def _now(self) -> tuple[Any, ...]:
         return (
@@ -199,10 +199,10 @@ class _Linearizer:
             start(copies.engine)
         return kept.step(self._scene.parameters, worlds, smoothing)
 
-    def _structs_of(self, body: Body) -> tuple[list[list[Any]], Any]:
+    def _structs_of(self, body: BodyCore) -> tuple[list[list[Any]], Any]:
         return self._mechanics_of(body).sweep_structs()
 
-    def _mechanics_of(self, body: Body) -> MechanicsBatch:
+    def _mechanics_of(self, body: BodyCore) -> MechanicsBatch:
         if body not in self._mechanics:
             self._mechanics[body] = MechanicsBatch(body, self._copies.engine, self._threads)
         return self._mechanics[body]

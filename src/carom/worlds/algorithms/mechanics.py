@@ -22,7 +22,7 @@ from carom.native.kernels import (
 )
 from carom.native.launch import Launch
 from carom.native.tables import put_array, put_zeros
-from carom.scene.body import Body
+from carom.scene.core.body_core import BodyCore
 from carom.worlds.algorithms.varied import NodeParameters, VariedParameters
 
 _POINT = 3
@@ -41,7 +41,7 @@ class MechanicsBatch:
         DescriptionError: The file of a collision mesh cannot be used.
     """
 
-    def __init__(self, body: Body, engine: Engine, threads: int) -> None:
+    def __init__(self, body: BodyCore, engine: Engine, threads: int) -> None:
         nodes, ends = body_nodes(body)
         self._body, self._ends = body, ends
         self._varied = VariedParameters(engine, body, ends)

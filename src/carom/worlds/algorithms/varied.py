@@ -10,7 +10,7 @@ from carom.algorithms.nodes import End, node_inertias
 from carom.engine.engine import Engine
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.model.body_spec import BASE
-from carom.scene.body import Body
+from carom.scene.core.body_core import BodyCore
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -33,7 +33,7 @@ class NodeParameters:
 class VariedParameters:
     """The parameters of the nodes of a body in the worlds of an engine, kept as long as they are the same."""
 
-    def __init__(self, engine: Engine, body: Body, ends: list[End]) -> None:
+    def __init__(self, engine: Engine, body: BodyCore, ends: list[End]) -> None:
         self._engine, self._body, self._ends = engine, body, ends
         self._known: list[np.ndarray] = []
         self._found: NodeParameters | None = None

@@ -2,46 +2,23 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Callable
 from ctypes import addressof, c_double, sizeof
-from typing import Any
 
-from carom.engine.parameters import EngineParameters
 from carom.engine.quick_steps import show_steps
 from carom.errors import SimulationError
 from carom.layouts.status import STATUS, WELL
 from carom.native.change import Change, packed_block
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
+from carom.scene.core.poses import PoseUpdates
+from carom.scene.core.world_data import STRUCTURE
 from carom.scene.faults import cause_in
-from carom.scene.joint_constraints import JointConstraints
-from carom.scene.observers import Observer, SubstepObserver
-from carom.scene.user_constraints import UserConstraints
-from carom.world.poses import PoseUpdates
-
-STRUCTURE = ("substeps", "minimum_island_size")
-"""The parameters that determine which launches a step consists of."""
+from carom.scene.observers import SubstepObserver
 
 
 class Stepping(PoseUpdates):
     """Time of a world, and its steps: prepared once, performed many times, watched by observers."""
-
-    lock: Any
-    parameters: EngineParameters
-    constraints: JointConstraints
-    user_constraints: UserConstraints
-    observers: list[Observer]
-    unspent_time: float
-    _clock: c_double
-    _substep_observers: list[SubstepObserver]
-    _status: memoryview[int]
-    _growths: int
-    _made_for: list[int] | None
-
-    @abstractmethod
-    def scene_changed(self) -> None:
-        """Discard derived data: bodies, constraints or arrays have changed."""
 
     @property
     def time(self) -> float:
@@ -121,7 +98,7 @@ class Stepping(PoseUpdates):
         Raises:
             carom.errors.SimulationError: As from `step`.
         """
-        from carom.world.profile import Profile
+        from carom.scene.core.profile import Profile
 
         self.prepare()
         try:

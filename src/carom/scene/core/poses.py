@@ -2,60 +2,20 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from carom.engine.contact_arrays import ContactArrays
-from carom.engine.engine import Engine
-from carom.engine.quick_scene import QuickScene
-from carom.model.builder import WorldArrays
 from carom.native.change import Change
 from carom.native.kernels import follow_nodes_kernel, link_twist_kernel
-from carom.native.launch import KernelStructs, TreeLaunch
-from carom.native.tables import ArrayTable
-from carom.scene.bodies import Bodies
-from carom.scene.body import Body
+from carom.native.launch import TreeLaunch
+from carom.scene.core.world_data import WorldData
 
 if TYPE_CHECKING:
     from carom.queries.present_poses import PresentPoses
-    from carom.queries.queries import Queries
-    from carom.scene.snapshot import Shape
+    from carom.scene.core.body_core import BodyCore
 
 
-class Derived:
-    """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
-
-    def __init__(self) -> None:
-        self.step: Callable[[], None] | None = None
-        # The step before constraints changed, if nothing else has changed since.
-        self.step_before: Callable[[], None] | None = None
-        self.queries: Queries | None = None
-        self.present_poses: PresentPoses | None = None
-        self.pose_launch: TreeLaunch | None = None
-        self.twist_launch: TreeLaunch | None = None
-        self.shape: Shape | None = None
-        self.link_places: list[tuple[int, int]] | None = None
-        self.link_columns: tuple[list[int], list[int]] | None = None
-
-
-class PoseUpdates(ABC):
+class PoseUpdates(WorldData):
     """Whose the rows of links are, and their poses and velocities, computed only when they are asked for."""
-
-    bodies: Bodies
-    arrays: WorldArrays
-    contact_arrays: ContactArrays
-    engine: Engine
-    quick: QuickScene
-    _derived: Derived
-
-    @abstractmethod
-    def grow(self, table: ArrayTable, needed: Mapping[str, int]) -> None:
-        """Make room for rows of a table of this world; nothing else of the world changes."""
-
-    @abstractmethod
-    def _kernel_structs(self) -> KernelStructs:
-        """Structs of the present arrays, by the names of kernel arguments."""
 
     @property
     def link_places(self) -> list[tuple[int, int]]:
@@ -84,11 +44,11 @@ class PoseUpdates(ABC):
             self._derived.present_poses = PresentPoses(poses, self._kernel_structs())
         return self._derived.present_poses
 
-    def update_link_poses(self, body: Body) -> None:
+    def update_link_poses(self, body: BodyCore) -> None:
         """Bring `link_pose` up to date with the coordinates of a body."""
         (self._derived.pose_launch or self.prepare_poses())(body.rows.tree)
 
-    def note_link_poses(self, change: Change, *bodies: Body) -> None:
+    def note_link_poses(self, change: Change, *bodies: BodyCore) -> None:
         """Bring `link_pose` up to date with the coordinates of bodies, by default all, after a change."""
         launch = self._derived.pose_launch or self.prepare_poses()
         for body in bodies or self.bodies.values():
@@ -120,11 +80,11 @@ class PoseUpdates(ABC):
             # The kernel's number is that of the first world instead of a tree.
             change.run(launch.addresses("first_world"), 0, launch)
 
-    def update_link_velocities(self, body: Body) -> None:
+    def update_link_velocities(self, body: BodyCore) -> None:
         """Fill `link_velocity` for the present coordinates of a body."""
         self._prepare_velocities()(body.rows.tree)
 
-    def note_link_velocities(self, change: Change, body: Body) -> None:
+    def note_link_velocities(self, change: Change, body: BodyCore) -> None:
         """The same after a change."""
         launch = self._prepare_velocities()
         change.run(launch.addresses(), body.rows.tree, launch)

@@ -1,0 +1,315 @@
+"""A body as everything below it knows it: its world, rows, specification, state and parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import sqrt
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.closed import Closed
+from carom.description.joint import JOINT_CODE
+from carom.description.pose import Pose
+from carom.layouts.codes import (
+    BASE_POSITIONS,
+    BASE_VELOCITIES,
+    DOF_COUNT,
+    LOADED,
+    POSITION_COUNT,
+    SENSED,
+    Activity,
+)
+from carom.layouts.magnitudes import UNIT_ROUNDING
+from carom.model.body_rows import TreeRows
+from carom.model.body_spec import BodySpec, LinkSpec
+from carom.native.change import Change
+from carom.native.gates import alone
+from carom.native.tables import NUMPY_REAL
+from carom.scene.dynamics_changes import set_dynamics, set_present
+from carom.scene.link_dynamics import LinkDynamics
+
+if TYPE_CHECKING:
+    from carom.scene.core.world_core import WorldCore
+
+_NUMBER = np.dtype(NUMPY_REAL)
+_SPATIAL = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
+_NO_REACTION = (0.0,) * BASE_VELOCITIES
+
+JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
+"""A joint, its position coordinates, and its velocity coordinates; None keeps them."""
+
+
+class Outline:
+    """What bodies take over from their specification: attributes of `Body`, and parameters of each link."""
+
+    def __init__(self, spec: BodySpec) -> None:
+        codes = [JOINT_CODE[link.joint_type] for link in spec.links]
+        self.joint_types: tuple[int, ...] = tuple([int(code) for code in codes])
+        self.position_count: tuple[int, ...] = tuple([POSITION_COUNT[code] for code in codes])
+        self.velocity_count: tuple[int, ...] = tuple([DOF_COUNT[code] for code in codes])
+        self.dynamics = [LinkDynamics.of(link) for link in (spec.base, *spec.links)]
+        if spec.fixed_base:
+            self.dynamics[0].mass = 0.0
+
+
+class BodyCore(Closed):
+    """What a body is without the handles of its parts; `Body` describes the attributes.
+
+    Functions that work on bodies and are used by methods of `Body` or `World` take this class.
+    """
+
+    # For the other packages of Carom:
+    # derived: Data that algorithms cache until masses or inertias change, or the base is fixed or freed.
+    # links_before: Number of links that the world had loaded before this body.
+    id: int
+    world: WorldCore
+    spec: BodySpec
+    rows: TreeRows
+    joint_count: int
+    joint_types: tuple[int, ...]
+    position_count: tuple[int, ...]
+    velocity_count: tuple[int, ...]
+    first_link: int
+    first_position: int
+    first_velocity: int
+    position_index: tuple[int, ...]
+    velocity_index: tuple[int, ...]
+    fixed_base: bool
+    links_before: int
+    derived: dict[Any, Any]
+    _encoded_names: tuple[bytes, bytes] | None
+    _dynamics: list[LinkDynamics]
+
+    def __init__(
+        self, world: WorldCore, body_id: int, spec: BodySpec, rows: TreeRows, outline: Outline | None = None
+    ) -> None:
+        mine = outline or Outline(spec)
+        position, velocity = rows.first["position"], rows.first["dof"]
+        # All at once, as `Closed` makes it slow to set one after the other.
+        vars(self).update(
+            id=body_id,
+            world=world,
+            spec=spec,
+            rows=rows,
+            joint_count=len(spec.links),
+            joint_types=mine.joint_types,
+            position_count=mine.position_count,
+            velocity_count=mine.velocity_count,
+            first_link=rows.first["link"],
+            first_position=position,
+            first_velocity=velocity,
+            position_index=_first_rows(position + BASE_POSITIONS, mine.position_count),
+            velocity_index=_first_rows(velocity + BASE_VELOCITIES, mine.velocity_count),
+            fixed_base=spec.fixed_base,
+            links_before=0,
+            derived={},
+            _encoded_names=None,
+            _dynamics=mine.dynamics if outline is None else [it.copy() for it in mine.dynamics],
+        )
+
+    def relocate(self, change: Change, first: Mapping[str, int]) -> None:
+        """Update the rows of the body in the flat arrays with a change of them; they begin at `first`."""
+        position, velocity = first["position"], first["dof"]
+        change.set_all(
+            self,
+            first_link=first["link"],
+            first_position=position,
+            first_velocity=velocity,
+            position_index=_first_rows(position + BASE_POSITIONS, self.position_count),
+            velocity_index=_first_rows(velocity + BASE_VELOCITIES, self.velocity_count),
+        )
+
+    def __repr__(self) -> str:
+        base = "fixed base" if self.fixed_base else "free base"
+        joints = "1 joint" if self.joint_count == 1 else f"{self.joint_count} joints"
+        return f"<{type(self).__name__} {self.id} {self.name!r}: {joints}, {base}>"
+
+    @property
+    def name(self) -> str:
+        """Name of the robot."""
+        return self.spec.name
+
+    def encoded_names(self) -> tuple[bytes, bytes]:
+        """Names of the base link and of the robot: always the same tuple."""
+        if self._encoded_names is None:
+            self._encoded_names = self.spec.base.name.encode(), self.spec.name.encode()
+        return self._encoded_names
+
+    def link_spec(self, link: int) -> LinkSpec:
+        """The specification of link `link`; -1 is the base."""
+        return self.spec.link(link)
+
+    def link_inertial_frame(self, link: int) -> Pose:
+        """Inertial frame of a link in its link frame; -1 is the base."""
+        return self.link_spec(link).inertial_frame
+
+    @alone("world.lock")
+    def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
+        """Set the pose of the base's inertial frame; its velocity does not change.
+
+        Args:
+            position: [m], world axes.
+            orientation: Quaternion (x, y, z, w); normalised here.
+        """
+        x, y, z, w = orientation
+        squared = x * x + y * y + z * z + w * w
+        # A pose that was read and is written back must not change in the last digit.
+        scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
+        first, change = self.first_position, Change()
+        pose = *position, x * scale, y * scale, z * scale, w * scale
+        change.write_numbers(self.world.position_memory[first : first + BASE_POSITIONS], pose)
+        self.world.contact_arrays.note_cold_start(change)
+        self.world.note_link_poses(change, self)
+        change.commit()
+
+    @alone("world.lock")
+    def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
+        """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s].
+
+        A fixed base moves with it, and as in Bullet the velocity turns with the base.
+        """
+        first = self.first_velocity * _NUMBER.itemsize
+        _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
+
+    @alone("world.lock")
+    def set_joint_state(
+        self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
+    ) -> None:
+        """Set the state of a joint without simulation; its motor keeps its target.
+
+        Args:
+            joint: Index of the joint; nothing happens for a fixed one.
+            position: All coordinates of the joint (of a spherical joint: quaternion xyzw, normalised here);
+                None keeps them.
+            velocity: All velocity coordinates of the joint; None keeps them.
+        """
+        change = Change()
+        self.note_joint_states(change, [(joint, position, velocity)])
+        self.world.note_link_poses(change, self)
+        change.commit()
+
+    def note_joint_states(self, change: Change, states: Iterable[JointReset]) -> list[bool]:
+        """Set the states of joints, in turn, with a change, as `set_joint_state`; poses of links stay.
+
+        Returns:
+            Of each whether its coordinates change.
+        """
+        first, first_rate, moved = self.first_position, self.first_velocity, list[bool]()
+        place = self.world.position_memory[first : first + self.rows.count["position"]]
+        motion = self.world.velocity_memory[first_rate : first_rate + self.rows.count["dof"]]
+        coordinates, rates = list(place), list(motion)
+        for joint, position, velocity in states:
+            moves = False
+            if position is not None and (count := self.position_count[joint]):
+                if count == 4:
+                    size = sum(component * component for component in position) ** 0.5
+                    position = [component / size for component in position]
+                start = self.position_index[joint] - first
+                moves = coordinates[start : start + count] != [*position]
+                coordinates[start : start + count] = position
+            if velocity is not None and (count := self.velocity_count[joint]):
+                start = self.velocity_index[joint] - first_rate
+                rates[start : start + count] = velocity
+            moved.append(moves)
+        change.write_numbers(place, coordinates)
+        change.write_numbers(motion, rates)
+        return moved
+
+    @alone("world.lock")
+    def coordinates(self) -> list[float]:
+        """All position coordinates: those of the base, then those of the joints."""
+        first, count = self.rows.first["position"], self.rows.count["position"]
+        return self.world.position[first : first + count].tolist()
+
+    def note_reset(self, *, moved: bool) -> None:
+        """Note that PyBullet would look for what the body overlaps now; see `ContactArrays.note_resets`."""
+        change = Change()
+        self.world.contact_arrays.note_resets(change, self.rows.tree, moved)
+        change.commit()
+
+    @alone("world.lock")
+    def update_link_poses(self) -> None:
+        """Update the body's rows of `World.link_pose` from its coordinates."""
+        self.world.update_link_poses(self)
+
+    @alone("world.lock")
+    def update_link_velocities(self) -> None:
+        """Update the body's rows of `World.link_velocity` from its coordinates."""
+        self.world.update_link_velocities(self)
+
+    def dynamics(self, link: int) -> LinkDynamics:
+        """Present inertia, surface and joint limits of a link; -1 is the base."""
+        return self._dynamics[link + 1]
+
+    @property
+    def all_dynamics(self) -> list[LinkDynamics]:
+        """`dynamics` of the base and of all links, in this order: always the same list."""
+        return self._dynamics
+
+    @property
+    def is_asleep(self) -> bool:
+        """Whether the body slept in the last step, because it and all bodies near it had been at rest."""
+        return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] == Activity.ASLEEP)
+
+    @property
+    def present(self) -> bool:
+        """Whether the body is present; it may be set.
+
+        While it is absent, it does not move, nothing touches or sees it, and constraints on it do nothing;
+        the others move bit for bit as in a world made without it. Its coordinates and velocities stay as they
+        are and can be set; forces on it are lost. Sleeping bodies wake when it comes or goes. Setting it
+        raises `ValueError` for a soft body, and for a body that a soft body is anchored to.
+        """
+        return bool(self.world.arrays.state.numpy["tree_activity"][0, self.rows.tree] != Activity.ABSENT)
+
+    @present.setter
+    def present(self, value: bool) -> None:
+        set_present(self, bool(value))
+
+    @alone("world.lock")
+    def set_dynamics(self, link: int, dynamics: LinkDynamics) -> None:
+        """Set all parameters of a link at once, except the limits of its joint; -1 is the base."""
+        set_dynamics(self, link, dynamics)
+
+    def has_sensor(self, joint: int) -> bool:
+        """Whether the force-torque sensor of a joint is on."""
+        return bool(self.measured_joints[joint] & SENSED)
+
+    @property
+    def measured_joints(self) -> list[int]:
+        """What is measured of each joint: bits `SENSED` and `LOADED`."""
+        first = self.first_link + 1
+        return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
+
+    @alone("world.lock")
+    def set_sensor(self, joint: int, enabled: bool) -> None:
+        """Switch the force-torque sensor of a joint on or off."""
+        change = Change()
+        self.note_sensor(change, joint, enabled=enabled)
+        change.commit()
+
+    def note_sensor(self, change: Change, joint: int, *, enabled: bool) -> None:
+        """The same with a change."""
+        self._note_sensor(change, joint, SENSED, on=enabled)
+        if not enabled:
+            change.write_numbers(self.world.joint_reaction[self.first_link + 1 + joint], _NO_REACTION)
+
+    def measure_load(self, change: Change, joint: int) -> None:
+        """Measure what a joint transmits after a change, for sensors of sites and of its limit."""
+        self._note_sensor(change, joint, LOADED, on=True)
+
+    def _note_sensor(self, change: Change, joint: int, kind: int, *, on: bool) -> None:
+        model = change.arrays(self.world.arrays.model.numpy)
+        sensors = model["link_sensor"][self.first_link : self.first_link + 1 + self.joint_count]
+        sensors[1 + joint] = sensors[1 + joint] | kind if on else sensors[1 + joint] & ~kind
+        model["tree_sensor_count"][self.rows.tree] = len(sensors) - sensors.tolist().count(0)
+
+
+def _first_rows(start: int, counts: Sequence[int]) -> tuple[int, ...]:
+    rows = []
+    for count in counts:
+        rows.append(start if count else -1)
+        start += count
+    return tuple(rows)

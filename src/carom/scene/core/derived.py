@@ -1,0 +1,29 @@
+"""What a world computes on demand from its bodies, constraints and arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from carom.native.launch import TreeLaunch
+
+if TYPE_CHECKING:
+    from carom.queries.present_poses import PresentPoses
+    from carom.queries.queries import Queries
+    from carom.scene.snapshot import Shape
+
+
+class Derived:
+    """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
+
+    def __init__(self) -> None:
+        self.step: Callable[[], None] | None = None
+        # The step before constraints changed, if nothing else has changed since.
+        self.step_before: Callable[[], None] | None = None
+        self.queries: Queries | None = None
+        self.present_poses: PresentPoses | None = None
+        self.pose_launch: TreeLaunch | None = None
+        self.twist_launch: TreeLaunch | None = None
+        self.shape: Shape | None = None
+        self.link_places: list[tuple[int, int]] | None = None
+        self.link_columns: tuple[list[int], list[int]] | None = None

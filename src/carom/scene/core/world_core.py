@@ -1,0 +1,116 @@
+"""A world as everything below it knows it: its data, time, steps, and questions about it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.layouts.codes import UserConstraintKind
+from carom.native.change import Change
+from carom.native.gates import alone
+from carom.native.uninterrupted import uninterrupted
+from carom.scene.core.stepping import Stepping
+from carom.scene.handles import world_of
+from carom.scene.user_constraints import UserConstraint
+
+if TYPE_CHECKING:
+    from carom.queries.queries import Queries
+    from carom.scene.core.body_core import BodyCore
+
+
+class WorldCore(Stepping):
+    """What a world is without what loads, saves, records and linearises it; `World` describes the attributes.
+
+    Functions that work on worlds and are used by methods of `World` take this class.
+    """
+
+    _kept_linearization: dict[Any, Any] | None = None
+
+    @property
+    def kept_linearization(self) -> dict[Any, Any]:
+        """What is kept for the next call of `linearize`, by its type. It refers to bodies of the world."""
+        if self._kept_linearization is None:
+            self._kept_linearization = {}
+        return self._kept_linearization
+
+    def queries(self) -> Queries:
+        """Rays, nearest points and overlaps for the present coordinates."""
+        return self._derived.queries or self._new_queries()
+
+    @alone("lock")
+    def _new_queries(self) -> Queries:
+        if self._derived.queries is None:
+            from carom.queries.queries import Queries
+
+            self._derived.queries = Queries(
+                self.lock,
+                self.queries,
+                self._kernel_structs(),
+                self.position_memory,
+                self.link_places,
+                self.present_poses,
+                self.contact_arrays,
+                self.engine.workspace.pairs,
+                self.arrays,
+                self.engine.workspace.soft_work,
+                self.quick,
+            )
+        return self._derived.queries
+
+    # Constraints
+
+    @alone("lock")
+    def constrain(
+        self,
+        kind: UserConstraintKind,
+        parent: BodyCore,
+        parent_link: int,
+        child: BodyCore | None,
+        child_link: int,
+        *,
+        axis: Vector3 = (0.0, 0.0, 0.0),
+        parent_frame: Pose = IDENTITY,
+        child_frame: Pose = IDENTITY,
+        hidden: bool = False,
+    ) -> UserConstraint:
+        """Constrain a link to another, or to the world; see `UserConstraint` for the arguments.
+
+        A hidden constraint is not among `user_constraints.all`.
+
+        Raises:
+            ValueError: One of the bodies is no longer in the world.
+        """
+        places = (parent, parent_link, child, child_link)
+        frames = (axis, parent_frame, child_frame)
+        with uninterrupted:
+            # Its number is the next one until it has been added.
+            constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
+            self.add_constraint(constraint)
+        return constraint
+
+    @alone("lock")
+    def add_constraint(self, constraint: UserConstraint) -> None:
+        """Add a constraint that `user_constraints.new` has made for a body of this world.
+
+        Raises:
+            ValueError: One of its bodies is no longer in the world.
+        """
+        with uninterrupted:
+            world_of(constraint.parent)
+            if constraint.child is not None:
+                world_of(constraint.child)
+            change = Change()
+            self.user_constraints.put(change, constraint)
+            self.constraints.add_user(change, constraint)
+            self.change_constraints(change)
+            change.commit()
+
+    @alone("lock")
+    def remove_constraint(self, constraint: UserConstraint) -> None:
+        """Remove a user constraint."""
+        with uninterrupted:
+            change = Change()
+            self.user_constraints.discard(change, constraint.id)
+            self.constraints.remove_user(change, constraint)
+            self.change_constraints(change)
+            change.commit()
