@@ -72,7 +72,9 @@ class Workspace:
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
-        self.scratch.reserve({**arrays.used, "user": users})
+        # As many equations as twice the dofs of a tree, see `kernels.solver.active_set`.
+        equations = 4 * arrays.used["block"]
+        self.scratch.reserve({**arrays.used, "user": users, "equation": equations})
         overlaps = contact_arrays.contacts.capacity["overlap"]
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
         room = self.pairs.capacity["pair"]

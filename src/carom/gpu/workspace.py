@@ -116,7 +116,7 @@ class DeviceWorkspace(Workspace):
             super().fit(arrays, contact_arrays)
         else:
             # Bodies cannot interact, so there are no constraint rows over two of them.
-            self.scratch.reserve(arrays.used)
+            self.scratch.reserve({**arrays.used, "equation": 4 * arrays.used["block"]})
             self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, 0))
         extent = Extent(
             self._world_count,

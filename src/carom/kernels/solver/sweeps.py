@@ -15,6 +15,7 @@ from carom.kernels.solver.single_contacts import (
     relax_single_torsion,
     single_of,
 )
+from carom.kernels.solver.units import TWISTED
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, SPINNING_ROW
@@ -246,16 +247,16 @@ def contact_sweep(
     pair_rows: PairRows,
     world: Int32,
     units: Int32,
-    torsion: Int32,
+    character: Int32,
     before: real,
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` and `torsion` are returned by `units.write_units`. Returns the residual after them.
+    `units` and `character` are returned by `units.write_units`. Returns the residual after them.
     """
     residual = normal_sweep(scratch, pair_rows, world, units, before)
     kind = Int32(LATERAL_ROW)
-    if torsion != 0:
+    if character == TWISTED:
         # Without a cone spinning friction has no effect in PyBullet.
         kind = Int32(SPINNING_ROW) if settings.cone_friction != 0 else Int32(ROLLING_ROW)
     while kind >= LATERAL_ROW:
