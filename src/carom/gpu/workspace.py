@@ -116,7 +116,7 @@ class DeviceWorkspace(Workspace):
             super().fit(arrays, contact_arrays)
         else:
             # Bodies cannot interact, so there are no constraint rows over two of them.
-            self.scratch.reserve({**arrays.used, "equation": 4 * arrays.used["block"]})
+            self.scratch.reserve(arrays.used)
             self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, 0))
         extent = Extent(
             self._world_count,
@@ -129,6 +129,13 @@ class DeviceWorkspace(Workspace):
         if extent != self._extent:
             self._make_work(extent)
             self._extent = self._on_device.extent = extent
+
+    def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:  # noqa: D102
+        # Only where contacts yield: every world has a workspace of its own.
+        impedance = contact_arrays.shapes.table.numpy["link_impedance"]
+        if not np.count_nonzero(np.asarray(impedance)[..., : arrays.used["link"], 1] > 0.0):
+            return 0
+        return super().room_for_equations(arrays, contact_arrays)
 
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:  # noqa: D102
         room = super().room_for_detection(shape_count, contacts)

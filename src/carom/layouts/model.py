@@ -337,7 +337,8 @@ class Scratch:
     block_inverse_mass: Vector4Rows
     block_response: Vector4Rows  # response to the impulse that changes the rate of a row's dof by 1
     delta_velocity: Vector4Rows
-    # Equations of rows that are solved for at once, see `kernels.solver.active_set`; response to one of them.
+    # Equations of rows that are solved for at once, see `kernels.convergence.active_set`; response
+    # to one of them.
     equation_block: Vector4Rows
     delta_column: Vector4Rows
     entry_factor: RealRows

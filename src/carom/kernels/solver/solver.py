@@ -6,10 +6,10 @@ and user constraints.
 
 import warp as wp
 
+from carom.kernels.convergence.active_set import FIRST_SWEEPS, SWEEPS_BETWEEN, solve_free_rows
+from carom.kernels.convergence.conjugate import go_on, remember_impulses
 from carom.kernels.maths.min_max import later_maximum
-from carom.kernels.solver.active_set import SWEEPS_BETWEEN, solve_free_rows
 from carom.kernels.solver.activity import is_in_force
-from carom.kernels.solver.conjugate import go_on, remember_impulses
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.kernels.solver.pair_rows import has_room
 from carom.kernels.solver.sweeps import contact_sweep, leave_out_settled, resting_sweep, visit_sweep
@@ -123,6 +123,11 @@ def sweep_island(
         most = most * RESTING_SWEEPS
     residual, square = real(0.0), real(0.0)
     sweep = Int32(0)
+    # The sweep after which the free rows are solved for.
+    solving = most + 0
+    if character == YIELDING and units > 0 and settings.cone_friction == CONE:
+        solving = Int32(FIRST_SWEEPS)
+    between = Int32(SWEEPS_BETWEEN)
     searching = Int32(1) if (visits > 0 or units > 0) and most > 0 else Int32(0)
     while searching == 1:
         if resting == 1:
@@ -136,10 +141,13 @@ def sweep_island(
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)
-        elif character == YIELDING and sweep % SWEEPS_BETWEEN == 0 and sweep + SWEEPS_BETWEEN <= most:
+        elif sweep == solving:
+            solving = most + 0
             # Not where nothing can move along some row, which makes the residual NaN.
-            if settings.cone_friction == CONE and residual > threshold:
-                solve_free_rows(model, scratch, pair_rows, world, root, visits, units)
+            if residual > threshold:
+                if solve_free_rows(model, scratch, pair_rows, world, root, visits, units) == 1:
+                    solving = sweep + between
+                    between += 1
         elif sweep <= SETTLING_SWEEPS and visits > 0:
             left = leave_out_settled(scratch, pair_rows, world, visits)
             rows = wp.where(left < visits, Int32(NOT_IN_ORDER), rows)
