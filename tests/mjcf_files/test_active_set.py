@@ -74,10 +74,12 @@ def test_the_solution_is_the_fixed_point_of_the_sweeps(robot: str) -> None:
 
 def test_a_robot_at_rest_stays_there() -> None:
     world, _body = scene("ant")
-    for _ in range(1_500):
+    # It creeps into its springs for a while: each of these steps is solved to rounding.
+    for _ in range(2_500):
         world.step()
     assert np.abs(world.engine.arrays.state.numpy["dof_velocity"][0]).max() < 1e-3
-    assert sweeps(world) <= 9
+    assert world.engine.arrays.state.numpy["tree_residual"][0].max() < 1e-20
+    assert sweeps(world) <= 5
 
 
 def test_robots_that_do_not_touch_are_solved_each_by_itself() -> None:
