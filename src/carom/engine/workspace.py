@@ -72,7 +72,8 @@ class Workspace:
     def fit(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Grow arrays to the capacity that the other arrays require."""
         contacts, users = contact_arrays.contacts.capacity["contact"], contact_arrays.users.capacity["user"]
-        self.scratch.reserve({**arrays.used, "user": users})
+        equations = self.room_for_equations(arrays, contact_arrays)
+        self.scratch.reserve({**arrays.used, "user": users, "equation": equations})
         overlaps = contact_arrays.contacts.capacity["overlap"]
         self.pairs.reserve(self.room_for_detection(contact_arrays.shapes.shape_count, contacts))
         room = self.pairs.capacity["pair"]
@@ -114,6 +115,10 @@ class Workspace:
             # The rows of faces begin behind those of all nodes that there is room for.
             room = self.soft_work.capacity["node"]
             self.soft_work.reserve({"touch": TOUCHES_PER_NODE * room + TOUCHES_PER_FACE * faces})
+
+    def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:
+        """Number of blocks for rows that are solved for at once, see `kernels.convergence.active_set`."""
+        return 2 * arrays.used["block"]
 
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:
         """Number of rows that collision detection needs, by axis of `Pairs`, except its axis `pair`."""

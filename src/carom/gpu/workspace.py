@@ -130,6 +130,13 @@ class DeviceWorkspace(Workspace):
             self._make_work(extent)
             self._extent = self._on_device.extent = extent
 
+    def room_for_equations(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> int:  # noqa: D102
+        # Only where contacts yield: every world has a workspace of its own.
+        impedance = contact_arrays.shapes.table.numpy["link_impedance"]
+        if not np.count_nonzero(np.asarray(impedance)[..., : arrays.used["link"], 1] > 0.0):
+            return 0
+        return super().room_for_equations(arrays, contact_arrays)
+
     def room_for_detection(self, shape_count: int, contacts: int) -> dict[str, int]:  # noqa: D102
         room = super().room_for_detection(shape_count, contacts)
         return {axis: rows for axis, rows in room.items() if axis not in _OF_WORKERS}

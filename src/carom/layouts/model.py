@@ -337,9 +337,15 @@ class Scratch:
     block_inverse_mass: Vector4Rows
     block_response: Vector4Rows  # response to the impulse that changes the rate of a row's dof by 1
     delta_velocity: Vector4Rows
+    # Equations of rows that are solved for at once, see `kernels.convergence.active_set`; response
+    # to one of them.
+    equation_block: Vector4Rows
+    delta_column: Vector4Rows
     entry_factor: RealRows
     entry_inverse_mass: RealRows
     entry_delta_velocity: RealRows
+    entry_system: RealRows
+    entry_column: RealRows
 
     row: Rows[RowScratch]
     # Of rows that are soft: share of its rate that a row corrects at once, and of that the part for each
@@ -355,4 +361,6 @@ ENTRY_VIEWS = {
     "entry_factor": "block_factor",
     "entry_inverse_mass": "block_inverse_mass",
     "entry_delta_velocity": "delta_velocity",
+    "entry_system": "equation_block",
+    "entry_column": "delta_column",
 }

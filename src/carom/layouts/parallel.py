@@ -40,7 +40,7 @@ class IslandProgress:
     visits: Int32
     units: Int32  # returned by `units.write_units`
     manifold_blocks: Int32
-    torsion: Int32
+    character: Int32
     resting: Int32  # 1: its contacts are warm started
     outcome: Int32  # see `warm_starting.NOT_RESTING`
     stage: Int32  # see `UNWRITTEN` in `kernels.parallel.workspace`

@@ -13,6 +13,7 @@ from carom.kernels.types import Int32, Vector3, Vector4, Vector4Rows, Vector8, r
 __all__ = [
     "add_combination4",
     "add_combination8",
+    "add_every",
     "add_multiple",
     "add_multiples",
     "combine4",
@@ -50,6 +51,20 @@ def add_multiple(
     b: Vector4Rows, start_b: Int32, factor: real, a: Vector4Rows, start_a: Int32, world: Int32, count: Int32
 ):
     """Add `factor` times `count` blocks of `a` to those of `b`."""
+    ...
+
+
+@wp.func_native("""
+    const auto* x = &wp::index(a, world, start);
+    auto* y = &wp::index(b, world, first);
+    #pragma clang loop vectorize(disable)
+    for (int i = 0; i < count; ++i)
+        y[i] = wp::add(y[i], x[i * width]);
+""")
+def add_every(
+    b: Vector4Rows, first: Int32, a: Vector4Rows, start: Int32, width: Int32, world: Int32, count: Int32
+):
+    """Add the first of every `width` blocks of `a` to `count` blocks of `b`."""
     ...
 
 

@@ -27,10 +27,10 @@ def island_contacts_kernel(
     root, world = wp.tid()
     if not is_at_stage(state, work, world, root, UNWRITTEN):
         return
-    units, manifold_blocks, torsion = Int32(0), Int32(0), Int32(0)
+    units, manifold_blocks, character = Int32(0), Int32(0), Int32(0)
     first_contact = pair_rows.tree_first_contact[world, root]
     if first_contact >= 0:
-        units, manifold_blocks, torsion = write_units(
+        units, manifold_blocks, character = write_units(
             model, settings, state, scratch, shapes, contacts,
             pair_rows_of_island(pair_rows, work, world, root), world, first_contact,
             work.tree_progress[world, root].pair_row, work.tree_progress[world, root].block,
@@ -38,7 +38,7 @@ def island_contacts_kernel(
         )  # fmt: skip
     work.tree_progress[world, root].units = units
     work.tree_progress[world, root].manifold_blocks = manifold_blocks
-    work.tree_progress[world, root].torsion = torsion
+    work.tree_progress[world, root].character = character
     work.tree_progress[world, root].stage = Int32(WRITTEN)
     if work.tree_progress[world, root].visits < 0 or units < 0:
         state.status_entry[world, STATUS] = OVERFLOW

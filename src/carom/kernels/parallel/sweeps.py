@@ -17,6 +17,7 @@ from carom.kernels.types import Int32, func, kernel, real
 
 @func
 def sweep(
+    model: Model,
     settings: Settings,
     scratch: Scratch,
     pair_rows: PairRows,
@@ -30,9 +31,9 @@ def sweep(
     """Relax the rows of an island until they hardly change; returns the residual, see `sweep_island`."""
     progress = work.tree_progress[world, root]
     residual, sweeps = sweep_island(
-        settings, scratch_of_island(scratch, work, world, root),
-        pair_rows_of_island(pair_rows, work, world, root), world, rows, visits,
-        progress.units, progress.manifold_blocks, progress.torsion, resting,
+        model, settings, scratch_of_island(scratch, work, world, root),
+        pair_rows_of_island(pair_rows, work, world, root), world, root, rows, visits,
+        progress.units, progress.manifold_blocks, progress.character, resting,
     )  # fmt: skip
     work.tree_progress[world, root].residual = residual
     work.tree_progress[world, root].sweeps = sweeps
@@ -48,7 +49,7 @@ def resting_sweeps_kernel(
     if not is_at_stage(state, work, world, root, WRITTEN) or work.tree_progress[world, root].resting == 0:
         return
     # An island at rest has no motors, limits or user constraints to visit.
-    residual = sweep(settings, scratch, pair_rows, work, world, root, 0, 0, 1)
+    residual = sweep(model, settings, scratch, pair_rows, work, world, root, 0, 0, 1)
     work.tree_progress[world, root].outcome = Int32(SOLVED)
     if residual > settings.residual_threshold:
         work.tree_progress[world, root].outcome = Int32(UNSOLVED)

@@ -138,6 +138,41 @@ def velocity_from_forces(
 
 
 @func
+def velocities_from_forces(
+    settings: Settings,
+    model: Model,
+    state: State,
+    scratch: Scratch,
+    world: Int32,
+    tree: Int32,
+    link: Int32,
+    point: Vector3,
+    terms: ContactTerms,
+) -> Vector3:
+    """As `velocity_from_forces`, along the normal and both directions of lateral friction at once."""
+    reference = wp.transform_get_translation(state.link_pose[world, model.tree[tree].first_link])
+    arm = point - reference
+    moment0, moment1, moment2 = (
+        wp.cross(arm, terms.normal),
+        wp.cross(arm, terms.lateral1),
+        wp.cross(arm, terms.lateral2),
+    )
+    acceleration = Vector3(0.0, 0.0, 0.0)
+    dof = model.link[link].nearest_dof
+    while dof >= 0:
+        linear = scratch.dof[world, dof].linear
+        angular = scratch.dof[world, dof].angular
+        along = Vector3(
+            wp.dot(linear, terms.normal) + wp.dot(angular, moment0),
+            wp.dot(linear, terms.lateral1) + wp.dot(angular, moment1),
+            wp.dot(linear, terms.lateral2) + wp.dot(angular, moment2),
+        )
+        acceleration += along * scratch.dof[world, dof].force
+        dof = model.dof[dof].parent
+    return settings.time_step * acceleration
+
+
+@func
 def parting_from_forces(
     settings: Settings,
     model: Model,
@@ -252,13 +287,14 @@ def yielding_terms(
     This is apart from `contact_terms` so that other contacts take no time for it.
     """
     terms = let_contact_yield(settings, shapes, terms, world, terms.ends[1], terms.ends[3])
-    terms.from_forces = parting_from_forces(settings, model, state, scratch, world, terms, terms.normal)
-    terms.lateral_from_forces[0] = parting_from_forces(
-        settings, model, state, scratch, world, terms, terms.lateral1
+    parting = velocities_from_forces(
+        settings, model, state, scratch, world, terms.ends[0], terms.ends[1], terms.point_a, terms
+    ) - velocities_from_forces(
+        settings, model, state, scratch, world, terms.ends[2], terms.ends[3], terms.point_b, terms
     )
-    terms.lateral_from_forces[1] = parting_from_forces(
-        settings, model, state, scratch, world, terms, terms.lateral2
-    )
+    terms.from_forces = parting[0]
+    terms.lateral_from_forces[0] = parting[1]
+    terms.lateral_from_forces[1] = parting[2]
     if terms.ignored != 0:
         terms.softness = real(0.0)
         terms.lateral_softness = real(0.0)

@@ -6,13 +6,14 @@ and user constraints.
 
 import warp as wp
 
+from carom.kernels.convergence.active_set import FIRST_SWEEPS, SWEEPS_BETWEEN, solve_free_rows
+from carom.kernels.convergence.conjugate import go_on, remember_impulses
 from carom.kernels.maths.min_max import later_maximum
 from carom.kernels.solver.activity import is_in_force
-from carom.kernels.solver.conjugate import go_on, remember_impulses
 from carom.kernels.solver.joint_solver import clear_delta_velocities, joint_constraint_rows, keep_row_results
 from carom.kernels.solver.pair_rows import has_room
 from carom.kernels.solver.sweeps import contact_sweep, leave_out_settled, resting_sweep, visit_sweep
-from carom.kernels.solver.units import keep_unit_impulses, write_units
+from carom.kernels.solver.units import YIELDING, keep_unit_impulses, write_units
 from carom.kernels.solver.user_constraints import add_user_rows, keep_user_impulses
 from carom.kernels.solver.warm_starting import (
     NOT_RESTING,
@@ -23,7 +24,7 @@ from carom.kernels.solver.warm_starting import (
 )
 from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, Shapes, State, UserConstraints
 from carom.kernels.types import Int32, func, real
-from carom.layouts.codes import USER
+from carom.layouts.codes import CONE, USER
 from carom.layouts.programs import SETTLING_SWEEPS
 from carom.layouts.status import OVERFLOW, STATUS
 
@@ -93,22 +94,24 @@ def forget_changes(
 
 @func
 def sweep_island(
+    model: Model,
     settings: Settings,
     scratch: Scratch,
     pair_rows: PairRows,
     world: Int32,
+    root: Int32,
     rows: Int32,
     visits: Int32,
     units: Int32,
     manifold_blocks: Int32,
-    torsion: Int32,
+    character: Int32,
     resting: Int32,
 ):
     """Sweep over the rows of an island until it converges; with conjugate directions if it is at rest.
 
     `rows` are those of motors and limits, `visits` those and the rows of user constraints, `units` the units
-    of contacts, with so many manifold blocks among them. `torsion` is 1 if there is rolling or spinning
-    friction, `resting` if the island is warm started; then all units are manifold blocks of rigid bodies.
+    of contacts, with so many manifold blocks among them. `character` is as `write_units` returns it,
+    `resting` 1 if the island is warm started; then all units are manifold blocks of rigid bodies.
 
     Returns:
         Residual of the last sweep, the maximum change of a row's velocity, squared; number of sweeps.
@@ -120,6 +123,11 @@ def sweep_island(
         most = most * RESTING_SWEEPS
     residual, square = real(0.0), real(0.0)
     sweep = Int32(0)
+    # The sweep after which the free rows are solved for.
+    solving = most + 0
+    if character == YIELDING and units > 0 and settings.cone_friction == CONE:
+        solving = Int32(FIRST_SWEEPS)
+    between = Int32(SWEEPS_BETWEEN)
     searching = Int32(1) if (visits > 0 or units > 0) and most > 0 else Int32(0)
     while searching == 1:
         if resting == 1:
@@ -129,10 +137,17 @@ def sweep_island(
             change = resting_sweep(settings, scratch, pair_rows, world, manifold_blocks)
             residual = later_maximum(residual, change)
         elif units > 0:
-            residual = contact_sweep(settings, scratch, pair_rows, world, units, torsion, residual)
+            residual = contact_sweep(settings, scratch, pair_rows, world, units, character, residual)
         sweep += 1
         if residual <= threshold or sweep >= most:
             searching = Int32(0)
+        elif sweep == solving:
+            solving = most + 0
+            # Not where nothing can move along some row, which makes the residual NaN.
+            if residual > threshold:
+                if solve_free_rows(model, scratch, pair_rows, world, root, visits, units) == 1:
+                    solving = sweep + between
+                    between += 1
         elif sweep <= SETTLING_SWEEPS and visits > 0:
             left = leave_out_settled(scratch, pair_rows, world, visits)
             rows = wp.where(left < visits, Int32(NOT_IN_ORDER), rows)
@@ -166,7 +181,7 @@ def solve_island(
     # With 0 iterations there must be no impulses, so there is no warm starting either.
     resting = wp.min(wp.min(pair_rows.tree_rest[world, root], 1), settings.iterations)
     outcome = Int32(NOT_RESTING)
-    units, manifold_blocks, torsion = Int32(0), Int32(0), Int32(0)
+    units, manifold_blocks, character = Int32(0), Int32(0), Int32(0)
     residual = real(0.0)
     sweeps = Int32(0)
     trying = Int32(1)
@@ -174,7 +189,7 @@ def solve_island(
         trying = Int32(0)
         if first_contact >= 0:
             share = settings.contact_warm_starting * real(resting)
-            units, manifold_blocks, torsion = write_units(
+            units, manifold_blocks, character = write_units(
                 model, settings, state, scratch, shapes, contacts, pair_rows, world, first_contact,
                 pair_row, block, share,
             )  # fmt: skip
@@ -182,8 +197,9 @@ def solve_island(
             state.status_entry[world, STATUS] = OVERFLOW
             return
         residual, sweeps = sweep_island(
-            settings, scratch, pair_rows, world, rows, visits, units, manifold_blocks, torsion, resting
-        )
+            model, settings, scratch, pair_rows, world, root, rows, visits, units, manifold_blocks, character,
+            resting,
+        )  # fmt: skip
         if resting == 1:
             outcome = Int32(SOLVED)
             if residual > settings.residual_threshold:

@@ -15,6 +15,7 @@ from carom.kernels.solver.single_contacts import (
     relax_single_torsion,
     single_of,
 )
+from carom.kernels.solver.units import TWISTED
 from carom.kernels.structs import PairRows, Scratch, Settings
 from carom.kernels.types import Int32, func, real
 from carom.layouts.codes import LATERAL_ROW, NORMAL_ROW, ROLLING_ROW, SPINNING_ROW
@@ -269,18 +270,18 @@ def contact_sweep(
     pair_rows: PairRows,
     world: Int32,
     units: Int32,
-    torsion: Int32,
+    character: Int32,
     before: real,
 ) -> real:
     """Relax all rows of an island's contacts: normal, then spinning, rolling and lateral friction.
 
-    `units` and `torsion` are returned by `units.write_units`. Returns the residual after them. As in Bullet
+    `units` and `character` are returned by `units.write_units`. Returns the residual after them. As in Bullet
     spinning friction has no effect without a cone, and the rolling friction of each contact then comes right
     before its lateral friction.
     """
     residual = normal_sweep(scratch, pair_rows, world, units, before)
     kind = Int32(LATERAL_ROW)
-    if torsion != 0:
+    if character == TWISTED:
         if settings.cone_friction != 0:
             kind = Int32(SPINNING_ROW)
             while kind > LATERAL_ROW:

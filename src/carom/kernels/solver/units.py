@@ -24,6 +24,10 @@ from carom.kernels.structs import Contacts, Model, PairRows, Scratch, Settings, 
 from carom.kernels.types import Index4, Int32, Vector3, func, real
 from carom.layouts.codes import ISOTROPIC
 
+# What an island's contacts have: nothing in particular; some have rolling or spinning friction; none has, and
+# all yield.
+PLAIN, TWISTED, YIELDING = 0, 1, 2
+
 
 @func
 def has_torsion(friction: Vector3) -> bool:
@@ -114,10 +118,11 @@ def write_units(
     from their last impulses times `share`.
 
     Returns:
-        Number of units, negative if some did not fit; number of manifold blocks; 1 if some contact has
-        rolling or spinning friction.
+        Number of units, negative if some did not fit; number of manifold blocks; what the contacts have, as
+        `YIELDING`.
     """
-    units, manifold_blocks, torsion, next_matrices = Int32(0), Int32(0), Int32(0), Int32(0)
+    units, manifold_blocks, next_matrices = Int32(0), Int32(0), Int32(0)
+    character = Int32(YIELDING)
     singles = Int32(0)
     contact = first_contact + 0
     while contact >= 0:
@@ -135,6 +140,8 @@ def write_units(
                 pair_rows.terms[world, i] = yielding_terms(
                     settings, model, state, scratch, shapes, world, pair_rows.terms[world, i]
                 )
+            elif character == YIELDING:
+                character = Int32(PLAIN)
             i += 1
         room = has_room(model, pair_rows, row, block, a, b)
         if count > 1:
@@ -143,7 +150,7 @@ def write_units(
                 matrices = next_matrices + 0
                 next_matrices += VECTORS_PER_BLOCK * (tree_blocks(model, a) + tree_blocks(model, b))
                 if next_matrices > pair_rows.matrix_block.shape[1] or not room:
-                    return Int32(-1), manifold_blocks, torsion
+                    return Int32(-1), manifold_blocks, character
             write_manifold_block(
                 settings, model, state, scratch, shapes, pair_rows, world,
                 manifold_blocks, members, count, a, b, matrices,
@@ -154,11 +161,11 @@ def write_units(
         else:
             twisting = has_torsion(pair_rows.terms[world, 0].friction)
             if twisting:
-                torsion = Int32(1)
+                character = Int32(TWISTED)
             places = places_of_single(settings, rigid, twisting)
             if places > 0:
                 if singles + places > pair_rows.single_normal.shape[1]:
-                    return Int32(-1), manifold_blocks, torsion
+                    return Int32(-1), manifold_blocks, character
                 pair_rows.unit_code[world, units] = SINGLES + singles
                 if twisting:
                     pair_rows.unit_code[world, units] = SINGLES + TWISTING + singles
@@ -174,7 +181,7 @@ def write_units(
                 singles += places
             else:
                 if not room:
-                    return Int32(-1), manifold_blocks, torsion
+                    return Int32(-1), manifold_blocks, character
                 row, block = add_contact_rows(
                     settings, model, state, scratch, shapes, pair_rows, pair_rows.terms[world, 0], world,
                     contact, row, block,
@@ -182,7 +189,7 @@ def write_units(
                 pair_rows.unit_code[world, units] = contact
         units += 1
         contact = pair_rows.contact_next[world, members[count - 1]]
-    return units, manifold_blocks, torsion
+    return units, manifold_blocks, character
 
 
 @func

@@ -1,0 +1,1 @@
+"""What makes the sweeps over an island's rows converge sooner."""
