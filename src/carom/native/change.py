@@ -39,6 +39,10 @@ Attributes = dict[int, tuple[object, dict[str, Any]]]
 """Attributes that change, by object: it and its attributes, by its `id`."""
 
 
+class Outdated(Exception):
+    """Another change has been made since a change was begun, which has not been made: begin again."""
+
+
 class Table(Protocol):
     """What can grow: `carom.native.tables.ArrayTable`."""
 
@@ -59,10 +63,13 @@ class Change:
 
     Args:
         renew: Notes what else changes when tables grow, see `make_room`.
+        begun: `changes_made` before it was prepared, if it has to be the first one after that: it relies on
+            places or numbers that any other may change. -1 in a section, where nothing comes in between.
     """
 
     __slots__ = (
         "_attributes",
+        "_begun",
         "_blocks",
         "_contents",
         "_copies",
@@ -75,8 +82,9 @@ class Change:
         "_writes",
     )
 
-    def __init__(self, renew: Callable[[Change], None] | None = None) -> None:
+    def __init__(self, renew: Callable[[Change], None] | None = None, *, begun: int = -1) -> None:
         self._renew = renew
+        self._begun = begun
         self._attributes: Attributes = {}
         # Dictionaries, keys and values, each in turn; likewise dictionaries, contents and present contents,
         # lists and items for their ends, and arrays and what is written to them.
@@ -213,13 +221,17 @@ class Change:
         self._kept.append(kept)
 
     def commit(self) -> None:
-        """Make the change, once; if memory is short, nothing of it."""
+        """Make the change, once; if memory is short, nothing of it.
+
+        Raises:
+            Outdated: It is not the first one since it was begun.
+        """
         if self._copies is not None:
             for copies in self._copies.values():
                 for name, copy in copies.items():
                     self._writes += copies.originals[name], copy
         commit = _commit() or _make
-        commit(
+        made = commit(
             self._attributes,
             self._items,
             self._contents,
@@ -228,7 +240,15 @@ class Change:
             self._cuts,
             self._blocks,
             self._runs,
+            self._begun,
         )
+        if made is not _MISSING:
+            raise Outdated
+
+
+def changes_made() -> int:
+    """How many changes have been made so far, and steps of worlds."""
+    return _counter().value
 
 
 def blank(
@@ -279,6 +299,12 @@ def _commit() -> Callable[..., object] | None:
     return new_builtin("commit", symbols.carom_commit, _MISSING)
 
 
+@cache
+def _counter() -> ctypes.c_int64:
+    symbols = _symbols() if is_usual_python() else None
+    return ctypes.c_int64(0) if symbols is None else ctypes.c_int64.in_dll(symbols, "carom_changes_made")
+
+
 def _symbols() -> Any:
     from carom.native.library import library
 
@@ -294,7 +320,8 @@ def _make(
     cuts: list[bytes],
     blocks: list[bytes],
     runs: list[bytes],
-) -> None:
+    begun: int,
+) -> object:
     """Make a change in Python: in a section, and if an exception comes in the middle, first to the end."""
     ends: dict[int, int] = {}
     extensions = []
@@ -307,6 +334,9 @@ def _make(
     kept += [dictionary.get(key) for dictionary, key, _ in _in_turn(items, 3)]
     error: BaseException | None = None
     with uninterrupted:
+        if begun not in (-1, changes_made()):
+            return begun
+        _counter().value += 1
         for _ in range(_PATIENCE):
             try:
                 for owner, values in attributes.values():
@@ -336,3 +366,4 @@ def _make(
     kept.clear()
     if error is not None:
         raise error
+    return _MISSING

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 
-    step: Callable[[], None] | None = None
+    step: Callable[[], bool] | None = None
     # The step before constraints changed, if nothing else has changed since.
-    step_before: Callable[[], None] | None = None
+    step_before: Callable[[], bool] | None = None
     queries: Queries | None = None
     present_poses: PresentPoses | None = None
     pose_launch: TreeLaunch | None = None

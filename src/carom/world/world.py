@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from ctypes import c_double
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +19,7 @@ from carom.layouts.codes import UserConstraintKind
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
 from carom.native.change import Change
+from carom.native.clock import Clock
 from carom.native.gates import alone, new_lock
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
@@ -109,10 +109,10 @@ class World(
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies: Bodies[Body] = Bodies()
         self.listing: dict[int, Body] = {}
-        self._clock = c_double(0.0)
+        self._clock = Clock()
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
-        self.unspent_time: float = 0.0
+        self._is_in_step = False
         self._viewed: ArrayTable | None = None
         self._replacements = 0
         self._derived: Derived = Derived()
@@ -138,8 +138,8 @@ class World(
             free_ids=[],
             next_id=0,
             links_loaded=0,
-            unspent_time=0.0,
         )
+        self.note_time(change, unspent_time=0.0)
         change.refill(self.bodies, {})
         change.refill(self.listing, {})
         self.take_arrays(change, arrays, ContactArrays(arrays))
@@ -147,6 +147,7 @@ class World(
     def take_arrays(self, change: Change, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Replace all arrays with a change, which has noted the constraints that go with them."""
         engine = Engine(arrays, contact_arrays)
+        engine.keep_times(*self._clock.addresses, self._clock)
         change.set_all(
             self,
             arrays=arrays,
@@ -326,6 +327,7 @@ class World(
             restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
             return
         with self.lock, uninterrupted:
+            self.refuse_in_step()
             change = Change()
             return_to(change, self, self._shape, state)
             if update_poses:
@@ -401,6 +403,7 @@ class World(
 
     def change_scene(self, change: Change) -> None:
         """Discard derived data with a change of bodies, constraints or arrays, which has noted all else."""
+        self.refuse_in_step()
         self.quick.forget(change)
         change.set_all(self, _derived=Derived(), _made_for=None)
         change.get(self, "constraints").rows.forget(change)
@@ -437,6 +440,7 @@ class World(
 
     def pause_step(self, change: Change) -> None:
         """Set the prepared step aside with a change, after which it needs other numbers."""
+        self.refuse_in_step()
         derived = self._derived
         if derived.step is not None:
             change.set_all(derived, step=None, step_before=derived.step)

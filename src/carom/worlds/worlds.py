@@ -90,6 +90,9 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._engine.update_settings(self._scene.parameters)
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
+        if self._engine.keeps_times:
+            addresses = self.times.ctypes.data, self._unspent_times.ctypes.data
+            self._engine.keep_times(*addresses, (self.times, self._unspent_times))
         self.halted: Mask = np.zeros(count, dtype=bool)
         workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.times)
@@ -173,15 +176,18 @@ class Worlds(ContactQueries, Linearizing, Closed):
             # Worlds with different unspent times have their substeps in different steps.
             for unspent in np.unique(self._unspent_times[running]):
                 worlds = running[self._unspent_times[running] == unspent]
-                due, left = [], float(unspent)
+                due, left = [], [float(unspent)]
                 for _ in range(steps):
-                    substeps, left = parameters.substeps_due(left)
+                    substeps, after = parameters.substeps_due(left[-1])
                     due.append(substeps)
-                self._engine.step(due, worlds)
-                self._unspent_times[worlds] = left
-        # Added one by one, as in a single world, for the same rounding.
-        for _ in range(steps):
-            self.times[running] += self.time_step
+                    left.append(after)
+                self._engine.step(due, worlds, left[1:])
+                if not self._engine.keeps_times:
+                    self._unspent_times[worlds] = left[-1]
+        if not self._engine.keeps_times:
+            # Added one by one, as in a single world, for the same rounding.
+            for _ in range(steps):
+                self.times[running] += self.time_step
         status = self._engine.status[running, STATUS]
         if status.any():
             self._halt(running[status > WELL], steps)
@@ -191,7 +197,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
         """Mark worlds whose step failed, and warn."""
         self.halted[worlds] = True
-        self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
+        if not self._engine.keeps_times:
+            self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
         names = {batch.rows.tree: batch.name for batch in self}
         for world in worlds[:_MAX_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
