@@ -118,6 +118,9 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Body.set_base_pose": lambda world: _robot(world).set_base_pose((0, 0, 2), (0, 0, 0.6, 0.8)),
     "Body.set_base_velocity": lambda world: _robot(world).set_base_velocity((1, 2, 3), (4, 5, 6)),
     "Body.set_joint_state": lambda world: _robot(world).set_joint_state(2, (0.0, 0.6, 0.0, 0.8), (1, 2, 3)),
+    "Body.set_joint_states": lambda world: _robot(world).set_joint_states(
+        [(0, [0.2], [0.3]), (2, (0.0, 0.6, 0.0, 0.8), None)]
+    ),
     "Body.change_dynamics": lambda world: _robot(world).change_dynamics(
         0, mass=2.0, lateral_friction=0.4, linear_damping=0.2, joint_damping=0.4, joint_lower_limit=-0.3
     ),
@@ -129,6 +132,7 @@ SETTERS: dict[str, Callable[[World], Any]] = {
     "Joint.spring_reference": _put(_ball, "spring_reference", (0.0, 0.6, 0.0, 0.8)),
     "Joint.friction_loss": _put(_joint, "friction_loss", 0.3),
     "Joint.friction_loss of another": _put(lambda world: _robot(world).joints["k"], "friction_loss", 0.3),
+    "Joint.reset of a leader": lambda world: _robot(world).joints["k"].reset(0.3, 0.4),
     "Joint.reset": lambda world: _joint(world).reset(0.3, 0.4),
     "Joint.set_position_target": lambda world: _joint(world).set_position_target(0.3, max_force=2.0),
     "Joint.set_velocity_target": lambda world: _joint(world).set_velocity_target(0.3, max_force=2.0),
@@ -241,7 +245,7 @@ def test_an_exception_at_any_line_of_a_setter_leaves_before_or_after(name: str, 
                 raise Fault
 
         try:
-            at_lines(lambda: call(world), blow)
+            at_lines(lambda: call(world), blow)  # noqa: B023 (it is called at once)
         except Fault:
             now = _all(world)
             if now == before:

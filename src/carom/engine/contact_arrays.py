@@ -153,8 +153,9 @@ class ContactArrays:
 
     def note_cold_start(self, change: Change) -> None:
         """`forget_warm_start` of a single world with a change."""
-        if count := self.contact_count:
-            change.write(self.contacts.numpy["contact_warm_start"][0, :count], 0.0)
+        arrays = self.contacts.numpy
+        if count := arrays["count_contacts"].item(0, THERE):
+            change.write(arrays["contact_warm_start"][0, :count], 0.0)
 
     def note_resets(self, change: Change, tree: int, *moved: bool) -> None:
         """Note that a change resets a body of a single world, for the order in which contacts are relaxed.

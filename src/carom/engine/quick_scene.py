@@ -48,7 +48,8 @@ class QuickScene:
     Attributes:
         record: The addresses; unknown functions are null.
         take_step: Performs a step, whose addresses are known, and lets the time go on; returns whether
-            it has. If not, nothing has happened, and Python has to perform it. The caller has the world's lock.
+            it has. If not, nothing has happened, and Python has to perform it. The caller has the lock of
+            the world.
     """
 
     __slots__ = (

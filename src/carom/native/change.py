@@ -12,7 +12,7 @@ from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from carom.native.builtins import is_usual_python, new_builtin
 from carom.native.uninterrupted import uninterrupted
@@ -25,13 +25,18 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _MISSING = object()
+# Parts of changes that are empty.
+_NO_ATTRIBUTES: dict[int, Any] = {}
+_NONE: list[Any] = []
 _ZERO = ctypes.c_int64(0)
 _BLOCK = Struct("=QQq")
 packed_block = _BLOCK.pack
 """A `layouts.table_rows.Block` of memory to be copied: addresses of source and target, and its size."""
 
 # `layouts.table_rows.RowCut` and `KernelRun`.
-_PACK_CUT, _RUN = Struct("=4Q").pack, Struct("=4Qq")
+_PACK_CUT = Struct("=4Q").pack
+packed_run = Struct("=4Qq").pack
+"""A `layouts.table_rows.KernelRun`: addresses of a kernel, its arguments and the tree among these; a tree."""
 # Ctrl-C may come while Python makes a change: maximum number of attempts to complete it.
 _PATIENCE = 100
 
@@ -217,7 +222,12 @@ class Change:
 
     def run(self, addresses: Sequence[int], tree: int, kept: object) -> None:
         """Run a kernel on a tree after memory is written; see `TreeLaunch.addresses`."""
-        self._runs.append(_RUN.pack(*addresses, tree))
+        self._runs.append(packed_run(*addresses, tree))
+        self._kept.append(kept)
+
+    def run_record(self, record: bytes, kept: object) -> None:
+        """The same with a packed record."""
+        self._runs.append(record)
         self._kept.append(kept)
 
     def commit(self) -> None:
@@ -230,8 +240,7 @@ class Change:
             for copies in self._copies.values():
                 for name, copy in copies.items():
                     self._writes += copies.originals[name], copy
-        commit = _commit() or _make
-        made = commit(
+        made = (_Maker.make or _Maker.find())(
             self._attributes,
             self._items,
             self._contents,
@@ -248,7 +257,15 @@ class Change:
 
 def changes_made() -> int:
     """How many changes have been made so far, and steps of worlds."""
-    return _counter().value
+    return _Maker.made.value
+
+
+def change_numbers(target: memoryview[float], values: Iterable[float], begun: int) -> None:
+    """A change that writes doubles to memory, and does nothing else; see `Change` for `begun`."""
+    make = _Maker.make or _Maker.find()
+    made = make(_NO_ATTRIBUTES, _NONE, _NONE, _NONE, [target, array("d", values)], _NONE, _NONE, _NONE, begun)
+    if made is not _MISSING:
+        raise Outdated
 
 
 def blank(
@@ -284,25 +301,40 @@ def _in_turn(items: list[Any], count: int) -> list[tuple[Any, ...]]:
 
 
 @cache
-def _commit() -> Callable[..., object] | None:
+def _commit() -> Any:
     """The native function that makes changes; None where Python does."""
-    if not is_usual_python():
-        return None
-    symbols = _symbols()
-    if symbols is None:
-        # The library is in another process; see `tools.wheels.elsewhere`.
-        return None
+    symbols = _symbols() if is_usual_python() else None
+    # None: the library is in another process; see `tools.wheels.elsewhere`.
+    return None if symbols is None else _native(symbols)
+
+
+class _Maker:
+    """What makes changes.
+
+    Attributes:
+        make: The function that does, once it has been found.
+        made: How many it has made.
+    """
+
+    make: ClassVar[Any] = None
+    made: ClassVar[ctypes.c_int64] = ctypes.c_int64(0)
+
+    @classmethod
+    def find(cls) -> Any:
+        """Find it when the first change is made: the library has been loaded then."""
+        cls.make = _commit() or _make
+        if cls.make is not _make:
+            cls.made = ctypes.c_int64.in_dll(_symbols(), "carom_changes_made")
+        return cls.make
+
+
+def _native(symbols: Any) -> Any:
+    """The native function that makes changes."""
     first = ctypes.c_char.in_dll(symbols, "carom_change_functions")
     names = ctypes.string_at(ctypes.addressof(first)).decode().split()
     table = (ctypes.c_void_p * len(names)).in_dll(symbols, "carom_change_table")
     table[:] = [ctypes.addressof(ctypes.c_char.in_dll(ctypes.pythonapi, name)) for name in names]
     return new_builtin("commit", symbols.carom_commit, _MISSING)
-
-
-@cache
-def _counter() -> ctypes.c_int64:
-    symbols = _symbols() if is_usual_python() else None
-    return ctypes.c_int64(0) if symbols is None else ctypes.c_int64.in_dll(symbols, "carom_changes_made")
 
 
 def _symbols() -> Any:
@@ -336,7 +368,7 @@ def _make(
     with uninterrupted:
         if begun not in (-1, changes_made()):
             return begun
-        _counter().value += 1
+        _Maker.made.value += 1
         for _ in range(_PATIENCE):
             try:
                 for owner, values in attributes.values():

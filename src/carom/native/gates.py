@@ -96,6 +96,21 @@ def alone(lock: str) -> Callable[[F], F]:
     return guard
 
 
+def in_section(lock: str) -> Callable[[F], F]:
+    """As `alone`, and no signal handler, finalizer or trace function runs in the middle."""
+    lock_of = attrgetter(lock)
+
+    def guard(function: F) -> F:
+        @wraps(function)
+        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+            with lock_of(first), uninterrupted:
+                return function(first, *arguments, **keywords)
+
+        return cast("F", call)
+
+    return guard
+
+
 def whole(lock: str) -> Callable[[F], F]:
     """As `alone`, for a function that makes a change which has to be the first one since it was called.
 

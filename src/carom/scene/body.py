@@ -23,7 +23,7 @@ from carom.layouts.codes import (
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.native.change import Change, changes_made
+from carom.native.change import Change, change_numbers, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.dynamics_changes import change_dynamics, set_dynamics, set_present
 from carom.scene.handles import world_of
@@ -343,10 +343,10 @@ class Body(Closed):
 
         A fixed base moves with it, and as in Bullet the velocity turns with the base.
         """
-        change = Change(begun=changes_made())
+        begun = changes_made()
         world, first = world_of(self), self.first_velocity
-        change.write_numbers(world.velocity_memory[first : first + BASE_VELOCITIES], (*angular, *linear))
-        change.commit()
+        place = world.velocity_memory[first : first + BASE_VELOCITIES]
+        change_numbers(place, (*angular, *linear), begun)
 
     @whole("world.lock")
     def set_joint_state(

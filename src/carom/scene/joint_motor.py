@@ -156,5 +156,12 @@ class Drives(NamedTuple):
             return
         shape = rows[..., self.dofs, 0].shape
         fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
+        if type(rows) is np.ndarray:
+            told = rows[..., self.dofs, :]
+            for column, values in fitting.items():
+                told[..., column] = values
+            # One statement: indices pick a copy.
+            rows[..., self.dofs, :] = told
+            return
         for column, values in fitting.items():
             rows[..., self.dofs, column] = values

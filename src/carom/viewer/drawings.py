@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from carom.native.change import Change
+from carom.native.uninterrupted import uninterrupted
 from carom.viewer.items import DebugItem, DebugLine, DebugPoints, DebugText
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
@@ -33,7 +34,7 @@ class Drawings:
 
     def draw(self, number: int, item: DebugItem) -> None:
         """Shows an item, replacing one of the same number."""
-        with self._lock:
+        with uninterrupted, self._lock:
             self.items[number] = item
             self._ends.pop(number, None)
             if item.life_time > 0.0:
@@ -44,14 +45,14 @@ class Drawings:
 
     def remove(self, number: int) -> None:
         """Removes an item; unknown numbers are ignored."""
-        with self._lock:
+        with uninterrupted, self._lock:
             self._remove(number)
             self._tell()
 
     @contextmanager
     def changing(self) -> Iterator[None]:
         """No other thread changes items while a change is made that `note_clear` belongs to."""
-        with self._lock:
+        with uninterrupted, self._lock:
             try:
                 yield
             finally:
@@ -66,7 +67,7 @@ class Drawings:
         """Removes items whose life time has passed."""
         if not self._ends and len(self._shown) == len(self.items):
             return
-        with self._lock:
+        with uninterrupted, self._lock:
             now = monotonic()
             for number in [number for number, end in self._ends.items() if end <= now]:
                 self._remove(number)

@@ -73,8 +73,8 @@ class Stepping(PoseUpdates):
         """Raise `StateError` in the middle of a step, as when observers are told of its substeps."""
         if self._is_in_step:
             raise StateError(
-                "the world is in the middle of a step: an observer of substeps can read it, set poses, joints, "
-                "motors and forces, and leave everything else for before_step or after_step"
+                "the world is in the middle of a step: an observer of substeps can read it and set poses, "
+                "joints, motors and forces; before_step and after_step can do everything else"
             )
 
     def step(self, count: int = 1) -> None:

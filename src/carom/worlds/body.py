@@ -9,7 +9,7 @@ from carom.checks import Array
 from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.magnitudes import UNIT_ROUNDING
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
 from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.algorithms.derivatives import DerivativeBatch
 from carom.worlds.checks import Mask
@@ -49,7 +49,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def present(self, value: ArrayLike) -> None:
         self.set_present(value)
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def set_present(self, present: ArrayLike, where: ArrayLike | None = None) -> None:
         """Let the body come or go in each world, or in some.
 
@@ -101,7 +101,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def set_base_poses(
         self,
         positions: ArrayLike,
@@ -152,8 +152,9 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         worlds = self._chosen(where)
         values = worlds.values(self._take(velocities), (BASE_VELOCITIES,), "velocities")
         first = self._body.first_velocity
-        self._state["dof_velocity"][worlds.rows, first : first + 3] = values[:, 3:]
-        self._state["dof_velocity"][worlds.rows, first + 3 : first + BASE_VELOCITIES] = values[:, :3]
+        turned = np.concatenate([values[:, 3:], values[:, :3]], axis=1)
+        # One statement.
+        self._state["dof_velocity"][worlds.rows, first : first + BASE_VELOCITIES] = turned
 
     @property
     @alone("_scene.lock")
@@ -240,13 +241,13 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             place = worlds.values(self._take(points), (3,), "points")
             lever = place - self._poses.poses()[worlds.rows, row, :3]
             torque = torque + np.cross(lever, force)
-        wrench = self._state["link_wrench"]
-        wrench[worlds.rows, row, :3] += force
-        wrench[worlds.rows, row, 3:] += torque
+        wrench = np.concatenate([force, torque], axis=1)
+        # One statement.
+        self._state["link_wrench"][worlds.rows, row] += wrench
 
     # Parameters
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def change_dynamics(
         self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:

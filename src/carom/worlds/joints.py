@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite
 from carom.description import JointType
 from carom.layouts.codes import SENSED
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
 from carom.scene.joint_motor import Drives
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
@@ -99,7 +99,7 @@ class JointBatch(Batch):
             return slice(int(columns[0]), int(columns[-1]) + 1)
         return columns
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def enable_sensors(self, *joints: int | str) -> None:
         """Switch the force-torque sensors of joints on in all worlds; all joints if none is named."""
         chosen = joints or tuple(range(self._body.joint_count))
@@ -233,7 +233,7 @@ class JointBatch(Batch):
         with self._rows_of_dofs("dof_torque", worlds) as rows:
             rows[:, columns] = values
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def disable_motors(self, joints: list[int | str] | None = None, where: ArrayLike | None = None) -> None:
         """Switch off the motors and springs of joints, in all worlds or in some."""
         columns, _ = self._chosen_joints(joints, one_freedom=joints is not None)

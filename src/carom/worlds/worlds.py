@@ -16,7 +16,8 @@ from carom.engine.engine import MAX_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
@@ -137,7 +138,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         return self._scene.parameters.time_step
 
     @time_step.setter
-    @alone("lock")
+    @in_section("lock")
     def time_step(self, value: float) -> None:
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
@@ -162,7 +163,9 @@ class Worlds(ContactQueries, Linearizing, Closed):
         while count > 0:
             # Sensors with a memory measure after each step.
             steps = 1 if self._sensors.remembered else min(count, MAX_STEPS)
-            self._step(steps, chosen)
+            # Handlers of signals run between steps.
+            with uninterrupted:
+                self._step(steps, chosen)
             count -= steps
 
     def _step(self, steps: int, chosen: np.ndarray | None) -> None:
@@ -210,7 +213,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         if len(worlds) > _MAX_NAMED:
             warnings.warn(f"{len(worlds)} worlds are halted", SimulationWarning, stacklevel=4)
 
-    @alone("lock")
+    @in_section("lock")
     def detect_collisions(self) -> None:
         """Find the contacts of all worlds for their present coordinates, without a step."""
         if self._engine.can_collide:
@@ -228,7 +231,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
-    @alone("lock")
+    @in_section("lock")
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
         """Restore worlds to states of `save`; the steps that follow are then the same, bit for bit.
 
@@ -269,7 +272,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
             "parameters": parameters_of(self._engine),
         }
 
-    @alone("lock")
+    @in_section("lock")
     def resume(self, saved: Mapping[str, Any]) -> None:
         """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
 
@@ -290,7 +293,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
         self.time_step = saved["time_step"]
 
-    @alone("lock")
+    @in_section("lock")
     def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
         """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
 
@@ -323,7 +326,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         lone.parameters.sensor_seed = int(self.sensor_seeds[number])
         return lone
 
-    @alone("lock")
+    @in_section("lock")
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
@@ -363,7 +366,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def gravity(self, value: ArrayLike) -> None:
         self.set_gravity(value)
 
-    @alone("lock")
+    @in_section("lock")
     def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
         """Set the gravity of each world, or of some.
 
@@ -378,7 +381,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
         self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
 
-    @alone("lock")
+    @in_section("lock")
     def set_fluid(
         self,
         density: ArrayLike | None = None,
@@ -409,7 +412,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         for name, values in found.items():
             self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
 
-    @alone("lock")
+    @in_section("lock")
     def enable_constraint(
         self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
     ) -> None:
