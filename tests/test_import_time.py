@@ -61,6 +61,9 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
     assert not loaded & {f"carom.description.{name}" for name in unused}
     assert not loaded & {"carom.description.compliance", "carom.description.fluid"}
     assert not loaded & {"carom.formats.mesh.ply", "carom.formats.mesh.stl", "carom.formats.reading.written"}
+    assert not loaded & {"carom.formats.reading.cursor", "carom.formats.reading.ignored"}
+    assert not loaded & {"carom.model.merge_fixed", "carom.model.mjcf_inertia", "carom.model.written_inertia"}
+    assert not loaded & {"carom.geometry.heightfield", "carom.geometry.triangle_hierarchy"}
     assert not loaded & {
         "carom.model.soft_spec",
         "carom.scene.snapshot",
@@ -68,6 +71,37 @@ def test_a_first_step_does_not_load_what_it_does_not_use():
         "sysconfig",
     }
     assert not loaded & {"tempfile", "carom.formats.mesh.collada", "carom.formats.mesh.gltf"}
+
+
+def data_classes_after(statement: str) -> set[str]:
+    lines = (
+        "import gc, sys",
+        statement,
+        "classes = [it for it in gc.get_objects() if isinstance(it, type)]",
+        "classes = [it for it in classes if '__dataclass_params__' in vars(it)]",
+        "made = {f'{it.__module__}.{it.__qualname__}' for it in classes}",
+        "print('made:', *made)",
+    )
+    script = [sys.executable, "-c", "\n".join(lines)]
+    said = subprocess.run(script, capture_output=True, text=True, check=True).stdout
+    return set(said.partition("made:")[2].split())
+
+
+def test_the_import_makes_one_data_class():
+    assert data_classes_after("import pybullet") == {"carom.description.pose.Pose"}
+
+
+def test_a_first_step_makes_few_data_classes():
+    """The decorator compiles up to six functions for each class, which takes 1 to 5 million instructions."""
+    lines = (
+        "import pybullet as p, pybullet_data",
+        "p.connect(p.DIRECT)",
+        'p.loadURDF(pybullet_data.getDataPath() + "/r2d2.urdf")',
+        "p.stepSimulation()",
+    )
+    # Those that describe a robot, parameters of the engine and of links, and rows.
+    made = data_classes_after("\n".join(lines))
+    assert len(made) <= 31, made
 
 
 def test_a_small_image_starts_no_threads():

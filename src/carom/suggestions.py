@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
-import re
 import sys
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-_UNKNOWN = re.compile(r"^([\w.]+)\(\) got an unexpected keyword argument '(\w+)'")
+_UNKNOWN = r"^([\w.]+)\(\) got an unexpected keyword argument '(\w+)'"
 _PACKAGES = ("carom", "pybullet")
 _LIKENESS = 0.6
 
@@ -21,12 +19,17 @@ def suggestion(problem: BaseException) -> str | None:
 
     Computed only after a script has failed, so calls take no longer.
     """
-    found = _UNKNOWN.match(str(problem)) if isinstance(problem, TypeError) else None
+    if not isinstance(problem, TypeError):
+        return None
+    import re
+
+    found = re.match(_UNKNOWN, str(problem))
     if found is None:
         return None
     function = _function_called(found[1])
     if function is None:
         return None
+    import inspect
     from difflib import get_close_matches
 
     names = [name for name in inspect.signature(function).parameters if name != "self"]

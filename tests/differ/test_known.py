@@ -245,8 +245,8 @@ def test_balls_of_mjcf_are_round_as_well():
 @pytest.mark.parametrize(
     ("file", "ours", "expected"),
     [
-        ("mjcf/pusher.xml", 0.129, True),
-        ("mjcf/pusher.xml", 0.131, False),
+        ("mjcf/pusher.xml", 0.159, True),
+        ("mjcf/pusher.xml", 0.161, False),
         ("mjcf/pusher.xml", 0.099, False),
         ("mjcf/ant.xml", 0.101, False),
     ],
@@ -528,6 +528,9 @@ def test_what_fixed_joints_tie_does_not_touch_itself(file: str, flags: int, othe
     touching = [((other, -1), (1, 4))]
     assert is_known(calls, "links", touching, []) == expected
     assert not is_known(calls, "links", [], touching)
+    points = [[0, other, 1, -1, 4], [0, 0, 1, -1, -1]]
+    assert is_known(calls, ".len", points, points[1:]) == expected
+    assert not is_known(calls, ".len", points, [])
 
 
 @pytest.mark.parametrize(

@@ -139,3 +139,22 @@ def test_motors_keep_targets_of_after_a_state_was_saved(calls: list[Call], expec
 )
 def test_joints_of_mjcf_files_may_turn_no_inertia(name: str, flags: int, expected: bool):
     assert is_stated([call(0, "loadMJCF", f"mjcf/{name}.xml", flags=flags)], "positions.1", 1e-2) == expected
+
+
+@pytest.mark.parametrize(
+    ("made", "driven", "values", "field", "expected"),
+    [
+        ("r2d2.urdf", [2, 3], (0.0, 0.004), "positions.0.2.0", True),
+        ("r2d2.urdf", 2, (0.004, -1e-20), "positions.0.2.0", True),
+        ("r2d2.urdf", 2, (0.003, 0.004), "positions.0.2.0", False),
+        ("r2d2.urdf", 3, (0.0, 0.004), "positions.0.2.0", False),
+        ("r2d2.urdf", 2, (0.0, 0.004), "base.0.2", False),
+        ("a1/a1.urdf", 2, (0.0, 0.004), "positions.0.2.0", False),
+    ],
+)
+def test_motors_drive_against_limits_that_are_hardly_reached(
+    made: str, driven: int | list[int], values: tuple[float, float], field: str, expected: bool
+):
+    calls = [call(0, "loadURDF", made), call(1, "setJointMotorControl2", {"$": 0}, driven, 0), STEP, PROBE]
+    difference = Difference(3, "@probe", Place(field, *values, 4e-3), "free")
+    assert (statement(calls, difference) is not None) == expected

@@ -47,7 +47,7 @@ from carom.kernels.types import (
 from carom.layouts.codes import BOX, CAPSULE, HULL, SPHERE
 from carom.layouts.contacts import MAX_CORNERS
 
-# The polytope is grown until its nearest face is this near to the boundary [m].
+# Depths are exact to this [m]; the polytope is grown until its nearest face is nearer to the boundary.
 PRECISION = 1e-7
 
 

@@ -353,10 +353,10 @@ def is_the_shorter_way_out(seen: Seen) -> bool:
 
 
 def is_as_thick_as_a_margin(seen: Seen) -> bool:
-    """Whether PyBullet's points are nearer, by what a capsule given by two points lacks of its margin."""
+    """Whether PyBullet's points are nearer, by twice what a capsule given by two points lacks of a margin."""
     theirs, ours = seen.difference.place[1:3]
     least = min((least for least, _ in _swept(seen)), default=_MARGIN_OF_SWEPT)
-    return 0.0 < ours[8] - theirs[8] < _MARGIN_OF_SWEPT - least
+    return 0.0 < ours[8] - theirs[8] < 2.0 * (_MARGIN_OF_SWEPT - least)
 
 
 def hits_another_at_the_same_place(seen: Seen) -> bool:
@@ -556,17 +556,6 @@ def comes_near_bare_links(seen: Seen) -> bool:
             bare |= any(shape == -1 and joint != FIXED for shape, joint in zip(links, joints, strict=False))
             moving += has_joints(seen, call) or call["a"][:1] > [0]
     return bare and moving > 1
-
-
-def touches_itself_rigidly(seen: Seen) -> bool:
-    """Whether the links that touch in PyBullet only are of one body each, that has fixed joints alone."""
-    theirs, ours = seen.difference.place[1:3]
-    return not ours and all(a[0] == b[0] and _is_rigid(seen, maker_of(seen, a[0])) for a, b in theirs)
-
-
-def _is_rigid(seen: Seen, body: Call | None) -> bool:
-    """Whether the body that a call makes may touch itself, and has no joint that moves."""
-    return body is not None and body["k"].get("flags", 0) & TOUCHES_ITSELF > 0 and not has_joints(seen, body)
 
 
 def goes_on_with_masses(seen: Seen) -> bool:

@@ -57,7 +57,6 @@ from tools.differ.causes import (
     stands_out_round,
     starts_at_a_limit,
     starts_with_a_ball_joint,
-    touches_itself_rigidly,
     turns_by_no_rotation,
 )
 from tools.differ.compare import Difference
@@ -65,11 +64,13 @@ from tools.differ.pose_causes import looks_from_within, starts_half_a_turn_away
 from tools.differ.programs import Call
 from tools.differ.row_causes import (
     drives_before_restoring,
+    drives_from_a_limit,
     fixes_what_touches_itself,
     leaves_inertia_to_mjcf,
     renumbers_islands,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
+    touches_itself_rigidly,
 )
 
 
@@ -238,7 +239,7 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "Whether a joint that stands exactly at its limit is beyond it",
-        lambda seen: seen.differs("@probe") and starts_at_a_limit(seen),
+        lambda seen: seen.differs("@probe") and (starts_at_a_limit(seen) or drives_from_a_limit(seen)),
     ),
     Known(
         "places links as if the base were larger by the square of that length",
@@ -359,7 +360,9 @@ KNOWN: tuple[Known, ...] = (
     ),
     Known(
         "Links that fixed joints tie to each other do not touch each other",
-        lambda seen: seen.differs("getContactPoints links") and touches_itself_rigidly(seen),
+        lambda seen: (
+            seen.differs("getContactPoints links", "getContactPoints .len") and touches_itself_rigidly(seen)
+        ),
     ),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",

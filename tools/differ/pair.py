@@ -93,6 +93,8 @@ class Pair:
         data = data_of(oracle)
         self.oracle = Server(oracle, data, warm)
         self.carom = Server(sys.executable, data, warm)
+        self._afresh: Server | None = None
+        self._new = (oracle, data)
 
     def run(self, calls: Sequence[Call], seconds: float = _SECONDS) -> tuple[Outcome, Outcome]:
         """What came of a program in PyBullet, and in Carom, performed at the same time."""
@@ -100,8 +102,16 @@ class Pair:
         self.carom.order(calls, seconds)
         return self.oracle.answer(), self.carom.answer()
 
+    def afresh(self) -> Server:
+        """Real PyBullet in an interpreter that has loaded nothing before."""
+        if self._afresh is None:
+            self._afresh = Server(*self._new)
+        return self._afresh
+
     def close(self) -> None:
-        """End both interpreters."""
+        """End the interpreters."""
+        if self._afresh is not None:
+            self._afresh.close()
         self.oracle.close()
         self.carom.close()
 

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from tools.differ.assets import AT_LIMITS, FIXED
-from tools.differ.causes import LEFT_OVER, MAKE, TOUCHES_ITSELF, Seen, has_joints, joint_types
+from tools.differ.causes import (
+    LEFT_OVER,
+    MAKE,
+    TOUCHES_ITSELF,
+    Seen,
+    has_joints,
+    joint_types,
+    maker_of,
+)
 from tools.differ.programs import Call
 
 _ROBOTS = 2
+_STILL = 1e-9
+_MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 _INERTIA_FROM_FILE = 2
 # Files whose mass matrices lack full rank with this flag: in PyBullet the least eigenvalue is at most 1e-16
 # of the greatest. Those of ant, hopper, walker2d, reacher and the pendulums have full rank.
@@ -75,6 +86,46 @@ def _counts_as_still(made: Call, types: list[int], link: int) -> bool:
         # 0 is the base, and 1 the first link.
         link = parents[link] - 1
     return link == 0
+
+
+def touches_itself_rigidly(seen: Seen) -> bool:
+    """Whether what touches in PyBullet only are links of one body each, that has fixed joints alone."""
+    field, theirs, ours = seen.difference.place[:3]
+    if field == ".len":
+        others = [point for point in theirs if point[1] != point[2] or not _is_rigid(seen, point[1])]
+        return len(others) == len(ours) < len(theirs)
+    return not ours and all(a[0] == b[0] and _is_rigid(seen, a[0]) for a, b in theirs)
+
+
+def _is_rigid(seen: Seen, label: int) -> bool:
+    """Whether a body may touch itself, and has no joint that moves."""
+    body = maker_of(seen, label)
+    return body is not None and body["k"].get("flags", 0) & TOUCHES_ITSELF > 0 and not has_joints(seen, body)
+
+
+def drives_from_a_limit(seen: Seen) -> bool:
+    """Whether a joint that a motor drives, of a body loaded at limits, moves off 0 in one of both only."""
+    said = re.fullmatch(r"positions\.(\d+)\.(\d+)(\.0)?", seen.difference.place.field)
+    if said is None:
+        return False
+    body, joint = maker_of(seen, int(said[1])), int(said[2])
+    theirs, ours = (_number(value) for value in seen.difference.place[1:3])
+    return (
+        body is not None
+        and body["a"][:1] != []
+        and str(body["a"][0]) in AT_LIMITS
+        and min(abs(theirs), abs(ours)) < _STILL
+        and any(
+            call["f"] in _MOTORS
+            and call["a"][0].get("$") == body["id"]
+            and joint in (call["a"][1] if isinstance(call["a"][1], list) else [call["a"][1]])
+            for call in seen.before
+        )
+    )
+
+
+def _number(value: Any) -> float:
+    return value[0] if isinstance(value, list) else value
 
 
 def fixes_what_touches_itself(seen: Seen) -> bool:

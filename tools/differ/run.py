@@ -6,9 +6,10 @@
 A program is a list of calls (`programs.py`), made from a seed and a theme (`themes.py`, of `kinds/`). Two
 interpreters perform it (`pair.py`, `perform.py`), with PyBullet's files for both. `compare.py` says where
 results differ: beyond 1e-9 before the first contact, and in the first steps after it as far as rounding
-lets one see. What docs/differences states is counted only (`known.py`). Of everything else the first
-program of each kind is made as short as it can be (`minimise.py`), printed as a script, and written to
-build/differ, and the status is 1. All of them are listed there, in differing.txt.
+lets one see. What docs/differences states is counted only (`known.py`), and so is that to which PyBullet has
+another answer itself, in another process or from starts 1e-12 m elsewhere (`rounding.py`). Of everything
+else the first program of each kind is made as short as it can be (`minimise.py`), printed as a script, and
+written to build/differ, and the status is 1. All of them are listed there, in differing.txt.
 
 With `--getters` it is seen instead what every getter says right after every other call (`each_call.py`).
 `record.py` keeps a sample of programs with PyBullet's answers for `make test`.
@@ -32,6 +33,7 @@ from tools.differ.known import statement
 from tools.differ.minimise import Minimiser
 from tools.differ.pair import ORACLE, ROOT, Pair
 from tools.differ.programs import Call, script
+from tools.differ.rounding import doubted_by_pybullet
 from tools.differ.themes import THEMES, program
 
 LISTED = "differing.txt"
@@ -88,7 +90,9 @@ class Differ:
         self.found.died += theirs["died"] is not None
         self.found.agreed += min(len(theirs["results"]), len(ours["results"])) - len(differences)
         for difference in differences:
-            says = statement(calls, difference)
+            says = statement(calls, difference) or doubted_by_pybullet(
+                self._pair.oracle, self._pair.afresh(), calls, theirs, ours, difference
+            )
             if says:
                 self.found.known[says] += 1
                 continue

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from carom.description.pose import Vector3
+from carom.description.printed import Printed
 from carom.layouts.contacts import MARGIN
 
 if TYPE_CHECKING:
@@ -17,45 +18,45 @@ MAX_SIZE = 1e15
 """Size [m] up to which scripts make and scale shapes; beyond it the normals of contacts are lost."""
 
 
-@dataclass(frozen=True, slots=True)
-class Sphere:
+@dataclass(frozen=True, repr=False, slots=True)
+class Sphere(Printed):
     """A sphere centred on its frame."""
 
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+@dataclass(frozen=True, repr=False, slots=True)
+class Box(Printed):
     """A cuboid centred on its frame; `half_extents` is half its size along x, y and z."""
 
     half_extents: Vector3
 
 
-@dataclass(frozen=True, slots=True)
-class Cylinder:
+@dataclass(frozen=True, repr=False, slots=True)
+class Cylinder(Printed):
     """A cylinder centred on its frame, its axis along z; `length` is its full height."""
 
     radius: float
     length: float
 
 
-@dataclass(frozen=True, slots=True)
-class Capsule:
+@dataclass(frozen=True, repr=False, slots=True)
+class Capsule(Printed):
     """A cylinder of height `length` along z with a hemisphere of `radius` on each end."""
 
     radius: float
     length: float
 
 
-@dataclass(frozen=True, slots=True)
-class Plane:
+@dataclass(frozen=True, repr=False, slots=True)
+class Plane(Printed):
     """The half space below the origin of its frame; `normal` points out of it."""
 
     normal: Vector3 = (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Mesh:
+@dataclass(frozen=True, repr=False, slots=True)
+class Mesh(Printed):
     """A triangle mesh from a file.
 
     Attributes:
@@ -71,15 +72,15 @@ class Mesh:
     asked_for: str = field(default="", compare=False)
 
 
-@dataclass(frozen=True, slots=True)
-class SignedDistanceField:
+@dataclass(frozen=True, repr=False, slots=True)
+class SignedDistanceField(Printed):
     """A shape given by distances on a grid, from a file."""
 
     path: Path
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class ConvexHull:
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
+class ConvexHull(Printed):
     """The convex hull of points.
 
     Attributes:
@@ -93,8 +94,8 @@ class ConvexHull:
     margin: float = MARGIN
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class TriangleMesh:
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
+class TriangleMesh(Printed):
     """A triangle mesh that is not replaced by its convex hull.
 
     Attributes:
@@ -114,8 +115,8 @@ class TriangleMesh:
     uvs: NDArray[np.float64] | None = None
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Heightfield:
+@dataclass(frozen=True, repr=False, eq=False, slots=True)
+class Heightfield(Printed):
     """Terrain: heights on a grid, centred on its frame, z up.
 
     Attributes:

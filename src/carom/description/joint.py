@@ -7,6 +7,7 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.printed import Printed
 from carom.layouts.codes import JointCode
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ JOINT_CODE = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class JointLimit:
+@dataclass(frozen=True, repr=False, slots=True)
+class JointLimit(Printed):
     """Bounds of a joint; `lower > upper` means unlimited.
 
     Attributes:
@@ -63,8 +64,8 @@ class JointLimit:
     twist: float = -1.0
 
 
-@dataclass(frozen=True, slots=True)
-class Mimic:
+@dataclass(frozen=True, repr=False, slots=True)
+class Mimic(Printed):
     """This joint follows another: position = multiplier · other + offset."""
 
     joint: str
@@ -72,8 +73,8 @@ class Mimic:
     offset: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class SafetyController:
+@dataclass(frozen=True, repr=False, slots=True)
+class SafetyController(Printed):
     """Soft limits of a drive, as the file states them."""
 
     soft_lower: float = 0.0
@@ -82,8 +83,8 @@ class SafetyController:
     k_velocity: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Joint:
+@dataclass(frozen=True, repr=False, slots=True)
+class Joint(Printed):
     """A joint between two links of a robot.
 
     Attributes:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.geometry import Capsule, Geometry
 from carom.description.pose import IDENTITY, Pose
+from carom.description.printed import Printed
 
 if TYPE_CHECKING:
     from carom.description.compliance import ContactCompliance
@@ -16,8 +17,8 @@ if TYPE_CHECKING:
 Rgba = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class Inertial:
+@dataclass(frozen=True, repr=False, slots=True)
+class Inertial(Printed):
     """Mass and rotational inertia about the centre of mass.
 
     Attributes:
@@ -31,8 +32,8 @@ class Inertial:
     tensor: tuple[float, float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Material:
+@dataclass(frozen=True, repr=False, slots=True)
+class Material(Printed):
     """Appearance of a visual shape: colour, specular colour and texture file."""
 
     name: str = ""
@@ -41,8 +42,8 @@ class Material:
     texture: Path | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Collision:
+@dataclass(frozen=True, repr=False, slots=True)
+class Collision(Printed):
     """A collision shape; `frame` is its pose in the link frame.
 
     Attributes:
@@ -65,8 +66,8 @@ class Collision:
         return self.ends_frame is not None and isinstance(self.geometry, Capsule) and not self.implicit
 
 
-@dataclass(frozen=True, slots=True)
-class Visual:
+@dataclass(frozen=True, repr=False, slots=True)
+class Visual(Printed):
     """A visual shape; `frame` is its pose in the link frame.
 
     It `stands_in` for the visual shapes of a link that has none if it was made from a collision shape.
@@ -80,8 +81,8 @@ class Visual:
     stands_in: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ContactParameters:
+@dataclass(frozen=True, repr=False, slots=True)
+class ContactParameters(Printed):
     """Contact parameters of a link; None means the engine's default.
 
     Attributes:
@@ -110,8 +111,8 @@ class ContactParameters:
     compliance: ContactCompliance | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Link:
+@dataclass(frozen=True, repr=False, slots=True)
+class Link(Printed):
     """One rigid body of a robot.
 
     Attributes:

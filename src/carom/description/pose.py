@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from carom.description.printed import Printed
+
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class Pose:
+@dataclass(frozen=True, repr=False, slots=True)
+class Pose(Printed):
     """Position and orientation of a frame in its parent frame.
 
     Attributes:

@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 from carom.description.joint import Joint
 from carom.description.link import Link, Material
+from carom.description.printed import Printed
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
     from carom.description.deformable import Deformable
 
 
-@dataclass(frozen=True, slots=True)
-class Robot:
+@dataclass(frozen=True, repr=False, slots=True)
+class Robot(Printed):
     """Links and joints as a file describes them, checked to form one tree.
 
     Attributes:

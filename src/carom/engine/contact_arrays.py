@@ -11,6 +11,8 @@ import numpy as np
 from carom.engine.lost_contacts import Rows, counts_of, kept_rows, renumber
 from carom.layouts.contacts import (
     CONTACT_COLUMNS,
+    HELD_BEFORE,
+    HOLDING,
     KNOWN,
     MAX_RESETS,
     OVERLAPS,
@@ -30,6 +32,11 @@ from carom.native.tables import ArrayTable
 
 # Initial number of contacts in each of many worlds.
 _MIN_CONTACTS = 4
+
+
+def cold_start(counters: np.ndarray) -> np.ndarray:
+    """Counters of contacts that were `counters`, after a body was moved; as in `bodies.cpp`."""
+    return np.where((counters == HOLDING) | (counters == HELD_BEFORE), HELD_BEFORE, 0.0)
 
 
 class ContactArrays:
@@ -90,7 +97,7 @@ class ContactArrays:
         kept = kept_rows(self.contacts, range(first, first + count))
         renumber(kept, (first, count), links)
         # As if the body had been moved, see `forget_warm_start`.
-        kept["contact_warm_start"].fill(0.0)
+        kept["contact_warm_start"] = cold_start(kept["contact_warm_start"])
         counts = self.contacts.numpy["count_contacts"][0].copy()
         counts[KNOWN] -= max(0, min(count, int(counts[KNOWN]) - first))
         self.shapes.remove(change, rows)
@@ -136,26 +143,20 @@ class ContactArrays:
         """`forget_order` of a single world with a change."""
         change.write_numbers(self.contacts.numpy["count_contacts"][0, SORTED : SORTED + 1], (0,), "i")
 
-    def forget_warm_start(self, worlds: np.ndarray | None = None) -> None:
-        """Do not warm start contacts in the next step, because a body was moved.
+    def forget_warm_start(self, worlds: np.ndarray) -> None:
+        """Do not warm start contacts of worlds in the next step, because bodies were moved.
 
         So the next steps depend only on the new poses, not on earlier ones.
-
-        Args:
-            worlds: Indices of the worlds; None if there is only one.
         """
-        if worlds is not None:
-            self.contacts.numpy["contact_warm_start"][worlds] = 0.0
-            return
-        count = self.contact_count
-        if count > 0:
-            self.contacts.numpy["contact_warm_start"][0, :count] = 0.0
+        counters = self.contacts.numpy["contact_warm_start"]
+        counters[worlds] = cold_start(counters[worlds])
 
     def note_cold_start(self, change: Change) -> None:
         """`forget_warm_start` of a single world with a change."""
         arrays = self.contacts.numpy
         if count := arrays["count_contacts"].item(0, THERE):
-            change.write(arrays["contact_warm_start"][0, :count], 0.0)
+            counters = arrays["contact_warm_start"][0, :count]
+            change.write(counters, cold_start(counters))
 
     def note_resets(self, change: Change, tree: int, *moved: bool) -> None:
         """Note that a change resets a body of a single world, for the order in which contacts are relaxed.

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from carom.description.printed import Printed
+
 DEFAULT_TIME_STEP = 1.0 / 240.0
 # Bullet's -0.04 is a float32.
 DEFAULT_SPLIT_THRESHOLD = -0.03999999910593033
 
 
-@dataclass(slots=True)
-class EngineParameters:
+@dataclass(repr=False, slots=True)
+class EngineParameters(Printed):
     """The parameters of `setPhysicsEngineParameter` and similar functions.
 
     After changing a field call `World.apply_parameters`.

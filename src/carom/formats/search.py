@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from carom.formats.unpacking import appears
 
@@ -18,8 +18,7 @@ _PACKAGE_NAME = re.compile(r"<name>([^<]*)</name>")
 _PACKAGE_BYTES = 1 << 16
 
 
-@dataclass(frozen=True, slots=True)
-class AssetSearch:
+class AssetSearch(NamedTuple):
     """The directories that are searched for files, and their order.
 
     Attributes:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +11,6 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class Polyhedron:
     """Flat faces around a solid, or the triangles of a surface. The arrays are read-only.
 
@@ -25,14 +22,17 @@ class Polyhedron:
         corners: Indices into `vertices`, counter-clockwise around each face as seen from outside.
     """
 
-    vertices: Floats
-    planes: Floats
-    first_corner: Ints
-    corner_count: Ints
-    corners: Ints
+    __slots__ = ("corner_count", "corners", "first_corner", "planes", "vertices")
 
-    def __post_init__(self) -> None:
-        for array in (self.vertices, self.planes, self.first_corner, self.corner_count, self.corners):
+    def __init__(
+        self, vertices: Floats, planes: Floats, first_corner: Ints, corner_count: Ints, corners: Ints
+    ) -> None:
+        self.vertices = vertices
+        self.planes = planes
+        self.first_corner = first_corner
+        self.corner_count = corner_count
+        self.corners = corners
+        for array in (vertices, planes, first_corner, corner_count, corners):
             array.setflags(write=False)
 
     def bounds(self) -> tuple[Floats, Floats]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from carom.geometry.polyhedron import Polyhedron
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class TriangleHierarchy:
+class TriangleHierarchy(NamedTuple):
     """A complete binary tree of boxes over the faces of a surface.
 
     Node 1 is the root; nodes 2n and 2n + 1 lie below node n; leaf i is node `leaf_count` + i and holds face i

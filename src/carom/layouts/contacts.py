@@ -75,10 +75,12 @@ FAR, CLOSE, CLOSE_WITH_MANIFOLD, MEETING = -1, 0, 1, 2
 # Value of `Contacts.contact_warm_start` for contacts whose manifold held in the last step; others have at
 # most 1.
 HOLDING = 2.0
+# Value for contacts that held until a body was moved; it counts on as 0 does.
+HELD_BEFORE = 0.5
 # Maximum number of rows of a contact or a user constraint.
 ROWS_PER_PAIR = 6
-# Maximum number of vertices of EPA's polytope; it has up to twice as many faces.
-MAX_CORNERS = 64
+# Maximum number of vertices of EPA's polytope, as in Bullet; it has up to twice as many faces.
+MAX_CORNERS = 128
 
 
 @struct

@@ -202,7 +202,7 @@ class Scene:
         find_poses: Computes the link poses of a tree.
         find_twists: Computes the link velocities of a tree.
         contact_count: Columns of `State.count_contacts` of the world.
-        contact_warm_starts: Impulses at which the solver starts, one for each contact.
+        contact_warm_starts: Counters of warm starting, one for each contact.
         contact_room: Number of contacts that fit.
         tree_resets: By row of tree, see `note_reset`.
         surface: By row of link: contact parameters, in the order of `SURFACE`.

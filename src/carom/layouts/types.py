@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 _SCALARS: dict[str, Any] = {
     "int32": ctypes.c_int32,
@@ -21,8 +20,7 @@ _SCALARS: dict[str, Any] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Type:
+class Type(NamedTuple):
     """Type of a scalar, or of a vector or matrix of fixed size.
 
     Attributes:
@@ -44,8 +42,7 @@ class Type:
         return c_type
 
 
-@dataclass(frozen=True, slots=True)
-class ArrayType:
+class ArrayType(NamedTuple):
     """Type of an array of one or two dimensions; the first of two is the world axis.
 
     Attributes:

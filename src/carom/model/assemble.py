@@ -13,10 +13,8 @@ from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.body_spec import BASE, DEFAULT_LINK_DAMPING, BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
-from carom.model.merge_fixed import merge_fixed_links
 from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
-from carom.model.written_inertia import hang_balls, has_massless_base, merge_rigidly, written_inertia
 
 _log = Logger(__name__)
 
@@ -44,16 +42,22 @@ def assemble(
         DescriptionError: The file of a collision mesh cannot be used.
     """
     root = make_tree(robot)
+    read_inertia = inertia_from_file
     if as_written:
+        # Imported only here and below: PyBullet's reading needs none of it.
+        from carom.model.written_inertia import has_massless_base, written_inertia
+
+        read_inertia = written_inertia
         flags |= LoadFlags.USE_INERTIA_FROM_FILE
         fixed_base = fixed_base or has_massless_base(root)
     has_terms = any((robot.base_damping, robot.base_armature, robot.base_stiffness))
     if flags & LoadFlags.MERGE_FIXED_LINKS and not has_terms:
-        (merge_rigidly if as_written else merge_fixed_links)(root, fixed_base=fixed_base)
+        _merge(root, fixed_base=fixed_base, as_written=as_written)
     if as_written:
+        from carom.model.written_inertia import hang_balls
+
         hang_balls(root)
     order = file_order(root) if flags & LoadFlags.MAINTAIN_LINK_ORDER else depth_first(root)
-    read_inertia = written_inertia if as_written else inertia_from_file
     base = _link_spec(root.link, flags, compound_margin, read_inertia, is_massless=fixed_base)
     if as_written:
         base.damping, base.armature = robot.base_damping, robot.base_armature
@@ -79,6 +83,17 @@ def assemble(
     if flags & LoadFlags.PRINT_URDF_INFO:
         _log.info("%s", outline(body))
     return body
+
+
+def _merge(root: TreeNode, *, fixed_base: bool, as_written: bool) -> None:
+    if as_written:
+        from carom.model.written_inertia import merge_rigidly
+
+        merge_rigidly(root, fixed_base=fixed_base)
+    else:
+        from carom.model.merge_fixed import merge_fixed_links
+
+        merge_fixed_links(root, fixed_base=fixed_base)
 
 
 def _link_spec(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from carom.description.printed import Printed
 from carom.model.bounds import Bounds
 
 
-@dataclass(slots=True)
-class TreeRows:
+@dataclass(repr=False, slots=True)
+class TreeRows(Printed):
     """The rows of a body in the flat arrays."""
 
     tree: int

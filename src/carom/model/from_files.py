@@ -10,17 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.description.pose import Pose
-from carom.formats.reading.cursor import Cursor
 from carom.formats.search import AssetSearch
 from carom.geometry.hull import convex_hull
 from carom.layouts.flags import LoadFlags
 from carom.model.assemble import assemble
 from carom.model.body_spec import BodySpec
-from carom.model.mjcf_inertia import set_mjcf_inertias
 from carom.model.shape_pieces import shape_pieces
 
 if TYPE_CHECKING:
     from carom.formats.mjcf.compiled import CompiledModel
+    from carom.formats.reading.cursor import Cursor
 
 # Flags that PyBullet ignores for MJCF files, and those that it always sets.
 _NOT_FOR_MJCF = (
@@ -92,6 +91,8 @@ def mjcf_bodies(
         spec = assemble(placed.robot, flags=loading, compound_margin=0.0)
         for link in (spec.base, *spec.links):
             link.default_margins = True
+        from carom.model.mjcf_inertia import set_mjcf_inertias
+
         set_mjcf_inertias(spec)
         bodies.append((spec, placed.pose))
     return bodies

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from math import hypot, sqrt
+from typing import NamedTuple
 
 from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
@@ -22,8 +22,7 @@ AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class PlacedPiece:
+class PlacedPiece(NamedTuple):
     """A piece and its pose.
 
     Attributes:
@@ -49,10 +48,10 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
             _log.warning("link %r: nothing collides with a signed distance field", link.name)
         pieces = shape_pieces(collision.geometry, implicit_cylinder=implicit_cylinder)
         if collision.swept:
-            pieces = [replace(piece, size=(*piece.size[:2], FIRST_MARGIN)) for piece in pieces]
+            pieces = [piece._replace(size=(*piece.size[:2], FIRST_MARGIN)) for piece in pieces]
         margin = shape_margin(link, collision)
         if margin is not None:
-            pieces = [replace(piece, margin=margin) for piece in pieces]
+            pieces = [piece._replace(margin=margin) for piece in pieces]
         depth = int(_is_moved(link, collision)) + _is_compound(collision)
         placed.extend(PlacedPiece(piece, pose, index, depth) for piece in pieces)
     return placed

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -76,7 +75,6 @@ class Surface(Protocol):
     anisotropic_friction: tuple[float, float, float]
 
 
-@dataclass(repr=False, eq=False, slots=True)
 class BodyShapes:
     """The rows of a body's shapes.
 
@@ -89,12 +87,23 @@ class BodyShapes:
         widening: For each link, whether its margin widens its bounds.
     """
 
-    rows: TreeRows
-    first: dict[str, int] = field(default_factory=dict)
-    count: dict[str, int] = field(default_factory=dict)
-    bounds: list[Bounds] = field(default_factory=list)
-    margins: list[float] = field(default_factory=list)
-    widening: list[bool] = field(default_factory=list)
+    __slots__ = ("bounds", "count", "first", "margins", "rows", "widening")
+
+    def __init__(
+        self,
+        rows: TreeRows,
+        first: dict[str, int],
+        count: dict[str, int],
+        bounds: Sequence[Bounds] = (),
+        margins: Sequence[float] = (),
+        widening: Sequence[bool] = (),
+    ) -> None:
+        self.rows = rows
+        self.first = first
+        self.count = count
+        self.bounds = list(bounds)
+        self.margins = list(margins)
+        self.widening = list(widening)
 
 
 class ShapeArrays:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
 from threading import RLock
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,14 +28,15 @@ from carom.description import (
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
-from carom.geometry.heightfield import heightfield_surface
 from carom.geometry.hull import SMALLEST, convex_hull, extreme_points
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
-from carom.geometry.triangle_hierarchy import TriangleHierarchy, triangle_hierarchy
 from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
 from carom.native.digest import blake2b
 from carom.native.trigonometry import cos, sin
+
+if TYPE_CHECKING:
+    from carom.geometry.triangle_hierarchy import TriangleHierarchy
 
 MAX_HULL_VERTICES = 512
 """Most vertices of a hull; hulls of finer meshes are simplified."""
@@ -57,8 +58,7 @@ _CACHED = 1024
 MeshGeometry = ConvexHull | TriangleMesh
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class ShapePiece:
+class ShapePiece(NamedTuple):
     """One convex shape, one triangle mesh or one height field.
 
     Attributes:
@@ -229,12 +229,16 @@ def _triangles_of(geometry: TriangleMesh) -> ShapePiece:
     surface = polyhedron_of_triangles(geometry.vertices, geometry.triangles)
     if not len(surface.planes):
         raise DescriptionError("no triangle of the mesh has an area")
+    from carom.geometry.triangle_hierarchy import triangle_hierarchy
+
     hierarchy = triangle_hierarchy(surface)
     return _polyhedral(ShapeKind.TRIANGLES, hierarchy.surface, geometry.margin, hierarchy=hierarchy)
 
 
 @lru_cache(_CACHED)
 def _heightfield_piece(geometry: Heightfield) -> ShapePiece:
+    from carom.geometry.heightfield import heightfield_surface
+
     return _polyhedral(ShapeKind.HEIGHTFIELD, heightfield_surface(geometry), 0.0, geometry.heights.shape[1])
 
 

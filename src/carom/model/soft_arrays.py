@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.description.pose import Vector3
 from carom.layouts.soft import ANCHORS, BODIES, FREE, HELD, HELD_UNDAMPED, SoftModel
 from carom.model.body_rows import TreeRows
 from carom.native.change import Change
@@ -15,7 +13,7 @@ from carom.native.products import determinants, inverses
 from carom.native.tables import ArrayTable
 
 if TYPE_CHECKING:
-    from carom.model.soft_spec import SoftSpec
+    from carom.model.soft_spec import Anchor, SoftRows, SoftSpec
 
 _AXES = ("soft", "node", "spring", "tetra", "face")
 # Fields that contain row numbers, and the axis of these rows; values are updated when rows are removed.
@@ -30,49 +28,6 @@ _INDEX_FIELDS = {
     "tetra_nodes": "node",
     "face_nodes": "node",
 }
-
-
-@dataclass(repr=False, eq=False, slots=True)
-class SoftRows:
-    """The rows of a soft body.
-
-    Attributes:
-        rows: Rows of the tree that represents it, which are updated elsewhere.
-        spec: Its specification.
-        first: First row on each axis.
-        count: Rows on each axis.
-    """
-
-    rows: TreeRows
-    spec: SoftSpec
-    first: dict[str, int] = field(default_factory=dict)
-    count: dict[str, int] = field(default_factory=dict)
-
-
-@dataclass(repr=False, eq=False, slots=True)
-class Anchor:
-    """A node that is attached to a link or to the world.
-
-    Attributes:
-        id: Its number among the constraints of the world.
-        soft: The soft body.
-        node: Index of the node in the soft body, from 0.
-        body: Rows of the body it is attached to; None for the world.
-        link: Link of that body; -1 is the base.
-        pivot: Point of attachment in the inertial frame of the link [m].
-        damped: Whether damping within the soft body acts on the link, too.
-        late_force: Share of the external force on a body without joints that acts after the node has
-            followed it.
-    """
-
-    id: int
-    soft: SoftRows
-    node: int
-    body: TreeRows | None
-    link: int
-    pivot: Vector3
-    damped: bool = True
-    late_force: float = 0.0
 
 
 class SoftArrays:
@@ -105,6 +60,8 @@ class SoftArrays:
             "face": len(spec.faces),
         }
         self.table.reserve({axis: self.used[axis] + number for axis, number in count.items()})
+        from carom.model.soft_spec import SoftRows
+
         soft = SoftRows(rows, spec, {axis: self.used[axis] for axis in _AXES}, count)
         self._write(soft)
         for axis, number in count.items():

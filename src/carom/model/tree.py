@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass, field
 
 from carom.description import Joint, Link, Robot
 
 
-@dataclass(repr=False, eq=False, slots=True)
 class TreeNode:
     """A link, its parent joint, and its children.
 
@@ -19,10 +17,19 @@ class TreeNode:
         children: Its children, in the order of their joints in the file.
     """
 
-    link: Link
-    index: int
-    joint: Joint | None = None
-    children: list[TreeNode] = field(default_factory=list)
+    __slots__ = ("children", "index", "joint", "link")
+
+    def __init__(
+        self,
+        link: Link,
+        index: int,
+        joint: Joint | None = None,
+        children: list[TreeNode] | None = None,
+    ) -> None:
+        self.link = link
+        self.index = index
+        self.joint = joint
+        self.children: list[TreeNode] = [] if children is None else children
 
 
 def make_tree(robot: Robot) -> TreeNode:

@@ -11,8 +11,7 @@ from __future__ import annotations
 import ctypes
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from carom.layouts.gates import MAX_CLIENTS, Conduct, Guard
 from carom.layouts.quick_calls import MAX_CALLS, QuickCall
@@ -20,8 +19,7 @@ from carom.native.host import Host, host
 from carom.native.uninterrupted import begin, end, is_our_own
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class Parameter:
+class Parameter(NamedTuple):
     """A parameter of a quick call.
 
     Attributes:

@@ -21,7 +21,7 @@ from carom.queries.soft_pairs import touching_pairs
 
 if TYPE_CHECKING:
     from carom.engine.contact_arrays import ContactArrays
-    from carom.model.soft_arrays import SoftRows
+    from carom.model.soft_spec import SoftRows
 
 # Point of the soft body [m], shape, gap beyond the margin [m], unit normal towards the soft body, force on it
 # [N].

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from carom.model.soft_arrays import SoftArrays, SoftRows
+    from carom.model.soft_arrays import SoftArrays
+    from carom.model.soft_spec import SoftRows
 
 # Least barycentric coordinate of a foot point: as in the solver, faces extend a little beyond their edges.
 _BESIDE = -0.05

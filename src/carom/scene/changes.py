@@ -15,7 +15,6 @@ from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.body import Body
-from carom.scene.draft import draft_of
 from carom.scene.dynamics_changes import change_base_freedom
 from carom.scene.handles import world_of
 from carom.scene.pattern import pattern_of
@@ -60,6 +59,8 @@ def _add_to_draft(
     note: Callable[[Change, list[Body]], None] | None,
 ) -> list[Body]:
     """Add bodies to a draft of a world, where they can be changed as any others before the world has them."""
+    from carom.scene.draft import draft_of
+
     draft = draft_of(world)
     added = [append_now(draft.world, spec, pose) for spec, pose in bodies]
     for body in added:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from operator import attrgetter
 
 from carom.description.pose import Vector3
+from carom.description.printed import Printed
 from carom.layouts.contacts import MARGIN
 from carom.model.body_spec import LinkSpec
 from carom.model.inertia import collision_margin
@@ -16,8 +17,8 @@ DEFAULT_CONTACT_PROCESSING_THRESHOLD = 1e18
 UNSET = -1.0
 
 
-@dataclass(slots=True)
-class LinkDynamics:
+@dataclass(repr=False, slots=True)
+class LinkDynamics(Printed):
     """Inertia, surface and joint limits of a link.
 
     Attributes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from carom.description.pose import IDENTITY
 from carom.model.body_rows import BodyRows
@@ -23,8 +23,7 @@ _spare: list[tuple[WorldArrays, ShapeArrays]] = []
 """Empty tables, or none while a thread writes to them."""
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class Pattern:
+class Pattern(NamedTuple):
     """What is the same for all bodies with one specification.
 
     Attributes:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse
-from carom.model.soft_arrays import Anchor
+from carom.model.soft_spec import Anchor
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from carom.checks import Array, finite
 from carom.description.transform import rotation_matrix
-from carom.model.soft_arrays import Anchor, SoftRows
-from carom.model.soft_spec import SoftSpec
+from carom.model.soft_spec import Anchor, SoftRows, SoftSpec
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.native.products import dots, length, product

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from carom.description.pose import IDENTITY, Pose, Vector3
+from carom.description.printed import Printed
 from carom.engine.contact_arrays import ContactArrays
 from carom.layouts.codes import UserConstraintKind
 from carom.native.change import Change
@@ -90,8 +91,8 @@ _PATH_FIELDS = (
 _UNKNOWN = (None,) * (1 + len(_FIELDS))
 
 
-@dataclass(eq=False, slots=True)
-class UserConstraint:
+@dataclass(repr=False, eq=False, slots=True)
+class UserConstraint(Printed):
     """A user constraint.
 
     Attributes:

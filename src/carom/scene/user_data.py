@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from carom.description.printed import Printed
 from carom.model.body_spec import BASE, BodySpec
 from carom.native.change import Change
 
@@ -11,8 +12,8 @@ WHOLE = -1
 """Used instead of a visual shape if the text belongs to the link, or, for the base, to the body."""
 
 
-@dataclass(slots=True)
-class UserDatum:
+@dataclass(repr=False, slots=True)
+class UserDatum(Printed):
     """A text attached to a body, a link or a visual shape.
 
     Attributes:

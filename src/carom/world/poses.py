@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from carom.engine.contact_arrays import ContactArrays
@@ -24,20 +23,20 @@ if TYPE_CHECKING:
     from carom.scene.snapshot import Shape
 
 
-@dataclass(repr=False, eq=False, slots=True)
 class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 
-    step: Callable[[], bool] | None = None
-    # The step before constraints changed, if nothing else has changed since.
-    step_before: Callable[[], bool] | None = None
-    queries: Queries | None = None
-    present_poses: PresentPoses | None = None
-    pose_launch: TreeLaunch | None = None
-    twist_launch: TreeLaunch | None = None
-    shape: Shape | None = None
-    link_places: list[tuple[int, int]] | None = None
-    link_columns: tuple[list[int], list[int]] | None = None
+    def __init__(self) -> None:
+        self.step: Callable[[], bool] | None = None
+        # The step before constraints changed, if nothing else has changed since.
+        self.step_before: Callable[[], bool] | None = None
+        self.queries: Queries | None = None
+        self.present_poses: PresentPoses | None = None
+        self.pose_launch: TreeLaunch | None = None
+        self.twist_launch: TreeLaunch | None = None
+        self.shape: Shape | None = None
+        self.link_places: list[tuple[int, int]] | None = None
+        self.link_columns: tuple[list[int], list[int]] | None = None
 
 
 class PoseUpdates(ABC):

@@ -29,7 +29,7 @@ from carom.layouts.codes import (
     UserConstraintKind,
 )
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.soft_arrays import Anchor
+from carom.model.soft_spec import Anchor
 from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted

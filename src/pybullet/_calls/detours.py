@@ -10,10 +10,9 @@ Python.
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass
 from threading import Lock
 from types import CodeType, FunctionType
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from pybullet._calls.builtin import UsualForm, exports
 from pybullet._calls.quick import pause
@@ -33,8 +32,7 @@ _ASKING = (
 )
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
-class Function:
+class Function(NamedTuple):
     """A function of the public interface.
 
     Attributes:

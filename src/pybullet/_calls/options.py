@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from pybullet._calls.constants import SHARED_MEMORY_KEY
 
@@ -18,8 +18,7 @@ def named_values(options: str) -> Iterator[tuple[str, str]]:
         yield name, value.replace('"', "")
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
+class Target(NamedTuple):
     """The arguments of `connect` after the method.
 
     Attributes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from carom.native.change import Change
@@ -14,7 +13,6 @@ if TYPE_CHECKING:
 Shape = TypeVar("Shape")
 
 
-@dataclass(repr=False, eq=False, slots=True)
 class CollisionShape:
     """A shape made by `createCollisionShape`, and its visual shapes, for links without any.
 
@@ -22,10 +20,13 @@ class CollisionShape:
     and triangle meshes of files keep their ids.
     """
 
-    collisions: tuple[Collision, ...]
-    visuals: tuple[Visual, ...]
-    used: bool = False
-    lasts: bool = False
+    def __init__(
+        self, collisions: tuple[Collision, ...], visuals: tuple[Visual, ...], lasts: bool = False
+    ) -> None:
+        self.collisions = collisions
+        self.visuals = visuals
+        self.used = False
+        self.lasts = lasts
 
 
 class ShapeTable(Generic[Shape]):

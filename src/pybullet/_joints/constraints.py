@@ -16,7 +16,7 @@ from pybullet._clients.lookup import link_of, no_body
 from pybullet._maths.rotations import unit
 
 if TYPE_CHECKING:
-    from carom.model.soft_arrays import Anchor
+    from carom.model.soft_spec import Anchor
     from carom.scene.body import Body
     from carom.scene.user_constraints import UserConstraint
 

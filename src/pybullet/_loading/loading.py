@@ -89,8 +89,8 @@ def loadURDF(fileName: str, *arguments: Any, **keywords: Any) -> int:
         **keywords: The parameters below, by name.
         basePosition: Position of the link frame of the base [m]; its centre of mass may be elsewhere.
         baseOrientation: Orientation of that frame (x, y, z, w).
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
-            deformable worlds it makes external forces act twice, as in PyBullet.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. As in
+            PyBullet, air does not slow such bodies, and in deformable worlds external forces act twice.
         useFixedBase: 1 to fix the base in the world.
         flags: `URDF_*`, added up.
         globalScaling: Factor on all lengths; 1 when not greater than 0.

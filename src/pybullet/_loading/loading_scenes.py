@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,8 +43,8 @@ def loadSDF(
     Args:
         sdfFileName: The file: as given, in `data` folders near the working directory, or in the
             directory of `setAdditionalSearchPath`.
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
-            deformable worlds it makes external forces act twice, as in PyBullet.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. As in
+            PyBullet, air does not slow such bodies, and in deformable worlds external forces act twice.
         globalScaling: Factor on lengths, 1 when not greater than 0. As in PyBullet, it does not apply to
             radii of spheres and to joint limits.
         physicsClientId: The connection.
@@ -144,4 +143,5 @@ def _load(
         fail(problem, str(error))
     if len(bodies) > _MAX_BODIES:
         fail(f"SDF exceeds body capacity: {len(bodies)} > {_MAX_BODIES}")
-    return add_bodies(client, bodies, problem, replace(load, count=len(bodies)), maximal=maximal)
+    counted = FileLoad(load.function, load.arguments, load.takes_pose, len(bodies))
+    return add_bodies(client, bodies, problem, counted, maximal=maximal)

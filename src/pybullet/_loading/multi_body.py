@@ -144,8 +144,8 @@ def createMultiBody(
         linkParentIndices: Its parent: 0 for the base, k for the k-th link of the lists.
         linkJointTypes: `JOINT_REVOLUTE`, `JOINT_PRISMATIC`, `JOINT_SPHERICAL` or `JOINT_FIXED`.
         linkJointAxis: Axis of its joint, in the joint frame.
-        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. In
-            deformable worlds it makes external forces act twice, as in PyBullet.
+        useMaximalCoordinates: Bodies always have reduced coordinates in Carom; 1 logs a warning. As in
+            PyBullet, air does not slow such bodies, and in deformable worlds external forces act twice.
         flags: `URDF_*` for self-collision, link order, inertia and sleeping, added up.
         batchPositions: Makes a body at each of these positions instead of `basePosition`.
         physicsClientId: The connection.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -25,13 +26,15 @@ def warn_of_coordinates(
     """Log a warning if a script asks for maximal coordinates, which Carom does not support."""
     if use_maximal > 0 and client.deformable:
         logger.warning(
-            "%s: %s only makes external forces act twice, as in PyBullet's deformable world; bodies have "
-            "reduced coordinates.",
+            "%s: %s only takes away the damping by air and makes external forces act twice, as in PyBullet's "
+            "deformable world; bodies have reduced coordinates.",
             function,
             argument,
         )
     elif use_maximal > 0:
-        logger.warning("%s: %s has no effect; bodies have reduced coordinates.", function, argument)
+        logger.warning(
+            "%s: %s only takes away the damping by air; bodies have reduced coordinates.", function, argument
+        )
 
 
 def keep_flags_of_colours(client: Client, flags: int) -> None:
@@ -66,9 +69,11 @@ def add_bodies(
     """Add bodies to the world of a client, each with the pose of its base's link frame; returns their ids.
 
     `load` is the call that loads them from a file; `maximal` says whether the script asked for maximal
-    coordinates, which files that PyBullet wrote keep apart. If the file of a mesh cannot be used,
-    `pybullet.error` is raised, with `problem` first, and the world is unchanged.
+    coordinates: air does not slow such bodies, and files that PyBullet wrote keep them apart. If the file of
+    a mesh cannot be used, `pybullet.error` is raised, with `problem` first, and the world is unchanged.
     """
+    if maximal:
+        bodies = [(replace(spec, link_damping=0.0), pose) for spec, pose in bodies]
     try:
         with client.lock:
             client.bodies.forget_all()

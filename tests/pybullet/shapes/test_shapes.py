@@ -174,6 +174,17 @@ def test_maximal_coordinates_are_reduced_ones_with_a_warning(
     assert p.getDynamicsInfo(body, -1)[10] == 2
 
 
+def test_air_does_not_slow_what_has_maximal_coordinates(client: int) -> None:
+    bodies = [p.createMultiBody(1.0, useMaximalCoordinates=maximal) for maximal in (0, 1)]
+    for body in bodies:
+        p.resetBaseVelocity(body, [1.0, 2.0, 3.0])
+    for _ in range(100):
+        p.stepSimulation()
+    # PyBullet's velocities.
+    assert p.getBaseVelocity(bodies[0])[0] == pytest.approx((0.92614475, 1.85228949, 2.77843424), abs=1e-8)
+    assert p.getBaseVelocity(bodies[1])[0] == (1.0, 2.0, 3.0)
+
+
 def landscape(heights: list[float], replaced: int = -1) -> int:
     return p.createCollisionShape(
         p.GEOM_HEIGHTFIELD,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 
@@ -26,7 +25,6 @@ _AFTER_SLASH = re.compile(rb"/\S*")
 _BROKEN = re.compile(rb"[.eE]")
 
 
-@dataclass(repr=False, eq=False, slots=True)
 class _Group:
     """What stands between two `o` or `g` lines.
 
@@ -36,10 +34,11 @@ class _Group:
         lines: Line number of the first polygon of each block.
     """
 
-    name: str = ""
-    corners: list[NDArray[np.int64]] = field(default_factory=list)
-    sizes: list[NDArray[np.int64]] = field(default_factory=list)
-    lines: list[int] = field(default_factory=list)
+    def __init__(self, name: str = "") -> None:
+        self.name = name
+        self.corners: list[NDArray[np.int64]] = []
+        self.sizes: list[NDArray[np.int64]] = []
+        self.lines: list[int] = []
 
 
 def read_obj(data: bytes, file: Path) -> list[MeshPart]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,6 @@ from numpy.typing import NDArray
 from carom.errors import DescriptionError
 
 
-@dataclass(frozen=True, repr=False, eq=False, slots=True)
 class MeshPart:
     """One piece of a mesh file: an object or group of an OBJ, a geometry of a DAE, a whole STL.
 
@@ -22,9 +20,12 @@ class MeshPart:
         name: Name of the object, group or geometry; may be empty.
     """
 
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int32]
-    name: str = ""
+    __slots__ = ("name", "triangles", "vertices")
+
+    def __init__(self, vertices: NDArray[np.float64], triangles: NDArray[np.int32], name: str = "") -> None:
+        self.vertices = vertices
+        self.triangles = triangles
+        self.name = name
 
 
 def make_part(

@@ -11,13 +11,13 @@ from carom.description import Material, Pose
 from carom.description.pose import IDENTITY, Vector3
 from carom.description.transform import quaternion_from_rpy
 from carom.errors import DescriptionError
-from carom.formats.reading.cursor import Cursor, TracedElement
 from carom.formats.search import AssetSearch
 from carom.formats.xml_element import Element, from_calls
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.logger import Logger
 
 if TYPE_CHECKING:
+    from carom.formats.reading.cursor import Cursor
     from carom.formats.reading.written import Written
 
 Default = TypeVar("Default")
@@ -82,6 +82,9 @@ class FileContext:
 
     def file_of(self, element: Element) -> Path:
         """The file that contains an element: an included one for what macros made of that."""
+        # Reached only with a warning or an error.
+        from carom.formats.reading.cursor import TracedElement
+
         return element.file if isinstance(element, TracedElement) else self.file
 
     def warn(self, element: Element, message: str) -> None:

@@ -9,25 +9,20 @@ from typing import TYPE_CHECKING, TypeVar
 
 from carom.description import Joint, Link, Robot, Visual
 from carom.formats.files import FileCache, read_bounded
-from carom.formats.reading.cursor import Cursor
-from carom.formats.reading.ignored import IgnoredList
 from carom.formats.robot.context import FileContext
 from carom.formats.robot.file import MAX_FILE_BYTES, check_scale, locate, warn_of_assumed_masses
 from carom.formats.robot.link import read_link
 from carom.formats.robot.tree import find_root
 from carom.formats.search import AssetSearch
-from carom.formats.urdf.extensions import read_extensions
-from carom.formats.urdf.following import checked_followers
 from carom.formats.urdf.geometry import read_urdf_geometry
 from carom.formats.urdf.joint import read_joint
 from carom.formats.urdf.material import read_global_materials, read_visual_material
-from carom.formats.urdf.moving_mass import report_motion_without_mass
-from carom.formats.urdf.rules import URDF_RULES
 from carom.formats.xml_element import Element
 from carom.formats.xml_tree import parse_root
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec
+    from carom.formats.reading.ignored import IgnoredList
     from carom.formats.reading.written import Written
     from carom.formats.xacro.document import Expanded
 
@@ -58,12 +53,14 @@ def read_written_urdf(
     Links without `<inertial>` have no mass, products of inertia count singly, and an axis has no length. A
     joint that moves nothing with mass is reported, see `carom.formats.urdf.moving_mass`.
     """
-    return _read(path, scale, search or AssetSearch(), written)
+    robot, ignored = _read(path, scale, search or AssetSearch(), written)
+    assert ignored is not None
+    return robot, ignored
 
 
 def _read(
     path: Path, scale: float, search: AssetSearch, written: Written | None
-) -> tuple[Robot, IgnoredList]:
+) -> tuple[Robot, IgnoredList | None]:
     check_scale(scale)
     file = path
     # The search begins at an absolute path itself, so an unchanged file there is the one it would find.
@@ -81,7 +78,7 @@ def _read(
     data, stamp = read_bounded(file, MAX_FILE_BYTES)
     context, expanded = _context(data, file, scale, search, written)
     robot, references = _parse(context)
-    ignored = IgnoredList() if context.cursor is None else context.cursor.ignored()
+    ignored = None if context.cursor is None else context.cursor.ignored()
     _cache.put((file, scale, search, written), stamp, (robot, references, ignored, expanded))
     return robot, ignored
 
@@ -99,6 +96,11 @@ def _context(
     element = parse_root(data, file, "robot")
     if written is None:
         return FileContext(file, element, scale, search), None
+    # Imported only here: PyBullet's reading needs none of it.
+    from carom.formats.reading.cursor import Cursor
+    from carom.formats.urdf.extensions import read_extensions
+    from carom.formats.urdf.rules import URDF_RULES
+
     expanded = None
     if b"xacro" in data or file.suffix.lower() == ".xacro" or written.xacro_args:
         # Imported only here: few files need it.
@@ -138,6 +140,9 @@ def _parse(context: FileContext) -> tuple[Robot, dict[str, Path | None]]:
         from carom.formats.urdf.transmission import read_transmissions
 
         actuators = read_transmissions(context, joints)
+        from carom.formats.urdf.following import checked_followers
+        from carom.formats.urdf.moving_mass import report_motion_without_mass
+
         report_motion_without_mass(context, links, joints)
         joints = checked_followers(context, joints)
         links, joints, root = with_free_root(context, links, joints, root)
@@ -195,5 +200,5 @@ def _with_late_material(context: FileContext, visual: Visual) -> Visual:
 
 _cache: FileCache[
     tuple[Path, float, AssetSearch, Written | None],
-    tuple[Robot, dict[str, Path | None], IgnoredList, Expanded | None],
+    tuple[Robot, dict[str, Path | None], IgnoredList | None, Expanded | None],
 ] = FileCache(64)

@@ -13,11 +13,14 @@ from carom.kernels.contact.manifold import keep_contact, keep_for_matching, side
 from carom.kernels.maths.min_max import minimum
 from carom.kernels.structs import Contacts, Pairs, Shapes, State
 from carom.kernels.types import Index2, Index4, Int32, Vector3, Vector4, func, real
+from carom.layouts.contacts import HELD_BEFORE
 
 # Slots have rows of previous contacts, or for new points `NEW` minus the index of the candidate.
 NEW = wp.constant(-1)
 # Predecessor of a new point that replaces no previous one.
 NOBODY = wp.constant(-1)
+# Counter of the contacts of a manifold that held until a body was moved.
+HELD_UNTIL_MOVED = real(HELD_BEFORE)
 
 Points = wp.types.matrix((4, 3), real)
 
@@ -157,7 +160,8 @@ def gather(
     """Write a manifold of the previous contacts [first, last) and of the first `found` candidates.
 
     Separated points are dropped before the new points are added if one of the shapes is part of a compound,
-    and after it otherwise, as in Bullet.
+    and after it otherwise, as in Bullet. But what was held at rest has other depths than in Bullet: if it was
+    moved away, chance would decide which new points the old ones keep out, so those are dropped first.
 
     Returns:
         Number of contacts: `wanted`, those of earlier pairs, plus the contacts of this manifold. Contacts
@@ -166,8 +170,10 @@ def gather(
     boxes = are_boxes(shapes, sides[0], sides[1])
     manifold = start_gathering(pairs, world, first, last)
     compound = is_part_of_compound(shapes, sides[0]) or is_part_of_compound(shapes, sides[1])
-    if compound:
-        manifold = refresh(state, pairs, world, manifold, far)
+    if compound or (first < last and pairs.previous_warm_start[world, first] == HELD_UNTIL_MOVED):
+        remaining = refresh(state, pairs, world, manifold, far)
+        if compound or remaining.count < manifold.count:
+            manifold = remaining
     both = sides_of(shapes, state, world, sides)
     for candidate in range(found):
         point = wp.transform_point(both.to_a, candidate_on_a(pairs.candidate, world, candidate))

@@ -8,6 +8,7 @@ the normal of the face is its direction.
 
 import warp as wp
 
+from carom.kernels.maths.min_max import maximum
 from carom.kernels.shapes.cores import Core, support
 from carom.kernels.shapes.gjk import triangle_weights
 from carom.kernels.shapes.segments import any_perpendicular
@@ -26,10 +27,12 @@ from carom.kernels.types import (
 )
 from carom.layouts.contacts import MAX_CORNERS
 
-# A face is on the boundary if the boundary is at most this far beyond it [m].
-PRECISION = real(1.0e-7)
+# A face is on the boundary if the boundary is at most this far beyond it [m], as in Bullet: at the rim of a
+# cylinder the deepest point is as inexact as the square root of this is. Both are for differences up to 1 m,
+# and grow with these, since rounding does.
+PRECISION = real(1.0e-12)
 # A face is removed if a new corner is more than this above its plane [m]; less than `PRECISION`.
-VISIBLE = real(1.0e-8)
+VISIBLE = real(1.0e-13)
 # A point is in a face if it is at most this far from the face [m].
 ON_FACE = real(1.0e-9)
 # A Minkowski difference at most this thick has no inside [m].
@@ -252,6 +255,9 @@ def overlap(
         on_a = points_a[world, 1]
         points_a[world, 1] = points_a[world, 2]
         points_a[world, 2] = on_a
+    scale = real(1.0)
+    for row in range(4):
+        scale = maximum(scale, wp.length(points[world, row]))
     add_face(points, planes, faces, world, 0, 0, 1, 2)
     add_face(points, planes, faces, world, 1, 0, 3, 1)
     add_face(points, planes, faces, world, 2, 1, 3, 2)
@@ -272,13 +278,13 @@ def overlap(
             depth = wp.dot(w, normal)
             outward = normal
             corners = faces[world, nearest]
-        if plane_height(plane, w) <= PRECISION:
+        if plane_height(plane, w) <= PRECISION * scale:
             growing = Int32(0)
         else:
             edge_count, kept = Int32(0), Int32(0)
             for face in range(face_count):
                 seen = faces[world, face]
-                if plane_height(planes[world, face], w) > VISIBLE:
+                if plane_height(planes[world, face], w) > VISIBLE * scale:
                     edge_count = add_hole_edge(edges, world, edge_count, seen[0], seen[1])
                     edge_count = add_hole_edge(edges, world, edge_count, seen[1], seen[2])
                     edge_count = add_hole_edge(edges, world, edge_count, seen[2], seen[0])

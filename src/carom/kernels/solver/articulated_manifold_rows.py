@@ -48,6 +48,12 @@ def write_matrices(
 
 
 @func
+def touches_itself(place: Index4) -> bool:
+    """Whether both bodies of a manifold block are one tree: what pushes one link moves the other, too."""
+    return place[0] == place[2] and place[1] > 0 and place[3] > 0
+
+
+@func
 def write_normal_delassus(
     pair_rows: PairRows, world: Int32, manifold_block: Int32, contact: Int32, mass: real, start: Int32
 ):
@@ -65,6 +71,11 @@ def write_normal_delassus(
                 pair_rows.matrix_block, part[0] + 4 * place[1] * side, 1, pair_rows.jacobian_response,
                 start + place[1] * side, world, place[2 * side + 1],
             )  # fmt: skip
+            if touches_itself(place):
+                lowered += combine4(
+                    pair_rows.matrix_block, part[0] + 4 * place[1] * side, 1, pair_rows.jacobian_response,
+                    start + place[1] * (1 - side), world, place[2 * side + 1],
+                )  # fmt: skip
     for i in range(4):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].normal_inverse_mass[i]
         entry = lowered[i] * inverse_mass * mass
@@ -85,6 +96,11 @@ def write_friction_delassus(
                 pair_rows.matrix_block, part[1] + 8 * place[1] * side, pair_rows.jacobian_response,
                 start + place[1] * side, world, place[2 * side + 1],
             )  # fmt: skip
+            if touches_itself(place):
+                lowered += combine8(
+                    pair_rows.matrix_block, part[1] + 8 * place[1] * side, pair_rows.jacobian_response,
+                    start + place[1] * (1 - side), world, place[2 * side + 1],
+                )  # fmt: skip
     for i in range(8):
         inverse_mass = pair_rows.manifold_block[world, manifold_block].friction_inverse_mass[i]
         entry = lowered[i] * inverse_mass * mass

@@ -12,6 +12,12 @@ enum { LINK_NUMBERS = 3 * POSE_NUMBERS + SPATIAL_NUMBERS, MAX_LINKS = 32 };
 
 bool is_given(double number) { return number == number; }
 
+// The counter of a contact's warm start after a body was moved; as in `contact_arrays.py`.
+double cold_start(double counter) {
+    const bool held = counter == contacts::HOLDING || counter == contacts::HELD_BEFORE;
+    return held ? contacts::HELD_BEFORE : 0.0;
+}
+
 struct Pose {
     Vector position;
     Quaternion orientation;
@@ -110,7 +116,7 @@ CAROM_QUICK(place_base) {
         moved |= body.position[i] != before[i];
     note_reset(scene, body.tree, moved);
     for (int32_t i = 0; i < *scene.contact_count && i < scene.contact_room; ++i)
-        scene.contact_warm_starts[i] = 0.0;
+        scene.contact_warm_starts[i] = cold_start(scene.contact_warm_starts[i]);
     run(scene.find_poses, body.tree);
     return 1;
 }

@@ -1,0 +1,76 @@
+"""What PyBullet itself has two answers to is told from what Carom does otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import pytest
+from tests.differ.test_programs import call, outcome
+from tools.differ.compare import Difference
+from tools.differ.pair import ROOT, Outcome
+from tools.differ.programs import Call
+from tools.differ.rounding import MEMORY, ROUNDING, doubted_by_pybullet
+from tools.differ.values import Place
+
+PROGRAM = [
+    call(0, "createMultiBody", 1, -1, -1, [0.0, 0.0, 1.0], linkPositions=[[0.0, 0.0, 0.1]]),
+    call(1, "loadURDF", "cube.urdf"),
+    call(2, "stepSimulation"),
+    call(3, "@probe"),
+]
+
+
+def falls(velocity: float, touches: bool = True) -> Outcome:
+    """What a program came to: the velocity of a base, and whether it touches something."""
+    state = [[0, [0.0, velocity], [], [], []]]
+    return outcome(["ok", 0], ["ok", 1], ["ok", None], ["ok", [state, int(touches), 0.0]])
+
+
+class Fake:
+    """Performs programs as a function says."""
+
+    def __init__(self, says: Callable[[Sequence[Call]], Outcome]) -> None:
+        self._says = says
+
+    def order(self, calls: Sequence[Call]) -> None:
+        self._calls = calls
+
+    def answer(self) -> Outcome:
+        return self._says(self._calls)
+
+
+def chaotic(size: float, touches: bool) -> Callable[[Sequence[Call]], Outcome]:
+    """Answers that change by so much with the smallest change of a program."""
+    return lambda calls: falls(1.0 if list(calls) == PROGRAM else 1.0 + size, touches)
+
+
+@pytest.mark.parametrize(
+    ("elsewhere", "afresh", "phase", "expected"),
+    [
+        (0.0, 1.0, "contact", None),
+        (3e-3, 1.0, "contact", ROUNDING),
+        (3e-4, 1.0, "contact", None),
+        (3e-3, 1.0, "free", None),
+        (0.0, 1.004, "contact", MEMORY),
+        (0.0, 1.002, "contact", None),
+    ],
+)
+def test_pybullet_is_asked_again(elsewhere: float, afresh: float, phase: str, expected: str | None):
+    touches = phase == "contact"
+    place = Place("base.0.1", 1.0, 1.004, 2e-3)
+    said = doubted_by_pybullet(
+        Fake(chaotic(elsewhere, touches)),
+        Fake(lambda calls: falls(afresh, touches)),
+        PROGRAM,
+        falls(1.0, touches),
+        falls(1.004, touches),
+        Difference(3, "@probe", place, phase),
+    )
+    assert said == expected
+
+
+def test_what_pybullet_doubts_is_stated():
+    pages = (ROOT / "docs" / "differences" / "contact.md", ROOT / "docs" / "conformance" / "method.md")
+    text = " ".join(" ".join(page.read_text(encoding="utf-8").split()) for page in pages)
+    assert ROUNDING in text
+    assert MEMORY in text

@@ -1,0 +1,97 @@
+"""Whether PyBullet itself has two answers: with bodies 1e-12 m elsewhere, or in a process of its own."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from random import Random
+from typing import Any, Protocol
+
+from tools.differ.compare import Difference, compare
+from tools.differ.pair import Outcome
+from tools.differ.programs import Call
+
+ROUNDING = "There motion agrees to rounding until rounding decides"
+MEMORY = "Some answers of PyBullet depend on what earlier commands left in its memory"
+_ELSEWHERE = 1e-12
+_TRIALS, _SHARE = 4, 0.5
+
+
+class Performer(Protocol):
+    """Performs programs, as `pair.Server` does."""
+
+    def order(self, calls: Sequence[Call]) -> None:
+        """Let a program be performed."""
+        ...
+
+    def answer(self) -> Outcome:
+        """What came of it."""
+        ...
+
+
+def doubted_by_pybullet(
+    pybullet: Performer,
+    afresh: Performer,
+    calls: Sequence[Call],
+    theirs: Outcome,
+    ours: Outcome,
+    difference: Difference,
+) -> str | None:
+    """What PyBullet's own other answers say about a difference: words of the documentation, or None.
+
+    Args:
+        pybullet: Performs programs by real PyBullet.
+        afresh: The same, in a process that has loaded nothing before.
+        calls: The program.
+        theirs: PyBullet's first answer.
+        ours: Carom's answer.
+        difference: A difference between the two.
+    """
+    if not _has(compare(calls, _performed(afresh, list(calls)), ours), difference, 0.0):
+        return MEMORY
+    if difference.function != "@probe" or difference.phase != "contact":
+        return None
+    for trial in range(_TRIALS):
+        moved = _performed(pybullet, _elsewhere(calls, Random(trial)))
+        if _has(compare(calls, theirs, moved), difference, _SHARE * difference.place.error):
+            return ROUNDING
+    return None
+
+
+def _performed(pybullet: Performer, calls: list[Call]) -> Outcome:
+    pybullet.order(calls)
+    return pybullet.answer()
+
+
+def _has(found: list[Difference], difference: Difference, least: float) -> bool:
+    """Whether one is as early, of the same function and phase, and at least so large."""
+    return any(
+        one.call <= difference.call
+        and (one.function, one.phase) == (difference.function, difference.phase)
+        and one.place.error >= least
+        for one in found
+    )
+
+
+def _elsewhere(calls: Sequence[Call], random: Random) -> list[Call]:
+    """The program with bodies, links and joints placed a little elsewhere."""
+
+    def moved(value: Any) -> Any:
+        if isinstance(value, list):
+            return [moved(part) for part in value]
+        return value + _ELSEWHERE * random.uniform(-1, 1) if isinstance(value, (int, float)) else value
+
+    found = copy.deepcopy(list(calls))
+    for call in found:
+        arguments, keywords = call["a"], call["k"]
+        if call["f"] == "createMultiBody":
+            arguments[3:4] = moved(arguments[3:4])
+            if "linkPositions" in keywords:
+                keywords["linkPositions"] = moved(keywords["linkPositions"])
+        elif call["f"] == "loadURDF":
+            keywords["basePosition"] = moved(keywords.get("basePosition", [0.0, 0.0, 0.0]))
+        elif call["f"] == "resetBasePositionAndOrientation":
+            arguments[1:2] = moved(arguments[1:2])
+        elif call["f"] == "resetJointState":
+            arguments[2:3] = moved(arguments[2:3])
+    return found
