@@ -148,8 +148,13 @@ class ContactArrays:
 
         So the next steps depend only on the new poses, not on earlier ones.
         """
+        counters, rows, values = self.cold_starts(worlds)
+        counters[rows] = values
+
+    def cold_starts(self, worlds: slice | np.ndarray) -> tuple[Any, slice | np.ndarray, Any]:
+        """What `forget_warm_start` writes: an array, the index in it, and the values."""
         counters = self.contacts.numpy["contact_warm_start"]
-        counters[worlds] = cold_start(counters[worlds])
+        return counters, worlds, cold_start(counters[worlds])
 
     def note_cold_start(self, change: Change) -> None:
         """`forget_warm_start` of a single world with a change."""

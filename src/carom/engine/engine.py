@@ -80,6 +80,7 @@ class Engine:
         self.contact_arrays = contact_arrays
         self.status: np.ndarray = self._make_status()
         self._first_status = memoryview(self.status[0])
+        self._faults = self.status[:, STATUS]
         self._status_address = self.status.ctypes.data
         self._settings = EngineSettings()
         self._workspaces = self._make_workspaces(threads)
@@ -343,6 +344,17 @@ class Engine:
         finally:
             self._ask_as_usual(len(due))
 
+    def step_all(self) -> bool:
+        """Perform a step of one substep of all worlds; whether it went well in all of them."""
+        if self._plan is None:
+            self.prepare(watched=self._watched)
+        self.run(self._steppers)
+        if not np.count_nonzero(self._faults):
+            return True
+        while self.make_room():
+            self.run(self._steppers, self._short, resumed=1)
+        return not np.count_nonzero(self._faults)
+
     def attempt(
         self, due: int, unspent_after: float, first_substep: int = 0, end_substep: int = ALL_SUBSTEPS
     ) -> bool:
@@ -459,11 +471,19 @@ class Engine:
         return [Workspace() for _ in range(threads)]
 
     def _make_interpreters(self, due: np.ndarray) -> list[Stepper]:
-        return [Interpreter(self.status, self._worlds, due, self._counter) for _ in self._workspaces]
+        return self._interpreters_of(self.status, due)
 
     def _make_task_interpreters(self) -> list[Stepper]:
         status, due = np.zeros_like(self.status), np.zeros(1, dtype=np.int32)
-        return [Interpreter(status, self._worlds, due, self._counter) for _ in self._workspaces]
+        return self._interpreters_of(status, due)
+
+    def _interpreters_of(self, status: np.ndarray, due: np.ndarray) -> list[Stepper]:
+        threads = len(self._workspaces)
+        made: list[Stepper] = [Interpreter(status, self._worlds, due, self._counter) for _ in range(threads)]
+        if self._counter is not None:
+            for interpreter in made:
+                interpreter.ask(chunk=_chunk(len(self._all_worlds), threads))
+        return made
 
     # Other tasks in all worlds
 
@@ -561,23 +581,33 @@ class Engine:
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
         """Run programs on some worlds, None for all; then restore the settings of a step of all."""
-        if worlds is None and not scalars and self._counter is None:
-            interpreters[0].run()
-            return
+        if worlds is None and not scalars:
+            if self._counter is None:
+                interpreters[0].run()
+                return
+            if len(interpreters) == len(self._workspaces):
+                self._counter[0] = 0
+                self._threads.run([interpreter.run for interpreter in interpreters])
+                return
         worlds = self._all_worlds if worlds is None else worlds
         count, whole = len(worlds), len(self._all_worlds)
         self._worlds[:count] = worlds
         if self._counter is not None:
             self._counter[0] = 0
-            chunk = count // (len(interpreters) * _CHUNKS_PER_THREAD)
-            scalars["chunk"] = LANES * max(1, chunk // LANES)
+            scalars["chunk"] = _chunk(count, len(interpreters))
         for interpreter in interpreters:
             interpreter.ask(world_count=count, **scalars)
         try:
             self._threads.run([interpreter.run for interpreter in interpreters])
         finally:
             self._worlds[:] = self._all_worlds
+            usual = {"step_count": 1, "resumed": 0, "first_substep": 0, "end_substep": ALL_SUBSTEPS}
+            if self._counter is not None:
+                usual["chunk"] = _chunk(whole, len(self._workspaces))
             for interpreter in interpreters:
-                interpreter.ask(
-                    world_count=whole, step_count=1, resumed=0, first_substep=0, end_substep=ALL_SUBSTEPS
-                )
+                interpreter.ask(world_count=whole, **usual)
+
+
+def _chunk(count: int, threads: int) -> int:
+    """Number of worlds that a thread takes at a time."""
+    return LANES * max(1, count // (threads * _CHUNKS_PER_THREAD) // LANES)

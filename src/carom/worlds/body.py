@@ -10,8 +10,10 @@ from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.native.gates import alone, in_section
+from carom.native.uninterrupted import uninterrupted
 from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.algorithms.derivatives import DerivativeBatch
+from carom.worlds.batch import assign
 from carom.worlds.checks import Mask
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
@@ -101,7 +103,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         first = self._body.first_position
         return self._state["position"][:, first : first + BASE_POSITIONS]
 
-    @in_section("_scene.lock")
+    @alone("_scene.lock")
     def set_base_poses(
         self,
         positions: ArrayLike,
@@ -126,8 +128,13 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             raise ValueError("orientations must be quaternions other than 0")
         # A pose that was read and is written back must not change in the last digit, as in a single world.
         scale = np.where(abs(squared - 1.0) < UNIT_ROUNDING, 1.0, 1.0 / np.sqrt(squared))
-        self.base_poses[worlds.rows] = np.concatenate([position, turn * scale], axis=1)
-        self._engine.contact_arrays.forget_warm_start(worlds.numbers)
+        poses = np.concatenate([position, turn * scale], axis=1)
+        self._put_base_poses(worlds.rows, poses)
+
+    def _put_base_poses(self, rows: slice | np.ndarray, poses: np.ndarray) -> None:
+        with uninterrupted:
+            cold = self._engine.contact_arrays.cold_starts(rows)
+            assign((self.base_poses, rows, poses), cold)
 
     @property
     @alone("_scene.lock")

@@ -165,8 +165,19 @@ class Worlds(ContactQueries, Linearizing, Closed):
             steps = 1 if self._sensors.remembered else min(count, MAX_STEPS)
             # Handlers of signals run between steps.
             with uninterrupted:
-                self._step(steps, chosen)
+                if steps > 1 or chosen is not None or not self._step_all():
+                    self._step(steps, chosen)
             count -= steps
+
+    def _step_all(self) -> bool:
+        """Perform the usual step, of all worlds and with one substep; false if that is not what is due."""
+        if self._scene.parameters.substeps > 1 or self._sensors.remembered or not self._engine.keeps_times:
+            return False
+        if np.count_nonzero(self.halted):
+            return False
+        if not self._engine.step_all():
+            self._halt(np.flatnonzero(self._engine.status[:, STATUS] > WELL), 1)
+        return True
 
     def _step(self, steps: int, chosen: np.ndarray | None) -> None:
         running = np.flatnonzero(~self.halted) if chosen is None else chosen[~self.halted[chosen]]
