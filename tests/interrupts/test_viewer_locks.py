@@ -100,7 +100,7 @@ def test_a_finalizer_draws_while_a_message_is_put() -> None:
     latest._lock = _Lock()
     done: list[None] = []
     for line in range(5, 15):
-        with WAYS["finalizer"](line, lambda: done.append(calls["put"]())):
+        with WAYS["finalizer"](line, lambda: (calls["put"](), done.append(None))):
             calls["remove"]()
             calls["put"]()
     assert len(done) > 5
