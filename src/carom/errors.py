@@ -35,7 +35,10 @@ class SimulationError(CaromError):
 
 
 class StateError(CaromError):
-    """A saved state does not fit the present bodies; the world is unchanged."""
+    """A change is not possible now; the world is unchanged.
+
+    A saved state does not fit the present bodies, or the world is in the middle of a step.
+    """
 
 
 class SimulationWarning(RuntimeWarning):

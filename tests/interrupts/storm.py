@@ -169,6 +169,16 @@ class Storm:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
+def _beat(end: threading.Event) -> None:
+    """Ask for Python's lock all the time, as a script with more threads does.
+
+    Python 3.11 needs it: if a signal has come for the main thread while that waits, a thread that is traced
+    tries to handle it at every function that it enters, for ever, until another thread asks for the lock.
+    """
+    while not end.wait(0.01):
+        pass
+
+
 def _slow_tracer(frame: Any, event: str, argument: object) -> Any:
     return _slow_tracer
 
@@ -186,6 +196,8 @@ def main() -> None:
     p.setAdditionalSearchPath(pybullet_data.getDataPath())
     p.loadURDF("plane.urdf")
     storm = Storm(asked.seconds)
+    end = threading.Event()
+    threading.Thread(target=_beat, args=(end,), daemon=True).start()
     if asked.seed % 3 == 0:
         threading.settrace(_slow_tracer)
     if hasattr(signal, "setitimer"):
@@ -199,6 +211,7 @@ def main() -> None:
     storm.blow(1000 * asked.seed + 999)
     for thread in threads:
         thread.join()
+    end.set()
     storm.stop()
     if storm.failures:
         raise storm.failures[0]

@@ -39,6 +39,14 @@ MODERN: dict[str, Callable[[World, Any], Any]] = {
     "constrain": lambda world, _: world.constrain(UserConstraintKind.FIXED, world.bodies[3], -1, None, -1),
     "set gravity": lambda world, _: setattr(world, "gravity", (0.0, 0.0, -1.0)),
     "change dynamics": lambda world, _: world.bodies[3].change_dynamics(0, mass=2.0, lateral_friction=0.3),
+    "step": lambda world, _: world.step(),
+    "place a base": lambda world, _: world.bodies[3].set_base_pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8)),
+    "push a base": lambda world, _: world.bodies[3].set_base_velocity((0.0, 0.0, 1.0), (0.0, 0.6, 0.0)),
+    "turn a joint": lambda world, _: world.bodies[3].joints.movable[0].reset(0.3, 0.4),
+    "turn joints": lambda world, _: world.bodies[3].joints.reset([0.3, 0.4], 0.5),
+    "aim a motor": lambda world, _: world.bodies[3].joints.movable[0].set_position_target(0.3, max_force=3.0),
+    "apply a torque": lambda world, _: world.bodies[3].joints.movable[0].set_torque(0.3),
+    "apply a force": lambda world, _: world.bodies[3].links[0].apply_force((1.0, 2.0, 3.0)),
 }
 
 

@@ -148,13 +148,19 @@ class ContactArrays:
 
         So the next steps depend only on the new poses, not on earlier ones.
         """
+        counters, rows, values = self.cold_starts(worlds)
+        counters[rows] = values
+
+    def cold_starts(self, worlds: slice | np.ndarray) -> tuple[Any, slice | np.ndarray, Any]:
+        """What `forget_warm_start` writes: an array, the index in it, and the values."""
         counters = self.contacts.numpy["contact_warm_start"]
-        counters[worlds] = cold_start(counters[worlds])
+        return counters, worlds, cold_start(counters[worlds])
 
     def note_cold_start(self, change: Change) -> None:
         """`forget_warm_start` of a single world with a change."""
-        if count := self.contact_count:
-            counters = self.contacts.numpy["contact_warm_start"][0, :count]
+        arrays = self.contacts.numpy
+        if count := arrays["count_contacts"].item(0, THERE):
+            counters = arrays["contact_warm_start"][0, :count]
             change.write(counters, cold_start(counters))
 
     def note_resets(self, change: Change, tree: int, *moved: bool) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from ctypes import addressof
 from operator import le
 from typing import Any
 
@@ -57,8 +56,6 @@ class Engine:
         due: Number of substeps of each step of a call.
         changes: Number of times that launches were renewed.
         growths: Number of times that arrays were replaced by longer ones.
-        run_prepared: A step of one substep of all worlds, after `prepare`, at minimum cost. Then `recover`
-            has to be called if the status of a world is not `WELL`.
 
     Args:
         arrays: Model and state.
@@ -73,6 +70,8 @@ class Engine:
     allows_absence = True
     # Whether it takes steps of several worlds at once where these have robots.
     moves_together = True
+    # Whether steps let the times go on that `keep_times` was given.
+    keeps_times = True
     # Whether workspaces depend on nothing but the lengths of arrays and the numbers of rows in use.
     keeps_structs = True
 
@@ -81,6 +80,7 @@ class Engine:
         self.contact_arrays = contact_arrays
         self.status: np.ndarray = self._make_status()
         self._first_status = memoryview(self.status[0])
+        self._faults = self.status[:, STATUS]
         self._status_address = self.status.ctypes.data
         self._settings = EngineSettings()
         self._workspaces = self._make_workspaces(threads)
@@ -94,9 +94,11 @@ class Engine:
         self._detectors: list[Stepper] = self._make_interpreters(np.zeros(1, dtype=np.int32))
         self._steppers = self._interpreters
         self._make_program: ProgramMaker = self.step_program
-        self.run_prepared: Callable[[], None] = self._steppers[0].run
-        # Launches after an error, for a step of a single launch, which runs without an interpreter.
-        self._abandon: list[Launch] = []
+        # Unspent times after each step of a call.
+        self._unspent_after = np.zeros(MAX_STEPS)
+        self._has_unspent = False
+        self._duration = 0.0
+        self._times: Any = None
         self._plan: Plan | None = None
         # The previous plan, if only constraints have changed since.
         self._plan_before: Plan | None = None
@@ -107,6 +109,8 @@ class Engine:
         self._tables = self._all_tables()
         # The structs and counts of rows for which structs were bound last.
         self._bound: tuple[list[Any], tuple[int, ...]] = [], ()
+        # The worlds whose arrays were too short.
+        self._short = _NONE
         self._watched = False
         self.growths = 0
         self.changes = 0
@@ -163,6 +167,22 @@ class Engine:
     def update_settings(self, parameters: EngineParameters) -> None:
         """Update the settings of kernels, also in existing launches."""
         self._settings.update(parameters, self.arrays, self.contact_arrays, self._tell_settings)
+        if parameters.time_step != self._duration:
+            self._duration = parameters.time_step
+            for stepper in self._interpreters:
+                stepper.ask(duration=self._duration)
+
+    def keep_times(self, times: int, unspent_times: int, kept: object) -> None:
+        """Let the times of worlds go on with each step, by the same native call.
+
+        Args:
+            times: Address of the simulated time of each world [s].
+            unspent_times: Address of the part of it that is not covered by a substep yet [s], of each world.
+            kept: The memory that they are in.
+        """
+        self._times = kept
+        for stepper in self._interpreters:
+            stepper.ask(times=times, unspent_times=unspent_times)
 
     def resume(self, parameters: EngineParameters) -> bool:
         """Use the launches of before constraints changed, if they still perform the right step.
@@ -253,11 +273,6 @@ class Engine:
 
     def _load_steps(self, bound: list[KernelStructs], plan: Plan) -> None:
         self._load(self._steppers, bound, lambda structs: self._make_program(structs, plan))
-        self.run_prepared = self._steppers[0].run
-        self._abandon = []
-        whole = self._steppers[0].program.whole
-        if whole is not None and len(self._all_worlds) == 1:
-            self.run_prepared, self._abandon = whole.function, self._steppers[0].program.abandon
 
     def _make_lanes(self, plan: Plan) -> None:
         """Let several worlds move at once, if they can: also after rows have moved within the same arrays.
@@ -276,14 +291,12 @@ class Engine:
         """How many steps of several worlds have begun together so far."""
         return sum(one.steps_in_lanes for one in self._steppers if isinstance(one, Interpreter))
 
-    def step_addresses(self) -> tuple[int, int, int]:
-        """Addresses of the arguments of a step (0 if there are none), of the first status, of the time step.
+    def step_addresses(self) -> tuple[int, int]:
+        """Addresses of the arguments of a step, 0 if there are none, and of the first status.
 
         They are valid until the next call of `prepare`.
         """
-        settings = self._settings.struct
-        time_step = addressof(settings) + type(settings).time_step.offset
-        return self._steppers[0].address, self._status_address, time_step
+        return self._steppers[0].address, self._status_address
 
     def step_by(self, make_program: ProgramMaker, steppers: list[Stepper] | None = None) -> None:
         """Use other programs and steppers from now on."""
@@ -308,49 +321,87 @@ class Engine:
         self._plan = Plan(touching, sleeping, coupled, soft, absent)
         return self._plan
 
-    def step(self, due: Sequence[int], worlds: np.ndarray | None = None) -> None:
+    def step(
+        self,
+        due: Sequence[int],
+        worlds: np.ndarray | None = None,
+        unspent_after: Sequence[float] | None = None,
+    ) -> None:
         """Perform steps of some worlds.
 
         Args:
             due: Number of substeps of each step; at most `MAX_STEPS` steps.
             worlds: Numbers of the worlds, shape (n,); None for all.
+            unspent_after: The time that remains after each step [s]; None if that does not change.
         """
         if self._plan is None:
             self.prepare(watched=self._watched)
-        self.due[: len(due)] = due
         try:
+            self._ask_for(due, unspent_after)
             self.run(self._steppers, worlds, step_count=len(due))
-            self.recover(step_count=len(due))
+            while self.make_room():
+                self.run(self._steppers, self._short, resumed=1, step_count=len(due))
         finally:
-            # Also after Ctrl-C, or the next steps would have as many substeps.
-            self.due[: len(due)] = 1
+            self._ask_as_usual(len(due))
 
-    def substep(self, due: int, substep: int) -> bool:
-        """Perform one substep of a step of all worlds; the first begins it, the last ends it.
+    def step_all(self) -> bool:
+        """Perform a step of one substep of all worlds; whether it went well in all of them."""
+        if self._plan is None:
+            self.prepare(watched=self._watched)
+        self.run(self._steppers)
+        if not np.count_nonzero(self._faults):
+            return True
+        while self.make_room():
+            self.run(self._steppers, self._short, resumed=1)
+        return not np.count_nonzero(self._faults)
+
+    def attempt(
+        self, due: int, unspent_after: float, first_substep: int = 0, end_substep: int = ALL_SUBSTEPS
+    ) -> bool:
+        """Perform a step of the only world, or some of its substeps; the first begins it, the last ends it.
 
         Returns:
-            False if arrays were too short: the worlds are back at the start of the step; repeat the step.
+            False if it has failed: the world is back at the start of the step.
         """
-        self.due[0] = due
+        substeps = {"first_substep": first_substep, "end_substep": end_substep}
         try:
-            self.run(self._steppers, self._all_worlds, first_substep=substep, end_substep=substep + 1)
+            self._ask_for([due], [unspent_after])
+            self.run(self._steppers, self._all_worlds, **substeps)
         finally:
-            self.due[0] = 1
-        short = self._short_of_room()
-        if len(short):
-            self._grow(short)
-            self.prepare(watched=self._watched)
-        return not len(short)
+            self._ask_as_usual(1)
+        return self._first_status[STATUS] == WELL
 
-    def recover(self, **scalars: int) -> None:
-        """Repeat the steps of worlds whose arrays were too short, with longer arrays."""
-        if self._first_status[STATUS] > WELL:
-            for launch in self._abandon:
-                launch()
-        while len(short := self._short_of_room()):
-            self._grow(short)
-            self.prepare(watched=self._watched)
-            self.run(self._steppers, short, resumed=1, **scalars)
+    def _ask_for(self, due: Sequence[int], unspent_after: Sequence[float] | None) -> None:
+        self.due[: len(due)] = due
+        if unspent_after is not None:
+            self._unspent_after[: len(due)] = unspent_after
+            self._has_unspent = True
+            for stepper in self._interpreters:
+                stepper.ask(unspent_after=self._unspent_after.ctypes.data)
+
+    def _ask_as_usual(self, count: int) -> None:
+        """Also after Ctrl-C, or the next steps would have as many substeps."""
+        self.due[:count] = 1
+        if self._has_unspent:
+            for stepper in self._interpreters:
+                stepper.ask(unspent_after=None)
+            self._has_unspent = False
+
+    def abandon(self) -> None:
+        """Return the only world to the start of a step, of which some substeps have been performed."""
+        self._first_status[STATUS] = OVERFLOW
+        for launch in self._steppers[0].program.abandon:
+            launch()
+        self._first_status[STATUS] = WELL
+
+    def make_room(self) -> bool:
+        """Make arrays longer for the worlds whose arrays were too short; whether there are any."""
+        self._short = self._short_of_room()
+        if not len(self._short):
+            return False
+        self._grow(self._short)
+        self.prepare(watched=self._watched)
+        return True
 
     def detect(self) -> None:
         """Find all contacts at the current coordinates of all worlds, without a step."""
@@ -420,11 +471,19 @@ class Engine:
         return [Workspace() for _ in range(threads)]
 
     def _make_interpreters(self, due: np.ndarray) -> list[Stepper]:
-        return [Interpreter(self.status, self._worlds, due, self._counter) for _ in self._workspaces]
+        return self._interpreters_of(self.status, due)
 
     def _make_task_interpreters(self) -> list[Stepper]:
         status, due = np.zeros_like(self.status), np.zeros(1, dtype=np.int32)
-        return [Interpreter(status, self._worlds, due, self._counter) for _ in self._workspaces]
+        return self._interpreters_of(status, due)
+
+    def _interpreters_of(self, status: np.ndarray, due: np.ndarray) -> list[Stepper]:
+        threads = len(self._workspaces)
+        made: list[Stepper] = [Interpreter(status, self._worlds, due, self._counter) for _ in range(threads)]
+        if self._counter is not None:
+            for interpreter in made:
+                interpreter.ask(chunk=_chunk(len(self._all_worlds), threads))
+        return made
 
     # Other tasks in all worlds
 
@@ -521,24 +580,34 @@ class Engine:
             interpreter.load(program(structs))
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
-        """Run programs on some worlds, None for all; then restore the settings that `run_prepared` needs."""
-        if worlds is None and not scalars and self._counter is None:
-            interpreters[0].run()
-            return
+        """Run programs on some worlds, None for all; then restore the settings of a step of all."""
+        if worlds is None and not scalars:
+            if self._counter is None:
+                interpreters[0].run()
+                return
+            if len(interpreters) == len(self._workspaces):
+                self._counter[0] = 0
+                self._threads.run([interpreter.run for interpreter in interpreters])
+                return
         worlds = self._all_worlds if worlds is None else worlds
         count, whole = len(worlds), len(self._all_worlds)
         self._worlds[:count] = worlds
         if self._counter is not None:
             self._counter[0] = 0
-            chunk = count // (len(interpreters) * _CHUNKS_PER_THREAD)
-            scalars["chunk"] = LANES * max(1, chunk // LANES)
+            scalars["chunk"] = _chunk(count, len(interpreters))
         for interpreter in interpreters:
             interpreter.ask(world_count=count, **scalars)
         try:
             self._threads.run([interpreter.run for interpreter in interpreters])
         finally:
             self._worlds[:] = self._all_worlds
+            usual = {"step_count": 1, "resumed": 0, "first_substep": 0, "end_substep": ALL_SUBSTEPS}
+            if self._counter is not None:
+                usual["chunk"] = _chunk(whole, len(self._workspaces))
             for interpreter in interpreters:
-                interpreter.ask(
-                    world_count=whole, step_count=1, resumed=0, first_substep=0, end_substep=ALL_SUBSTEPS
-                )
+                interpreter.ask(world_count=whole, **usual)
+
+
+def _chunk(count: int, threads: int) -> int:
+    """Number of worlds that a thread takes at a time."""
+    return LANES * max(1, count // (threads * _CHUNKS_PER_THREAD) // LANES)

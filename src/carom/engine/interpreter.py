@@ -39,7 +39,7 @@ class Stepper(Protocol):
         """Use another program from now on."""
         ...
 
-    def ask(self, **asked: int) -> None:
+    def ask(self, **asked: float | None) -> None:
         """Set numbers of `Run` for all later runs."""
         ...
 
@@ -99,6 +99,6 @@ class Interpreter(Stepper):
         """How many steps of several worlds have begun together so far."""
         return self._earlier_in_lanes + (0 if self.lane_work is None else self.lane_work.steps_begun)
 
-    def ask(self, **asked: int) -> None:  # noqa: D102
+    def ask(self, **asked: float | None) -> None:  # noqa: D102
         for name, value in asked.items():
             setattr(self._asked, name, value)

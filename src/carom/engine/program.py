@@ -84,11 +84,6 @@ class Program(NamedTuple):
     end: list[Launch]
     abandon: list[Launch]
 
-    @property
-    def whole(self) -> Launch | None:
-        """The launch of a step with one substep, if it has only one."""
-        return None if self.detection or self.motion or self.end else self.begin[0]
-
 
 def step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""

@@ -12,9 +12,10 @@ from carom.layouts.quick_world import OF_BODY, SURFACE, ContactColumns, ContactQ
 from carom.native.change import Change, blank
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
+from carom.native.step_builtin import step_taker
 
 if TYPE_CHECKING:
-    from ctypes import c_double
+    from collections.abc import Callable
 
     from carom.engine.contact_arrays import ContactArrays
     from carom.engine.interpreter import Interpreter
@@ -46,6 +47,9 @@ class QuickScene:
 
     Attributes:
         record: The addresses; unknown functions are null.
+        take_step: Performs a step, whose addresses are known, and lets the time go on; returns whether
+            it has. If not, nothing has happened, and Python has to perform it. The caller has the lock of
+            the world.
     """
 
     __slots__ = (
@@ -59,6 +63,7 @@ class QuickScene:
         "_step",
         "_stepped",
         "record",
+        "take_step",
     )
 
     def __init__(self) -> None:
@@ -69,6 +74,7 @@ class QuickScene:
         # The function that performs steps, also while it must not be called because constraints have changed.
         self._run: int | None = None
         self._step, self._detection = self.record.step, self.record.detection
+        self.take_step: Callable[[], bool] = step_taker(self._step)
         # The last launch that updates link poses, and the structs that it and other addresses are made for.
         self._posing: TreeLaunch | None = None
         self._posed: tuple[Any, ...] = ()
@@ -99,6 +105,10 @@ class QuickScene:
             )
             self._known_blanks[fields] = known
         return known
+
+    def forget_step(self) -> None:
+        """Let Python perform steps until their addresses are set again."""
+        self._step.run = self._run = None
 
     def resume_step(self) -> None:
         """Perform steps again as before `pause_step`."""
@@ -147,26 +157,27 @@ class QuickScene:
 
     def set_step_addresses(
         self,
-        step: tuple[int, int, int],
-        time: c_double,
+        step: tuple[int, int],
         observers: list[Any],
         contacts: int | None,
         keep: Any,
+        *,
+        substeps: int,
     ) -> None:
-        """Set the addresses for steps of one substep.
+        """Set the addresses for steps.
 
         Args:
-            step: Those of the function, the status and the duration of a step.
-            time: Simulated time [s], which steps advance.
+            step: Those of the arguments and of the status of a step.
             observers: While there are any, Python performs steps.
             contacts: Address of the number of contacts; None if steps take long even without any.
             keep: What these addresses point to.
+            substeps: Number of substeps in a step.
         """
-        self._stepped = keep, time, observers
+        self._stepped = keep, observers
         self._is_empty = False
         record = self._step
-        run, record.status, record.duration = step
-        record.time, record.observers, record.contact_count = addressof(time), id(observers), contacts
+        run, record.status = step
+        record.observers, record.contact_count, record.substeps = id(observers), contacts, substeps
         # Last: without it the other addresses are not used.
         record.run = self._run = run
 

@@ -38,6 +38,7 @@ class DeviceEngine(Engine):
     allows_absence = False
     # Workspaces also depend on whether shapes can touch.
     keeps_structs = False
+    keeps_times = False
     moves_together = False
 
     def __init__(self, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:

@@ -23,7 +23,7 @@ class _Asked:
         self._step_count = 1
         self._resumed = 0
 
-    def ask(self, **asked: int) -> None:
+    def ask(self, **asked: Any) -> None:
         """Set `world_count`, `step_count` or `resumed` for all later runs; other numbers are ignored."""
         self._world_count = asked.get("world_count", self._world_count)
         self._step_count = asked.get("step_count", self._step_count)

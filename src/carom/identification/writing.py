@@ -12,6 +12,7 @@ from carom.scene.joint_terms.friction import set_friction
 
 if TYPE_CHECKING:
     from carom.scene.body import Body
+    from carom.scene.core.body_core import BodyCore
     from carom.world.world import World
 
 _JOINT_TERMS = {"damping": "joint_damping", "armature": "joint_armature", "stiffness": "joint_stiffness"}
@@ -50,7 +51,7 @@ def write_value(world: World, space: TangentSpace, given: Input, value: float) -
         _table(world, given)[(0, *given.place)] = given.scale * value
 
 
-def joint_of(space: TangentSpace, row: int) -> tuple[Body, int]:
+def joint_of(space: TangentSpace, row: int) -> tuple[BodyCore, int]:
     """The body and the index of the joint with a row of `World.velocity`."""
     for body in space.bodies:
         for joint, (first, count) in enumerate(zip(body.velocity_index, body.velocity_count, strict=True)):

@@ -216,6 +216,11 @@ class Run:
         first_substep: If it is not 0, the step has already begun.
         end_substep: The step is ended only after its last substep.
         lanes: Free motion of several worlds at once; null if worlds move one at a time.
+        times: Simulated time of each world [s], which goes on with each step that goes well; null if nobody
+            asks for it.
+        unspent_times: The part of it that substeps have not covered yet [s].
+        unspent_after: The same of a world after each step; null if it stays as it is.
+        duration: Of a step [s].
         repeatable: 1: a step that fails is undone completely, whatever the reason, for another attempt.
     """
 
@@ -224,6 +229,10 @@ class Run:
     due: Read[Int32]
     counter: At[Int32]
     lanes: Read[LaneMotion]
+    times: At[Double]
+    unspent_times: At[Double]
+    unspent_after: Read[Double]
+    duration: Double
     world_count: Int32
     step_count: Int32
     chunk: Int32

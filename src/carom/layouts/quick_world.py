@@ -177,23 +177,21 @@ class PairSearch:
 
 @c_record()
 class Step:
-    """A step of the world with one substep.
+    """A step of the world.
 
     Attributes:
         run: Null if Python has to perform steps.
         status: The status of the world; not 0 if the step failed.
-        duration: Of a step [s].
-        time: Simulated time of the world [s].
         observers: The list of objects that Python tells of steps.
         contact_count: Number of contacts, in a world of few links; null in others.
+        substeps: Number of substeps in a step.
     """
 
     run: At[Run]
     status: Read[Int32]
-    duration: Read[Double]
-    time: At[Double]
     observers: Object
     contact_count: Read[Int32]
+    substeps: Int32
 
 
 @c_record(surface=SURFACE_COUNT, surface_names=SURFACE_COUNT, of_body=OF_BODY_COUNT)

@@ -12,7 +12,7 @@ from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from struct import Struct
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from carom.native.builtins import is_usual_python, new_builtin
 from carom.native.uninterrupted import uninterrupted
@@ -25,18 +25,27 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _MISSING = object()
+# Parts of changes that are empty.
+_NO_ATTRIBUTES: dict[int, Any] = {}
+_NONE: list[Any] = []
 _ZERO = ctypes.c_int64(0)
 _BLOCK = Struct("=QQq")
 packed_block = _BLOCK.pack
 """A `layouts.table_rows.Block` of memory to be copied: addresses of source and target, and its size."""
 
 # `layouts.table_rows.RowCut` and `KernelRun`.
-_PACK_CUT, _RUN = Struct("=4Q").pack, Struct("=4Qq")
+_PACK_CUT = Struct("=4Q").pack
+packed_run = Struct("=4Qq").pack
+"""A `layouts.table_rows.KernelRun`: addresses of a kernel, its arguments and the tree among these; a tree."""
 # Ctrl-C may come while Python makes a change: maximum number of attempts to complete it.
 _PATIENCE = 100
 
 Attributes = dict[int, tuple[object, dict[str, Any]]]
 """Attributes that change, by object: it and its attributes, by its `id`."""
+
+
+class Outdated(Exception):
+    """Another change has been made since a change was begun, which has not been made: begin again."""
 
 
 class Table(Protocol):
@@ -59,10 +68,13 @@ class Change:
 
     Args:
         renew: Notes what else changes when tables grow, see `make_room`.
+        begun: `changes_made` before it was prepared, if it has to be the first one after that: it relies on
+            places or numbers that any other may change. -1 in a section, where nothing comes in between.
     """
 
     __slots__ = (
         "_attributes",
+        "_begun",
         "_blocks",
         "_contents",
         "_copies",
@@ -75,8 +87,9 @@ class Change:
         "_writes",
     )
 
-    def __init__(self, renew: Callable[[Change], None] | None = None) -> None:
+    def __init__(self, renew: Callable[[Change], None] | None = None, *, begun: int = -1) -> None:
         self._renew = renew
+        self._begun = begun
         self._attributes: Attributes = {}
         # Dictionaries, keys and values, each in turn; likewise dictionaries, contents and present contents,
         # lists and items for their ends, and arrays and what is written to them.
@@ -209,17 +222,25 @@ class Change:
 
     def run(self, addresses: Sequence[int], tree: int, kept: object) -> None:
         """Run a kernel on a tree after memory is written; see `TreeLaunch.addresses`."""
-        self._runs.append(_RUN.pack(*addresses, tree))
+        self._runs.append(packed_run(*addresses, tree))
+        self._kept.append(kept)
+
+    def run_record(self, record: bytes, kept: object) -> None:
+        """The same with a packed record."""
+        self._runs.append(record)
         self._kept.append(kept)
 
     def commit(self) -> None:
-        """Make the change, once; if memory is short, nothing of it."""
+        """Make the change, once; if memory is short, nothing of it.
+
+        Raises:
+            Outdated: It is not the first one since it was begun.
+        """
         if self._copies is not None:
             for copies in self._copies.values():
                 for name, copy in copies.items():
                     self._writes += copies.originals[name], copy
-        commit = _commit() or _make
-        commit(
+        made = (_Maker.make or _Maker.find())(
             self._attributes,
             self._items,
             self._contents,
@@ -228,7 +249,23 @@ class Change:
             self._cuts,
             self._blocks,
             self._runs,
+            self._begun,
         )
+        if made is not _MISSING:
+            raise Outdated
+
+
+def changes_made() -> int:
+    """How many changes have been made so far, and steps of worlds."""
+    return _Maker.made.value
+
+
+def change_numbers(target: memoryview[float], values: Iterable[float], begun: int) -> None:
+    """A change that writes doubles to memory, and does nothing else; see `Change` for `begun`."""
+    make = _Maker.make or _Maker.find()
+    made = make(_NO_ATTRIBUTES, _NONE, _NONE, _NONE, [target, array("d", values)], _NONE, _NONE, _NONE, begun)
+    if made is not _MISSING:
+        raise Outdated
 
 
 def blank(
@@ -264,14 +301,35 @@ def _in_turn(items: list[Any], count: int) -> list[tuple[Any, ...]]:
 
 
 @cache
-def _commit() -> Callable[..., object] | None:
+def _commit() -> Any:
     """The native function that makes changes; None where Python does."""
-    if not is_usual_python():
-        return None
-    symbols = _symbols()
-    if symbols is None:
-        # The library is in another process; see `tools.wheels.elsewhere`.
-        return None
+    symbols = _symbols() if is_usual_python() else None
+    # None: the library is in another process; see `tools.wheels.elsewhere`.
+    return None if symbols is None else _native(symbols)
+
+
+class _Maker:
+    """What makes changes.
+
+    Attributes:
+        make: The function that does, once it has been found.
+        made: How many it has made.
+    """
+
+    make: ClassVar[Any] = None
+    made: ClassVar[ctypes.c_int64] = ctypes.c_int64(0)
+
+    @classmethod
+    def find(cls) -> Any:
+        """Find it when the first change is made: the library has been loaded then."""
+        cls.make = _commit() or _make
+        if cls.make is not _make:
+            cls.made = ctypes.c_int64.in_dll(_symbols(), "carom_changes_made")
+        return cls.make
+
+
+def _native(symbols: Any) -> Any:
+    """The native function that makes changes."""
     first = ctypes.c_char.in_dll(symbols, "carom_change_functions")
     names = ctypes.string_at(ctypes.addressof(first)).decode().split()
     table = (ctypes.c_void_p * len(names)).in_dll(symbols, "carom_change_table")
@@ -294,7 +352,8 @@ def _make(
     cuts: list[bytes],
     blocks: list[bytes],
     runs: list[bytes],
-) -> None:
+    begun: int,
+) -> object:
     """Make a change in Python: in a section, and if an exception comes in the middle, first to the end."""
     ends: dict[int, int] = {}
     extensions = []
@@ -307,6 +366,9 @@ def _make(
     kept += [dictionary.get(key) for dictionary, key, _ in _in_turn(items, 3)]
     error: BaseException | None = None
     with uninterrupted:
+        if begun not in (-1, changes_made()):
+            return begun
+        _Maker.made.value += 1
         for _ in range(_PATIENCE):
             try:
                 for owner, values in attributes.values():
@@ -336,3 +398,4 @@ def _make(
     kept.clear()
     if error is not None:
         raise error
+    return _MISSING

@@ -16,6 +16,8 @@ from typing import Any, TypeVar, cast
 from carom.forks import free_in_forks
 from carom.layouts.gates import Gate
 from carom.native.builtins import defined, descriptor_of
+from carom.native.change import Outdated
+from carom.native.uninterrupted import uninterrupted
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -92,3 +94,50 @@ def alone(lock: str) -> Callable[[F], F]:
         return cast("F", call)
 
     return guard
+
+
+def in_section(lock: str) -> Callable[[F], F]:
+    """As `alone`, and no signal handler, finalizer or trace function runs in the middle."""
+    lock_of = attrgetter(lock)
+
+    def guard(function: F) -> F:
+        @wraps(function)
+        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+            with lock_of(first), uninterrupted:
+                return function(first, *arguments, **keywords)
+
+        return cast("F", call)
+
+    return guard
+
+
+def whole(lock: str) -> Callable[[F], F]:
+    """As `alone`, for a function that makes a change which has to be the first one since it was called.
+
+    Signal handlers, finalizers and trace functions may change the world in the middle of it. Then the
+    function is called again, so that theirs come before it.
+    """
+    lock_of = attrgetter(lock)
+
+    def guard(function: F) -> F:
+        @wraps(function)
+        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
+            with lock_of(first):
+                try:
+                    return function(first, *arguments, **keywords)
+                except Outdated:
+                    return _again(function, first, *arguments, **keywords)
+
+        return cast("F", call)
+
+    return guard
+
+
+def _again(function: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
+    # Only other worlds change now, in other threads.
+    with uninterrupted:
+        while True:
+            try:
+                return function(*arguments, **keywords)
+            except Outdated:
+                continue

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from carom.native.change import packed_run
 from carom.native.kernels import Kernel
 
 
@@ -101,17 +102,26 @@ def _packed_arguments(*types: Any) -> Any:
 class TreeLaunch:
     """A kernel with a tree among its arguments that can be run on any tree; for kernels of a microsecond."""
 
-    __slots__ = ("_launch", "_place", "_run", "_tree")
+    __slots__ = ("_addresses", "_launch", "_place", "_records", "_run", "_tree")
 
     def __init__(self, kernel: Kernel, structs: KernelStructs) -> None:
         self._launch = structs.launch(kernel, tree=0, first_world=0)
         self._run = self._launch.brief_function
         self._place = kernel.indices["tree"]
         self._tree = 0
+        self._addresses = self._launch.addresses("tree")
+        self._records: dict[int, bytes] = {}
 
     def addresses(self) -> list[int]:
         """Addresses of the kernel, its two arguments and the tree; a caller must restore the tree's value."""
-        return self._launch.addresses("tree")
+        return self._addresses
+
+    def record(self, tree: int) -> bytes:
+        """What `Change.run_record` needs to run it on a tree."""
+        record = self._records.get(tree)
+        if record is None:
+            record = self._records[tree] = packed_run(*self._addresses, tree)
+        return record
 
     def __call__(self, tree: int) -> None:
         """Run the kernel on a tree."""

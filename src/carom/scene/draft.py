@@ -7,11 +7,11 @@ other change; if it fails, the draft is dropped.
 from __future__ import annotations
 
 from copy import copy, deepcopy
-from ctypes import c_double
 from typing import TYPE_CHECKING, Any
 
 from carom.engine.quick_scene import QuickScene
 from carom.native.change import Change
+from carom.native.clock import Clock
 from carom.native.tables import ArrayTable
 from carom.scene.bodies import Bodies
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 # Attributes of a world that are replaced when it takes over a draft.
-_VALUES = ("parameters", "free_ids", "next_id", "links_loaded", "unspent_time")
+_VALUES = ("parameters", "free_ids", "next_id", "links_loaded")
 
 
 class Draft:
@@ -55,7 +55,7 @@ class Draft:
         world, draft = self._original, self.world
         for name in _VALUES:
             change.set(world, name, getattr(draft, name))
-        world.note_time(change, draft.time)
+        world.note_time(change, draft.time, draft.unspent_time)
         for body in draft.bodies.values():
             if body.world is draft:
                 change.set(body, "world", world)
@@ -125,7 +125,7 @@ def _copied(world: WorldCore) -> WorldCore:
     memo = {id(shared): shared for shared in _shared(world)}
     memo[id(world)] = other
     other.bodies, other.listing = Bodies(world.bodies), world.listing.copy()
-    other._clock = c_double(world.time)
+    other._clock = Clock(world.time, world.unspent_time)
     other.observers = []
     other.quick = QuickScene()
     other.parameters = copy(world.parameters)

@@ -53,6 +53,7 @@ _NOT_OF_SURFACE = {
 def change_dynamics(body: BodyCore, link: int, changes: Mapping[str, Any]) -> None:
     """Change parameters of a link, its joint or the whole body: either all changes are made or none."""
     with uninterrupted:
+        body.world.refuse_in_step()
         change = Change()
         note_dynamics(change, body, link, changes)
         change.commit()
@@ -186,6 +187,12 @@ def _note_joint(change: Change, body: BodyCore, joint: int, changes: Mapping[str
 
 def set_dynamics(body: BodyCore, link: int, dynamics: LinkDynamics) -> None:
     """Set all parameters of a link, except the limits of its joint, at once; see `Body.set_dynamics`."""
+    with uninterrupted:
+        body.world.refuse_in_step()
+        _set_dynamics(body, link, dynamics)
+
+
+def _set_dynamics(body: BodyCore, link: int, dynamics: LinkDynamics) -> None:
     change, row = Change(), body.first_link + 1 + link
     world, present = body.world, body.dynamics(link)
     for field in fields(dynamics):

@@ -12,8 +12,8 @@ from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
-from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.change import Change, changes_made
+from carom.native.gates import alone, whole
 from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
@@ -24,6 +24,7 @@ from carom.scene.named import Named
 if TYPE_CHECKING:
     from carom.model.body_spec import LinkSpec
     from carom.scene.body import Body
+    from carom.scene.core.body_core import JointReset
     from carom.scene.link import Link
 
 
@@ -191,7 +192,7 @@ class Joint:
         """All velocity coordinates, shape (0,), (1,), or (3,)."""
         return world_of(self.body).velocity[self._dofs].copy()
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def reset(self, position: ArrayLike, velocity: ArrayLike = 0.0) -> None:
         """Set the state of the joint without simulation; its motor keeps its target.
 
@@ -204,11 +205,16 @@ class Joint:
         Raises:
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0.
         """
-        self.body.set_joint_state(self.index, *self.checked_state(position, velocity))
-        if len(self.body.world.user_constraints):
-            from carom.scene.named_constraints.joint_coupling import place_followers
+        change = Change(begun=changes_made())
+        world = world_of(self.body)
+        states: list[JointReset] = [(self.index, *self.checked_state(position, velocity))]
+        if len(world.user_constraints):
+            from carom.scene.named_constraints.joint_coupling import follower_states
 
-            place_followers(self.body, self.index)
+            states += follower_states(self.body, *states[0])
+        self.body.note_joint_states(change, states)
+        world.note_link_poses(change, self.body)
+        change.commit()
 
     def checked_state(
         self, position: ArrayLike, velocity: ArrayLike = 0.0
@@ -226,7 +232,7 @@ class Joint:
 
     # Drive
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def set_position_target(
         self,
         target: float,
@@ -250,13 +256,14 @@ class Joint:
             max_force: Maximum force; `effort_limit` by default.
             max_velocity: Maximum velocity of the motor.
         """
+        begun = changes_made()
         target = float(np.clip(one_or_each(target, 1, "target")[0], *self.limits))
         force = self._force(max_force)
-        self._drives(self._one_dof).aim_at_position(
+        self._drives(self._one_dof, begun).aim_at_position(
             target, velocity, gain, velocity_gain, force, max_velocity
         )
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def set_velocity_target(
         self, target: float, *, gain: float = 1.0, max_force: float | None = None
     ) -> None:
@@ -267,9 +274,10 @@ class Joint:
             gain: Share of the velocity error corrected per substep.
             max_force: Maximum force; `effort_limit` by default.
         """
-        self._drives(self._one_dof).aim_at_velocity(target, gain, self._force(max_force))
+        begun = changes_made()
+        self._drives(self._one_dof, begun).aim_at_velocity(target, gain, self._force(max_force))
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def set_spring(
         self,
         target: float,
@@ -288,10 +296,11 @@ class Joint:
             velocity: Velocity at which the damper exerts no force.
             max_force: Maximum force; `effort_limit` by default.
         """
+        begun = changes_made()
         force = self._force(max_force)
-        self._drives(self._one_dof).pull_like_a_spring(target, velocity, stiffness, damping, force)
+        self._drives(self._one_dof, begun).pull_like_a_spring(target, velocity, stiffness, damping, force)
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def set_orientation_target(
         self,
         target: ArrayLike,
@@ -314,22 +323,26 @@ class Joint:
         size = length(quaternion)
         if size == 0.0:
             raise ValueError("target must be a quaternion other than 0")
+        begun = changes_made()
         force = self._force(max_force)
-        self._drives(self._dofs).aim_at_orientation(quaternion / size, gain, damping, force)
+        self._drives(self._dofs, begun).aim_at_orientation(quaternion / size, gain, damping, force)
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def set_torque(self, torque: ArrayLike) -> None:
         """Torque control: apply a force or torque in the next step, instead of one set before.
 
         The motor is not switched off; see `disable_motor`.
         """
+        change = Change(begun=changes_made())
         torque = one_or_each(finite(torque, "torque"), self.degrees_of_freedom, "torque")
-        world_of(self.body).joint_torque[self._dofs] = torque
+        change.write(world_of(self.body).joint_torque[self._dofs], torque)
+        change.commit()
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def disable_motor(self) -> None:
         """Switch off the motor, which is on after loading, and the spring."""
-        self._drives(self._dofs).switch_off()
+        begun = changes_made()
+        self._drives(self._dofs, begun).switch_off()
 
     @property
     @alone("body.world.lock")
@@ -374,9 +387,9 @@ class Joint:
     def _dof(self) -> int:
         return self._one_dof.start
 
-    def _drives(self, dofs: slice) -> Drives:
+    def _drives(self, dofs: slice, begun: int) -> Drives:
         world = world_of(self.body)
-        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time)
+        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
 
     def _require_one_freedom(self) -> None:
         count = self.degrees_of_freedom
@@ -447,7 +460,7 @@ class Joints(Named[Joint]):
         """Maximum forces of the motors according to the file; inf where it states none."""
         return np.array([joint.effort_limit for joint in self._movable])
 
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def reset(self, positions: ArrayLike, velocities: ArrayLike = 0.0) -> None:
         """Set the state of all movable joints without simulation; motors keep their targets.
 
@@ -461,6 +474,7 @@ class Joints(Named[Joint]):
             ValueError: A number is not finite, there are too many or too few, or a quaternion is 0; no joint
                 has changed.
         """
+        change = Change(begun=changes_made())
         positions = vector(positions, sum(self._body.position_count), "positions")
         dof_count = sum(self._body.velocity_count)
         velocities = np.broadcast_to(finite(velocities, "velocities"), dof_count)
@@ -470,12 +484,11 @@ class Joints(Named[Joint]):
             q_end, u_end = q + self._body.position_count[joint.index], u + joint.degrees_of_freedom
             states.append((joint.index, *joint.checked_state(positions[q:q_end], velocities[u:u_end])))
             q, u = q_end, u_end
-        change = Change()
         self._body.note_joint_states(change, states)
         self._body.world.note_link_poses(change, self._body)
         change.commit()
 
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -491,7 +504,8 @@ class Joints(Named[Joint]):
         Raises:
             ValueError: A joint has more than one degree of freedom, or an argument does not fit.
         """
-        self._drives(self._one_dof_each).aim_at_position(
+        begun = changes_made()
+        self._drives(self._one_dof_each, begun).aim_at_position(
             np.clip(self._each(targets, "targets"), *self.limits),
             self._each(velocities, "velocities"),
             self._each(gains, "gains"),
@@ -500,27 +514,31 @@ class Joints(Named[Joint]):
             self._each(max_velocities, "max_velocities"),
         )
 
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def set_velocity_targets(
         self, targets: ArrayLike, *, gains: ArrayLike = 1.0, max_forces: ArrayLike | None = None
     ) -> None:
         """`Joint.set_velocity_target` for all movable joints; scalars apply to all of them."""
-        self._drives(self._one_dof_each).aim_at_velocity(
+        begun = changes_made()
+        self._drives(self._one_dof_each, begun).aim_at_velocity(
             self._each(targets, "targets"),
             self._each(gains, "gains"),
             self._each(self._forces(max_forces), "max_forces"),
         )
 
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def set_torques(self, torques: ArrayLike) -> None:
         """`Joint.set_torque` for all movable joints."""
+        change = Change(begun=changes_made())
         torques = self._each(finite(torques, "torques"), "torques")
-        world_of(self._body).joint_torque[self._dofs] = torques
+        change.write(world_of(self._body).joint_torque[self._dofs], torques)
+        change.commit()
 
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def disable_motors(self) -> None:
         """`Joint.disable_motor` for all joints."""
-        self._drives(self._dofs).switch_off()
+        begun = changes_made()
+        self._drives(self._dofs, begun).switch_off()
 
     @property
     def _dofs(self) -> slice:
@@ -533,9 +551,9 @@ class Joints(Named[Joint]):
             joint._require_one_freedom()
         return self._dofs
 
-    def _drives(self, dofs: slice) -> Drives:
+    def _drives(self, dofs: slice, begun: int) -> Drives:
         world = world_of(self._body)
-        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time)
+        return Drives(world.motor, world.pd, dofs, world.parameters.substep_time, begun)
 
     def _each(self, value: ArrayLike, name: str) -> Array:
         """One number for each velocity coordinate; an error message names the joints."""

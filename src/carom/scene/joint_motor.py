@@ -43,12 +43,14 @@ class Drives(NamedTuple):
         pd: `pd` of all coordinates, likewise.
         dofs: Which coordinates: a slice, or an array of indices.
         substep_time: Duration of a substep [s].
+        begun: `native.change.changes_made` before these were looked up.
     """
 
     motor: np.ndarray
     pd: np.ndarray
     dofs: slice | np.ndarray
     substep_time: float
+    begun: int = -1
 
     def aim_at_position(
         self,
@@ -134,7 +136,7 @@ class Drives(NamedTuple):
     def switch_off(self) -> None:
         """Switch off the motors and the PD drives."""
         if isinstance(self.dofs, slice) and type(self.motor) is np.ndarray:
-            change = Change()
+            change = Change(begun=self.begun)
             change.write(self.motor[..., self.dofs, MOTOR_MAX_IMPULSE], 0.0)
             change.write(self.pd[..., self.dofs, PD_MAX_FORCE], 0.0)
             change.commit()
@@ -145,7 +147,7 @@ class Drives(NamedTuple):
     def _write(self, rows: np.ndarray, columns: Mapping[int, np.ndarray]) -> None:
         """Write columns at once if all of them fit the rows, so that an error changes nothing."""
         if isinstance(self.dofs, slice) and type(rows) is np.ndarray:
-            change, target = Change(), rows[..., self.dofs, :]
+            change, target = Change(begun=self.begun), rows[..., self.dofs, :]
             told = target.copy()
             for column, values in columns.items():
                 told[..., column] = values
@@ -154,5 +156,12 @@ class Drives(NamedTuple):
             return
         shape = rows[..., self.dofs, 0].shape
         fitting = {column: np.broadcast_to(values, shape) for column, values in columns.items()}
+        if type(rows) is np.ndarray:
+            told = rows[..., self.dofs, :]
+            for column, values in fitting.items():
+                told[..., column] = values
+            # One statement: indices pick a copy.
+            rows[..., self.dofs, :] = told
+            return
         for column, values in fitting.items():
             rows[..., self.dofs, column] = values

@@ -11,7 +11,8 @@ from carom.checks import Array, vector
 from carom.description.pose import Pose, Vector3
 from carom.description.transform import compose, rotate
 from carom.model.body_spec import BASE
-from carom.native.gates import alone
+from carom.native.change import Change, changes_made
+from carom.native.gates import alone, whole
 from carom.scene.handles import present_inertial_frame, present_link_frame, world_of
 from carom.scene.named import Named
 
@@ -125,7 +126,7 @@ class Link:
 
     # Forces
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def apply_force(
         self, force: ArrayLike, point: ArrayLike | None = None, *, frame: Frame = "world"
     ) -> None:
@@ -139,6 +140,7 @@ class Link:
         Raises:
             ValueError: A vector is not three finite numbers, or the frame is unknown.
         """
+        change = Change(begun=changes_made())
         centre = np.array(present_inertial_frame(self.body, self.index).position)
         world_force = self._in_world(vector(force, 3, "force"), frame)
         arm = np.zeros(3)
@@ -147,10 +149,11 @@ class Link:
             if frame == "link":
                 place = np.array(compose(self._link_frame(), Pose(_triple(place))).position)
             arm = place - centre
-        # One statement.
-        world_of(self.body).link_force[self._row] += np.append(world_force, np.cross(arm, world_force))
+        row = world_of(self.body).link_force[self._row]
+        change.write(row, row + np.append(world_force, np.cross(arm, world_force)))
+        change.commit()
 
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def apply_torque(self, torque: ArrayLike, *, frame: Frame = "world") -> None:
         """Apply a torque in the next step, in addition to other torques.
 
@@ -161,7 +164,10 @@ class Link:
         Raises:
             ValueError: It is not three finite numbers, or the frame is unknown.
         """
-        world_of(self.body).link_force[self._row, 3:] += self._in_world(vector(torque, 3, "torque"), frame)
+        change = Change(begun=changes_made())
+        row = world_of(self.body).link_force[self._row, 3:]
+        change.write(row, row + self._in_world(vector(torque, 3, "torque"), frame))
+        change.commit()
 
     @property
     def _row(self) -> int:

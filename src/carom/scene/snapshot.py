@@ -199,8 +199,7 @@ def return_to(change: Change, world: WorldCore, shape: Shape, snapshot: Snapshot
     else:
         world.contact_arrays.drop_contacts(change)
         change.write(world.arrays.state.numpy["tree_reset"][0], 0)
-    world.note_time(change, snapshot.time)
-    change.set(world, "unspent_time", snapshot.unspent_time)
+    world.note_time(change, snapshot.time, snapshot.unspent_time)
     if world.arrays.state.numpy["tree_activity"].any() or snapshot.state["tree_activity"].any():
         world.change_scene(change)
 

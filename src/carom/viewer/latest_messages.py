@@ -12,6 +12,7 @@ from threading import Lock
 from typing import Any
 from weakref import WeakKeyDictionary, WeakSet
 
+from carom.native.uninterrupted import uninterrupted
 from carom.viewer.messages import encoded
 
 
@@ -23,7 +24,11 @@ class _Entry:
 
 
 class LatestMessages:
-    """Newest messages by key, numbered in order of change. Safe to use from all threads."""
+    """Newest messages by key, numbered in order of change. Safe to use from all threads.
+
+    The lock is held in sections only: a signal handler or a finalizer that ran in its own thread with the
+    lock held, and draws something, would wait for ever.
+    """
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -44,10 +49,11 @@ class LatestMessages:
 
     def amend(self, key: Hashable, header: Mapping[str, Any]) -> None:
         """Changes a message for pages that join later; other pages keep the old one."""
-        with self._lock:
+        message = encoded(header)
+        with uninterrupted, self._lock:
             entry = self._entries.get(key)
             if entry is not None:
-                entry.message = encoded(header)
+                entry.message = message
 
     def remove(self, key: Hashable, header: Mapping[str, Any]) -> None:
         """Removes a message. Pages that have it are sent `header`; unknown keys are ignored."""
@@ -69,13 +75,13 @@ class LatestMessages:
     def reader(self) -> Reader:
         """Somebody who is told of all changes from now on, and of what is there."""
         reader = Reader(self)
-        with self._lock:
+        with uninterrupted, self._lock:
             self._readers.add(reader)
         return reader
 
     def changes(self, revision: int) -> tuple[list[tuple[Hashable, bytes, bool]], int]:
         """As `since`, with the key of each message, and whether it tells that another one is gone."""
-        with self._lock:
+        with uninterrupted, self._lock:
             if revision == self._revision:
                 return [], revision
             newest: list[tuple[Hashable, bytes, bool]] = []
@@ -90,7 +96,7 @@ class LatestMessages:
         """Drops removals that all readers have, and the pages: they have a revision, None without pages."""
         if not self._removals:
             return
-        with self._lock:
+        with uninterrupted, self._lock:
             known = [reader.revision for reader in self._readers]
             if revision is not None:
                 known.append(revision)
@@ -100,11 +106,23 @@ class LatestMessages:
                 del self._entries[key]
 
     def _enter(self, key: Hashable, message: bytes, *, gone: bool) -> None:
-        with self._lock:
-            self._revision += 1
-            self._entries.pop(key, None)
-            self._entries[key] = _Entry(self._revision, message, gone)
-            (self._removals.add if gone else self._removals.discard)(key)
+        with uninterrupted, self._lock:
+            self._move(key, message, gone=gone)
+
+    def _move(self, key: Hashable, message: bytes, *, gone: bool) -> None:
+        try:
+            self._put_last(key, message, gone=gone)
+        except BaseException:
+            # Ctrl-C may come after the old entry has been taken out.
+            self._put_last(key, message, gone=gone)
+            raise
+
+    def _put_last(self, key: Hashable, message: bytes, *, gone: bool) -> None:
+        """Enter a message; can be repeated."""
+        self._revision += 1
+        self._entries.pop(key, None)
+        self._entries[key] = _Entry(self._revision, message, gone)
+        (self._removals.add if gone else self._removals.discard)(key)
 
 
 class Reader:

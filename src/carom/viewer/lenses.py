@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.native.uninterrupted import uninterrupted
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page
 
@@ -82,7 +83,7 @@ class Lenses:
         width: int,
         height: int,
     ) -> None:
-        with self._lock:
+        with uninterrupted, self._lock:
             number = self._numbers.setdefault(key, len(self._numbers) + 1)
         facts = (view.tobytes(), projection.tobytes(), width, height)
         now = monotonic()

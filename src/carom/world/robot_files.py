@@ -192,5 +192,5 @@ def couple(bodies: Sequence[BodyCore]) -> list[JointCoupling]:
         # From the first leaders on: a follower may lead others.
         if coupling.leader is None or not any(other.follower is coupling.leader for other in made):
             coupling.place()
-        place_followers(coupling.follower.body, coupling.follower.index)
+        place_followers(coupling.follower)
     return made

@@ -215,6 +215,7 @@ class World(
             restore_world(self, Path(state), update_poses=update_poses, maximal=maximal)
             return
         with self.lock, uninterrupted:
+            self.refuse_in_step()
             change = Change()
             return_to(change, self, self._shape, state)
             if update_poses:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom.checks import Array
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
 from carom.worlds.batch import Batch
 from carom.worlds.checks import choose
 
@@ -59,7 +59,7 @@ class ActuatorBatch(Batch):
         """Forces of the actuators in the last substep [N or N m], a view (count, actuators)."""
         return self._state["actuator_force"][:, self._actuators]
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def change_actuator(
         self, actuator: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:

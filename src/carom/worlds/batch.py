@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -64,17 +64,29 @@ class Batch(Closed):
         return Chosen(self._take(where), self._count)
 
     @contextmanager
-    def _rows_of_dofs(self, field: str, worlds: Chosen) -> Iterator[Any]:
-        """The rows of the joints in a field of the state, in some worlds, to write to.
+    def _rows_of_dofs(self, worlds: Chosen, *fields: str) -> Iterator[list[Any]]:
+        """The rows of the joints in fields of the state, in some worlds, to write to.
 
         Whatever is written becomes the state at the end, unless there is an error.
         """
-        rows = self._state[field]
-        part = rows[worlds.rows, self._dofs]
-        yield part
-        # Indices pick a copy, a slice shows a view.
-        if not isinstance(worlds.rows, slice):
-            rows[worlds.rows, self._dofs] = part
+        place = worlds.rows, self._dofs
+        parts = [self._state[field][place].copy() for field in fields]
+        yield parts
+        assign(*((self._state[field], place, part) for field, part in zip(fields, parts, strict=True)))
+
+
+def assign(*writes: tuple[Any, Any, Any]) -> None:
+    """Write to arrays: arrays, indices and values. Ctrl-C in a section comes before all or after all."""
+    to_the_end(lambda: [array.__setitem__(place, values) for array, place, values in writes])
+
+
+def to_the_end(write: Callable[[], object]) -> None:
+    """Do what can be repeated, in a section: Ctrl-C comes before or after it."""
+    try:
+        write()
+    except BaseException:
+        write()
+        raise
 
 
 def _following(first: int, count: int) -> slice:

@@ -9,9 +9,11 @@ from carom.checks import Array
 from carom.engine.presence import change_presence, is_present
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
 from carom.layouts.magnitudes import UNIT_ROUNDING
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
+from carom.native.uninterrupted import uninterrupted
 from carom.worlds.actuators import ActuatorBatch
 from carom.worlds.algorithms.derivatives import DerivativeBatch
+from carom.worlds.batch import assign
 from carom.worlds.checks import Mask
 from carom.worlds.dynamics import change_dynamics, dynamics_of
 from carom.worlds.frames import link_frames
@@ -49,7 +51,7 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
     def present(self, value: ArrayLike) -> None:
         self.set_present(value)
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def set_present(self, present: ArrayLike, where: ArrayLike | None = None) -> None:
         """Let the body come or go in each world, or in some.
 
@@ -126,8 +128,13 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             raise ValueError("orientations must be quaternions other than 0")
         # A pose that was read and is written back must not change in the last digit, as in a single world.
         scale = np.where(abs(squared - 1.0) < UNIT_ROUNDING, 1.0, 1.0 / np.sqrt(squared))
-        self.base_poses[worlds.rows] = np.concatenate([position, turn * scale], axis=1)
-        self._engine.contact_arrays.forget_warm_start(worlds.numbers)
+        poses = np.concatenate([position, turn * scale], axis=1)
+        self._put_base_poses(worlds.rows, poses)
+
+    def _put_base_poses(self, rows: slice | np.ndarray, poses: np.ndarray) -> None:
+        with uninterrupted:
+            cold = self._engine.contact_arrays.cold_starts(rows)
+            assign((self.base_poses, rows, poses), cold)
 
     @property
     @alone("_scene.lock")
@@ -152,8 +159,9 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
         worlds = self._chosen(where)
         values = worlds.values(self._take(velocities), (BASE_VELOCITIES,), "velocities")
         first = self._body.first_velocity
-        self._state["dof_velocity"][worlds.rows, first : first + 3] = values[:, 3:]
-        self._state["dof_velocity"][worlds.rows, first + 3 : first + BASE_VELOCITIES] = values[:, :3]
+        turned = np.concatenate([values[:, 3:], values[:, :3]], axis=1)
+        # One statement.
+        self._state["dof_velocity"][worlds.rows, first : first + BASE_VELOCITIES] = turned
 
     @property
     @alone("_scene.lock")
@@ -240,13 +248,13 @@ class BodyBatch(JointBatch, ActuatorBatch, DerivativeBatch, SensorBatch):
             place = worlds.values(self._take(points), (3,), "points")
             lever = place - self._poses.poses()[worlds.rows, row, :3]
             torque = torque + np.cross(lever, force)
-        wrench = self._state["link_wrench"]
-        wrench[worlds.rows, row, :3] += force
-        wrench[worlds.rows, row, 3:] += torque
+        wrench = np.concatenate([force, torque], axis=1)
+        # One statement.
+        self._state["link_wrench"][worlds.rows, row] += wrench
 
     # Parameters
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def change_dynamics(
         self, link: int | str, *, where: ArrayLike | None = None, **changes: ArrayLike
     ) -> None:

@@ -15,6 +15,7 @@ from carom.model.body_spec import BASE
 from carom.scene.body import Body
 from carom.scene.dynamics_changes import shape_inertia, unit_inertia
 from carom.scene.joint_terms.implicit import OF_DOFS, SPRING_REFERENCE, TERMS
+from carom.worlds.batch import to_the_end
 from carom.worlds.chosen import Chosen
 
 _QUATERNION = 4
@@ -45,8 +46,12 @@ def change_dynamics(
             raise ValueError(f"{name} must not be negative")
     _open_crossed_limits(engine, body, link, worlds, values)
     writes = list(_writes(engine, body, link, values))
-    for table, field, rows, numbers in writes:
-        engine.set_parameter(table, field, rows, numbers, worlds.rows)
+
+    def write() -> None:
+        for table, field, rows, numbers in writes:
+            engine.set_parameter(table, field, rows, numbers, worlds.rows)
+
+    to_the_end(write)
 
 
 def _open_crossed_limits(

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from carom.checks import Array, finite
 from carom.description import JointType
 from carom.layouts.codes import SENSED
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
 from carom.scene.joint_motor import Drives
-from carom.worlds.batch import Batch
+from carom.worlds.batch import Batch, assign
 from carom.worlds.checks import choose
 from carom.worlds.chosen import Chosen
 from carom.worlds.dynamics import LIMITS, limit_rows
@@ -99,17 +99,18 @@ class JointBatch(Batch):
             return slice(int(columns[0]), int(columns[-1]) + 1)
         return columns
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def enable_sensors(self, *joints: int | str) -> None:
         """Switch the force-torque sensors of joints on in all worlds; all joints if none is named."""
         chosen = joints or tuple(range(self._body.joint_count))
         table = self._engine.arrays.model
         model = table.numpy
-        for joint in chosen:
-            row = self._body.first_link + 1 + choose("joint", self.joint_names, joint)
-            model["link_sensor"][row] |= SENSED
         links = slice(self._body.first_link, self._links.stop)
-        model["tree_sensor_count"][self.rows.tree] = int((model["link_sensor"][links] != 0).sum())
+        sensors = model["link_sensor"][links].copy()
+        for joint in chosen:
+            sensors[1 + choose("joint", self.joint_names, joint)] |= SENSED
+        count = int((sensors != 0).sum())
+        assign((model["link_sensor"], links, sensors), (model["tree_sensor_count"], self.rows.tree, count))
         table.written("link_sensor")
         table.written("tree_sensor_count")
 
@@ -123,7 +124,7 @@ class JointBatch(Batch):
 
     # Drives
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def set_position_targets(
         self,
         targets: ArrayLike,
@@ -166,7 +167,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.aim_at_position(target, rate, gain, damping, forces, fastest)
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def set_velocity_targets(
         self,
         targets: ArrayLike,
@@ -187,7 +188,7 @@ class JointBatch(Batch):
         with self._drives(columns, worlds) as drives:
             drives.aim_at_velocity(target, gain, forces)
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def set_springs(
         self,
         targets: ArrayLike,
@@ -230,10 +231,10 @@ class JointBatch(Batch):
         number = len(places) if joints is not None else self._dofs.stop - self._dofs.start
         worlds = self._chosen(where)
         values = worlds.values(self._take(torques), (number,), "torques")
-        with self._rows_of_dofs("dof_torque", worlds) as rows:
+        with self._rows_of_dofs(worlds, "dof_torque") as (rows,):
             rows[:, columns] = values
 
-    @alone("_scene.lock")
+    @in_section("_scene.lock")
     def disable_motors(self, joints: list[int | str] | None = None, where: ArrayLike | None = None) -> None:
         """Switch off the motors and springs of joints, in all worlds or in some."""
         columns, _ = self._chosen_joints(joints, one_freedom=joints is not None)
@@ -254,8 +255,7 @@ class JointBatch(Batch):
             ValueError: A joint has more than one degree of freedom.
         """
         columns, _ = self._chosen_joints(joints)
-        with self._drives(columns, self._chosen()) as drives:
-            return drives.motors()
+        return self._present_drives(columns).motors()
 
     @alone("_scene.lock")
     def springs(self, joints: list[int | str] | None = None) -> dict[str, Array]:
@@ -264,17 +264,18 @@ class JointBatch(Batch):
         Args, Returns, Raises: as for `motors`; a spring that is off has 0 in `max_forces`.
         """
         columns, _ = self._chosen_joints(joints)
-        with self._drives(columns, self._chosen()) as drives:
-            return drives.springs()
+        return self._present_drives(columns).springs()
 
     @contextmanager
     def _drives(self, columns: slice | np.ndarray, worlds: Chosen) -> Iterator[Drives]:
         """The drives of some joints in some worlds; what is set is in force at the end."""
-        with (
-            self._rows_of_dofs("dof_motor", worlds) as motor,
-            self._rows_of_dofs("dof_pd", worlds) as pd,
-        ):
+        with self._rows_of_dofs(worlds, "dof_motor", "dof_pd") as (motor, pd):
             yield Drives(motor, pd, columns, self._scene.parameters.substep_time)
+
+    def _present_drives(self, columns: slice | np.ndarray) -> Drives:
+        """The drives of some joints in all worlds, to read."""
+        motor, pd = self._state["dof_motor"][:, self._dofs], self._state["dof_pd"][:, self._dofs]
+        return Drives(motor, pd, columns, self._scene.parameters.substep_time)
 
     def _fitting(self, worlds: Chosen, value: ArrayLike, inner: tuple[int, ...], name: str) -> Array:
         return worlds.fitting(self._take(value), inner, name)

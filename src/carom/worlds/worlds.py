@@ -16,7 +16,8 @@ from carom.engine.engine import MAX_STEPS
 from carom.errors import SimulationWarning
 from carom.layouts.status import STATUS, WELL
 from carom.native.cpu import core_count
-from carom.native.gates import alone
+from carom.native.gates import alone, in_section
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.bodies import Bodies
 from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
@@ -90,6 +91,9 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self._engine.update_settings(self._scene.parameters)
         self.times: Array = np.full(count, world.time)
         self._unspent_times = np.full(count, world.unspent_time)
+        if self._engine.keeps_times:
+            addresses = self.times.ctypes.data, self._unspent_times.ctypes.data
+            self._engine.keep_times(*addresses, (self.times, self._unspent_times))
         self.halted: Mask = np.zeros(count, dtype=bool)
         workers = min(count, threads or core_count())
         self._sensors = BatchSource(self._scene, self._engine, self.times)
@@ -134,7 +138,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         return self._scene.parameters.time_step
 
     @time_step.setter
-    @alone("lock")
+    @in_section("lock")
     def time_step(self, value: float) -> None:
         (seconds,) = positive([value], "time_step").tolist()
         self._scene.parameters.time_step = seconds
@@ -159,8 +163,21 @@ class Worlds(ContactQueries, Linearizing, Closed):
         while count > 0:
             # Sensors with a memory measure after each step.
             steps = 1 if self._sensors.remembered else min(count, MAX_STEPS)
-            self._step(steps, chosen)
+            # Handlers of signals run between steps.
+            with uninterrupted:
+                if steps > 1 or chosen is not None or not self._step_all():
+                    self._step(steps, chosen)
             count -= steps
+
+    def _step_all(self) -> bool:
+        """Perform the usual step, of all worlds and with one substep; false if that is not what is due."""
+        if self._scene.parameters.substeps > 1 or self._sensors.remembered or not self._engine.keeps_times:
+            return False
+        if np.count_nonzero(self.halted):
+            return False
+        if not self._engine.step_all():
+            self._halt(np.flatnonzero(self._engine.status[:, STATUS] > WELL), 1)
+        return True
 
     def _step(self, steps: int, chosen: np.ndarray | None) -> None:
         running = np.flatnonzero(~self.halted) if chosen is None else chosen[~self.halted[chosen]]
@@ -173,15 +190,18 @@ class Worlds(ContactQueries, Linearizing, Closed):
             # Worlds with different unspent times have their substeps in different steps.
             for unspent in np.unique(self._unspent_times[running]):
                 worlds = running[self._unspent_times[running] == unspent]
-                due, left = [], float(unspent)
+                due, left = [], [float(unspent)]
                 for _ in range(steps):
-                    substeps, left = parameters.substeps_due(left)
+                    substeps, after = parameters.substeps_due(left[-1])
                     due.append(substeps)
-                self._engine.step(due, worlds)
-                self._unspent_times[worlds] = left
-        # Added one by one, as in a single world, for the same rounding.
-        for _ in range(steps):
-            self.times[running] += self.time_step
+                    left.append(after)
+                self._engine.step(due, worlds, left[1:])
+                if not self._engine.keeps_times:
+                    self._unspent_times[worlds] = left[-1]
+        if not self._engine.keeps_times:
+            # Added one by one, as in a single world, for the same rounding.
+            for _ in range(steps):
+                self.times[running] += self.time_step
         status = self._engine.status[running, STATUS]
         if status.any():
             self._halt(running[status > WELL], steps)
@@ -191,7 +211,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def _halt(self, worlds: np.ndarray, steps: int) -> None:
         """Mark worlds whose step failed, and warn."""
         self.halted[worlds] = True
-        self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
+        if not self._engine.keeps_times:
+            self.times[worlds] -= self.time_step * (steps - self._engine.steps_done(worlds))
         names = {batch.rows.tree: batch.name for batch in self}
         for world in worlds[:_MAX_NAMED].tolist():
             name = names[int(self._engine.status[world, STATUS]) - 1]
@@ -203,7 +224,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         if len(worlds) > _MAX_NAMED:
             warnings.warn(f"{len(worlds)} worlds are halted", SimulationWarning, stacklevel=4)
 
-    @alone("lock")
+    @in_section("lock")
     def detect_collisions(self) -> None:
         """Find the contacts of all worlds for their present coordinates, without a step."""
         if self._engine.can_collide:
@@ -221,7 +242,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         worlds = world_numbers(self._engine.take(where), self.count)
         return SavedWorlds.take(self._engine, worlds, self.times[worlds], self._unspent_times[worlds])
 
-    @alone("lock")
+    @in_section("lock")
     def restore(self, start: SavedWorlds, where: ArrayLike | None = None) -> None:
         """Restore worlds to states of `save`; the steps that follow are then the same, bit for bit.
 
@@ -262,7 +283,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
             "parameters": parameters_of(self._engine),
         }
 
-    @alone("lock")
+    @in_section("lock")
     def resume(self, saved: Mapping[str, Any]) -> None:
         """Give all worlds the states and parameters of `checkpoint`; they continue bit for bit.
 
@@ -283,7 +304,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         self.halted[:], self.sensor_seeds[:] = saved["halted"], saved["sensor_seeds"]
         self.time_step = saved["time_step"]
 
-    @alone("lock")
+    @in_section("lock")
     def reset_to(self, name: str, where: ArrayLike | None = None) -> None:
         """Reset all bodies that have a keyframe of this name to it, and the worlds to its time.
 
@@ -316,7 +337,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         lone.parameters.sensor_seed = int(self.sensor_seeds[number])
         return lone
 
-    @alone("lock")
+    @in_section("lock")
     def copy_coordinates(self, number: int, world: World) -> None:
         """Copy the coordinates of one of the worlds to a `World`, for queries that `Worlds` does not have.
 
@@ -356,7 +377,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
     def gravity(self, value: ArrayLike) -> None:
         self.set_gravity(value)
 
-    @alone("lock")
+    @in_section("lock")
     def set_gravity(self, gravity: ArrayLike, where: ArrayLike | None = None) -> None:
         """Set the gravity of each world, or of some.
 
@@ -371,7 +392,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         values = worlds.values(np.asarray(self._engine.take(gravity)), (3,), "gravity")
         self._engine.set_parameter("model", "gravity_vector", 0, values, worlds.rows)
 
-    @alone("lock")
+    @in_section("lock")
     def set_fluid(
         self,
         density: ArrayLike | None = None,
@@ -402,7 +423,7 @@ class Worlds(ContactQueries, Linearizing, Closed):
         for name, values in found.items():
             self._engine.set_parameter("model", f"fluid_{name}", 0, values, worlds.rows)
 
-    @alone("lock")
+    @in_section("lock")
     def enable_constraint(
         self, constraint: UserConstraint | int, enabled: ArrayLike, where: ArrayLike | None = None
     ) -> None:

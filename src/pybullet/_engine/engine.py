@@ -156,10 +156,10 @@ def resetSimulation(flags: int = 0, physicsClientId: int = 0) -> None:
             record = client.bodies.quick.record
             change.copy_blocks(blank(record, "reports_analytics"), record)
             change.set(client, "deformable", deformable)
+            note_no_drawings(change)
 
-        with uninterrupted:
+        with uninterrupted, client.window.without_drawings() as note_no_drawings:
             client.world.reset(also)
-            client.window.remove_drawings()
 
 
 @exported

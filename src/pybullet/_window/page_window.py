@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import fields
 from math import isfinite
 from pathlib import Path
@@ -12,6 +13,7 @@ from threading import main_thread
 from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import Vector3
+from carom.native.change import Change
 from carom.viewer.items import DebugItem, Slider
 from pybullet._calls.constants import COV_ENABLE_Y_AXIS_UP
 from pybullet._calls.errors import fail
@@ -99,10 +101,15 @@ class PageWindow(Window):
         self.viewer.drawings.remove(item)
         self.viewer.controls.remove(item)
 
-    def remove_drawings(self) -> None:
-        self.viewer.drawings.clear()
+    @contextmanager
+    def without_drawings(self) -> Iterator[Callable[[Change], None]]:
+        with self.viewer.drawings.changing():
+            yield self._note_no_drawings
+
+    def _note_no_drawings(self, change: Change) -> None:
+        self.viewer.drawings.note_clear(change)
         # Ids start again after those of sliders, which are kept.
-        self._next_item = max(self.sliders, default=-1) + 1
+        change.set(self, "_next_item", max(self.sliders, default=-1) + 1)
 
     def remove_sliders(self) -> None:
         for item in list(self.sliders):

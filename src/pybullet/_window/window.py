@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from carom.native.change import Change
+
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -70,8 +73,20 @@ class Window:
     def remove(self, item: int) -> None:
         """Removes an item or slider; unknown ids are ignored."""
 
+    @contextmanager
+    def without_drawings(self) -> Iterator[Callable[[Change], None]]:
+        """Gives a function that notes the removal of all lines, texts and points, but not of sliders.
+
+        The change has to be made within this context.
+        """
+        yield _note_nothing
+
     def remove_drawings(self) -> None:
         """Removes all lines, texts and points, but not sliders."""
+        with self.without_drawings() as note:
+            change = Change()
+            note(change)
+            change.commit()
 
     def remove_sliders(self) -> None:
         """Removes all sliders."""
@@ -106,3 +121,7 @@ class Window:
         """The 12 fields of `getDebugVisualizerCamera`."""
         vector, matrix = (0.0,) * 3, (0.0,) * 16
         return (0, 0, matrix, matrix, vector, vector, vector, vector, 0.0, 0.0, 0.0, vector)
+
+
+def _note_nothing(_change: Change) -> None:
+    """There is nothing to remove."""

@@ -25,6 +25,7 @@
     F(void, PyDict_Clear, (PyObject*))                                  \
     F(int, PyDict_Update, (PyObject*, PyObject*))                       \
     F(int, PyBytes_AsStringAndSize, (PyObject*, char**, intptr_t*))     \
+    F(long long, PyLong_AsLongLong, (PyObject*))                        \
     F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
     F(void, PyBuffer_Release, (PyBuffer*))                              \
     F(void*, PyMem_Malloc, (uintptr_t))                                 \
@@ -51,12 +52,15 @@ ChangeFunctions carom_change_table;
 extern "C" CAROM_EXPORT const char carom_change_functions[] = CAROM_CHANGE_FUNCTIONS(F);
 #undef F
 
+extern "C" CAROM_EXPORT int64_t carom_changes_made;
+int64_t carom_changes_made = 0;
+
 namespace {
 
 const ChangeFunctions& host = carom_change_table;
 
 // What a change consists of: a dictionary of attributes, and lists.
-enum Part { ATTRIBUTES, ITEMS, CONTENTS, MORE, WRITES, CUTS, BLOCKS, RUNS };
+enum Part { ATTRIBUTES, ITEMS, CONTENTS, MORE, WRITES, CUTS, BLOCKS, RUNS, BEGUN };
 
 // Flags of buffers: any strides, with or without permission to write.
 constexpr int STRIDED = 0x18, WRITABLE = 0x01;
@@ -269,12 +273,22 @@ static void launch(const KernelRun& launched) {
 // - a dictionary of pairs of an object and its attributes, a dictionary;
 // - lists of dictionaries, keys and values; of dictionaries, contents and copies of their present contents; of lists and
 //   items for their ends; of arrays and what is written to them, each in turn;
-// - lists of byte strings of records: `RowCut`, `Block` and `KernelRun`.
+// - lists of byte strings of records: `RowCut`, `Block` and `KernelRun`;
+// - the number of changes at which it was begun: if others have been made since, nothing is done, and this number is
+//   returned. -1 if that is of no importance.
 // Rows are taken out of tables before memory is written, and kernels run after that.
 extern "C" CAROM_EXPORT PyObject* carom_commit(PyObject* missing, PyObject* const* parts, intptr_t) {
     Buffers writes;
-    if (!writes.get(parts[WRITES]) || !Exchange{missing}.all(parts))
+    if (!writes.get(parts[WRITES]))
         return nullptr;
+    const int64_t begun = host.PyLong_AsLongLong(parts[BEGUN]);
+    if (begun >= 0 && begun != carom_changes_made) {
+        host.Py_IncRef(parts[BEGUN]);
+        return parts[BEGUN];
+    }
+    if (!Exchange{missing}.all(parts))
+        return nullptr;
+    ++carom_changes_made;
     each<RowCut>(parts[CUTS], cut_rows);
     writes.copy();
     each<Block>(parts[BLOCKS], [](const Block& block) { carom_copy_blocks(&block, 1); });

@@ -34,11 +34,22 @@ int32_t* status_of(const Run& run, int world) {
     return reinterpret_cast<int32_t*>(run.program->status + world * run.program->status_stride);
 }
 
-// Ends a step: returns whether it went well; if it did not, it is undone.
+// Lets the time of a world go on, after its step.
+void advance(const Run& run, int world, int step) {
+    if (!run.times)
+        return;
+    run.times[world] += run.duration;
+    if (run.unspent_after)
+        run.unspent_times[world] = run.unspent_after[step];
+}
+
+// Ends a step, unless some of its substeps are left: returns whether it went well; if it did not, it is undone.
 bool end_step(const Run& run, const Program& program, int world, int step, int substeps, bool well) {
     int32_t* status = status_of(run, world);
     if (well) {
         status[status::STEPS_DONE] = step + 1;
+        if (run.end_substep >= substeps)
+            advance(run, world, step);
         return true;
     }
     if (run.repeatable)

@@ -1,7 +1,9 @@
-// Steps of a world: a quick call.
+// Steps of a world: a quick call, and a builtin.
 
 #include "export.h"
 #include "quick_calls.h"
+
+extern "C" int64_t carom_changes_made;
 
 namespace {
 
@@ -12,7 +14,7 @@ struct Kept {
     PyObject* object;
 };
 
-// Performs a step. Other threads run meanwhile, unless the step ends before they could begin.
+// Performs what a run asks for. Other threads run meanwhile, unless the step ends before they could begin.
 void perform(const Step& step) {
     if (step.contact_count && !*step.contact_count) {
         carom_perform(step.run);
@@ -21,6 +23,26 @@ void perform(const Step& step) {
     void* thread = python.PyEval_SaveThread();
     carom_perform(step.run);
     python.PyEval_RestoreThread(thread);
+}
+
+// Performs a step, and lets the time go on by it. If it fails it is undone completely, whatever the reason.
+bool take(const Step& step) {
+    Run& run = *step.run;
+    const TemporaryValue<int32_t> repeatable(&run.repeatable, 1);
+    ++carom_changes_made;
+    if (step.substeps <= 1) {
+        perform(step);
+        return !*step.status;
+    }
+    // As `carom.engine.parameters.EngineParameters.substeps_due`.
+    const double time = *run.unspent_times + run.duration, substep_time = run.duration / step.substeps;
+    const double count = static_cast<double>(static_cast<int64_t>(time / substep_time));
+    const int32_t due = static_cast<int32_t>(count < step.substeps ? count : step.substeps);
+    const double left = time - count * substep_time;
+    const TemporaryValue<const int32_t*> substeps(&run.due, &due);
+    const TemporaryValue<const double*> unspent(&run.unspent_after, &left);
+    perform(step);
+    return !*step.status;
 }
 
 }  // namespace
@@ -34,10 +56,15 @@ extern "C" CAROM_EXPORT PyObject* carom_step(const double* in, const Call* call)
     const Step& step = client.scene->step;
     if (!lock.is_held || !step.run || python.PyList_Size(step.observers) || client.reports_analytics)
         return nullptr;
-    const TemporaryValue<int32_t> repeatable(&step.run->repeatable, 1);
-    perform(step);
-    if (*step.status)
-        return nullptr;
-    *step.time += *step.duration;
-    return python.PyTuple_New(0);
+    return take(step) ? python.PyTuple_New(0) : nullptr;
+}
+
+// Performs a step for Python, which has the lock. This is the C code of a builtin, whose `self` is a float: the address of
+// a `Step`. Returns whether the step has been performed; if not, nothing has happened.
+extern "C" CAROM_EXPORT PyObject* carom_take_step(PyObject* self, PyObject* const*, intptr_t) {
+    const Step& step = *reinterpret_cast<Step*>(static_cast<uintptr_t>(python.PyFloat_AsDouble(self)));
+    const Kept kept(self);
+    PyObject* answer = step.run && take(step) ? python.True : python.False;
+    python.Py_IncRef(answer);
+    return answer;
 }

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from carom.checks import Array, finite, one_or_each
 from carom.description.actuator import ActuatorSpec, Range
-from carom.native.gates import alone
+from carom.native.change import Change, changes_made
+from carom.native.gates import alone, whole
 from carom.scene.actuators.actuated_joint import drives_joint
 from carom.scene.handles import world_of
 from carom.scene.named import Named
@@ -63,9 +64,12 @@ class BodyActuator:
         return float(self._state("actuator_control")[self._row])
 
     @control.setter
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def control(self, value: float) -> None:
-        self._state("actuator_control")[self._row] = float(finite(value, "control"))
+        change = Change(begun=changes_made())
+        row = self._row
+        change.write(self._state("actuator_control")[row : row + 1], float(finite(value, "control")))
+        change.commit()
 
     @property
     @alone("body.world.lock")
@@ -74,9 +78,12 @@ class BodyActuator:
         return float(self._state("actuator_activation")[self._row])
 
     @activation.setter
-    @alone("body.world.lock")
+    @whole("body.world.lock")
     def activation(self, value: float) -> None:
-        self._state("actuator_activation")[self._row] = float(finite(value, "activation"))
+        change = Change(begun=changes_made())
+        row = self._row
+        change.write(self._state("actuator_activation")[row : row + 1], float(finite(value, "activation")))
+        change.commit()
 
     @property
     @alone("body.world.lock")
@@ -146,9 +153,12 @@ class BodyActuators(Named[BodyActuator]):
         return self._state("actuator_control").copy()
 
     @controls.setter
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def controls(self, values: ArrayLike) -> None:
-        self._state("actuator_control")[:] = one_or_each(finite(values, "controls"), len(self), "controls")
+        change = Change(begun=changes_made())
+        numbers = one_or_each(finite(values, "controls"), len(self), "controls")
+        change.write(self._state("actuator_control"), numbers)
+        change.commit()
 
     @property
     @alone("_body.world.lock")
@@ -157,10 +167,12 @@ class BodyActuators(Named[BodyActuator]):
         return self._state("actuator_activation").copy()
 
     @activations.setter
-    @alone("_body.world.lock")
+    @whole("_body.world.lock")
     def activations(self, values: ArrayLike) -> None:
+        change = Change(begun=changes_made())
         numbers = one_or_each(finite(values, "activations"), len(self), "activations")
-        self._state("actuator_activation")[:] = numbers
+        change.write(self._state("actuator_activation"), numbers)
+        change.commit()
 
     @property
     @alone("_body.world.lock")

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import sqrt
-from struct import Struct
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from carom.closed import Closed
 from carom.description.joint import JOINT_CODE
@@ -24,17 +21,15 @@ from carom.layouts.codes import (
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.native.change import Change
-from carom.native.gates import alone
-from carom.native.tables import NUMPY_REAL
+from carom.native.change import Change, change_numbers, changes_made
+from carom.native.gates import alone, whole
 from carom.scene.dynamics_changes import set_dynamics, set_present
+from carom.scene.handles import world_of
 from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
-_NUMBER = np.dtype(NUMPY_REAL)
-_SPATIAL = Struct(f"{BASE_VELOCITIES}{_NUMBER.char}")
 _NO_REACTION = (0.0,) * BASE_VELOCITIES
 
 JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
@@ -145,7 +140,7 @@ class BodyCore(Closed):
         """Inertial frame of a link in its link frame; -1 is the base."""
         return self.link_spec(link).inertial_frame
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Set the pose of the base's inertial frame; its velocity does not change.
 
@@ -157,23 +152,26 @@ class BodyCore(Closed):
         squared = x * x + y * y + z * z + w * w
         # A pose that was read and is written back must not change in the last digit.
         scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
-        first, change = self.first_position, Change()
+        change = Change(begun=changes_made())
+        world, first = world_of(self), self.first_position
         pose = *position, x * scale, y * scale, z * scale, w * scale
-        change.write_numbers(self.world.position_memory[first : first + BASE_POSITIONS], pose)
-        self.world.contact_arrays.note_cold_start(change)
-        self.world.note_link_poses(change, self)
+        change.write_numbers(world.position_memory[first : first + BASE_POSITIONS], pose)
+        world.contact_arrays.note_cold_start(change)
+        world.note_link_poses(change, self)
         change.commit()
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s].
 
         A fixed base moves with it, and as in Bullet the velocity turns with the base.
         """
-        first = self.first_velocity * _NUMBER.itemsize
-        _SPATIAL.pack_into(self.world.velocity_memory, first, *angular, *linear)
+        begun = changes_made()
+        world, first = world_of(self), self.first_velocity
+        place = world.velocity_memory[first : first + BASE_VELOCITIES]
+        change_numbers(place, (*angular, *linear), begun)
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
@@ -185,9 +183,15 @@ class BodyCore(Closed):
                 None keeps them.
             velocity: All velocity coordinates of the joint; None keeps them.
         """
-        change = Change()
-        self.note_joint_states(change, [(joint, position, velocity)])
-        self.world.note_link_poses(change, self)
+        self.set_joint_states([(joint, position, velocity)])
+
+    @whole("world.lock")
+    def set_joint_states(self, states: Iterable[JointReset]) -> None:
+        """Set the states of joints, in turn, all at once."""
+        change = Change(begun=changes_made())
+        world = world_of(self)
+        self.note_joint_states(change, states)
+        world.note_link_poses(change, self)
         change.commit()
 
     def note_joint_states(self, change: Change, states: Iterable[JointReset]) -> list[bool]:
@@ -283,10 +287,11 @@ class BodyCore(Closed):
         first = self.first_link + 1
         return self.world.arrays.model.numpy["link_sensor"][first : first + self.joint_count].tolist()
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_sensor(self, joint: int, enabled: bool) -> None:
         """Switch the force-torque sensor of a joint on or off."""
-        change = Change()
+        change = Change(begun=changes_made())
+        world_of(self)  # raises an error if the body has been removed
         self.note_sensor(change, joint, enabled=enabled)
         change.commit()
 

@@ -17,9 +17,9 @@ class Derived:
     """Data derived from the bodies, constraints and arrays of a world, computed on demand."""
 
     def __init__(self) -> None:
-        self.step: Callable[[], None] | None = None
+        self.step: Callable[[], bool] | None = None
         # The step before constraints changed, if nothing else has changed since.
-        self.step_before: Callable[[], None] | None = None
+        self.step_before: Callable[[], bool] | None = None
         self.queries: Queries | None = None
         self.present_poses: PresentPoses | None = None
         self.pose_launch: TreeLaunch | None = None

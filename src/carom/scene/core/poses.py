@@ -52,7 +52,7 @@ class PoseUpdates(WorldData):
         """Bring `link_pose` up to date with the coordinates of bodies, by default all, after a change."""
         launch = self._derived.pose_launch or self.prepare_poses()
         for body in bodies or self.bodies.values():
-            change.run(launch.addresses(), body.rows.tree, launch)
+            change.run_record(launch.record(body.rows.tree), launch)
 
     def prepare_poses(self) -> TreeLaunch:
         """Set the addresses that the fast paths in the native library use, after a change of the scene.

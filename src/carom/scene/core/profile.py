@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 from carom.engine.engine import Engine
 from carom.engine.interpreter import ALL_SUBSTEPS, Stepper
@@ -32,7 +33,7 @@ class StagedStepper(Stepper):
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._asked: dict[str, int] = {"first_substep": 0, "end_substep": ALL_SUBSTEPS}
+        self._asked: dict[str, Any] = {"first_substep": 0, "end_substep": ALL_SUBSTEPS}
         self.seconds: dict[str, float] = dict.fromkeys(STAGES, 0.0)
         self.run = self._run
 
@@ -40,7 +41,7 @@ class StagedStepper(Stepper):
         """Use another program from now on."""
         self.program = program
 
-    def ask(self, **asked: int) -> None:
+    def ask(self, **asked: Any) -> None:
         """Set numbers for all later runs, as `Interpreter.ask` does."""
         self._asked.update(asked)
 

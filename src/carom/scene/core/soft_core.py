@@ -12,11 +12,12 @@ from carom.checks import Array, finite
 from carom.description.pose import Pose
 from carom.description.transform import compose, inverse, rotation_matrix
 from carom.model.soft_spec import Anchor, SoftRows, SoftSpec
-from carom.native.change import Change
-from carom.native.gates import alone
+from carom.native.change import Change, changes_made
+from carom.native.gates import alone, whole
 from carom.native.products import dots, length, product
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.core.body_core import BodyCore
+from carom.scene.handles import world_of
 
 if TYPE_CHECKING:
     from carom.checks import Array
@@ -95,7 +96,7 @@ class SoftCore(BodyCore):
         """Update the pose and the velocity of the base after nodes have been written."""
         self.world.update_soft_poses()
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_nodes(self, positions: Array | Sequence[Sequence[float]]) -> None:
         """Set the positions of the nodes; their velocities do not change.
 
@@ -105,40 +106,49 @@ class SoftCore(BodyCore):
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        self._change_nodes(positions=_as_many(positions, self.nodes.shape, "positions"))
+        begun = changes_made()
+        self._change_nodes(begun, positions=_as_many(positions, self.nodes.shape, "positions"))
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_node_velocities(self, velocities: Array | Sequence[Sequence[float]]) -> None:
         """Set the velocities of the nodes [m/s], shape (n, 3).
 
         Raises:
             ValueError: The shape is wrong, or a number is not finite.
         """
-        self._change_nodes(velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
+        begun = changes_made()
+        self._change_nodes(begun, velocities=_as_many(velocities, self.node_velocities.shape, "velocities"))
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Move and rotate all nodes; the centre of mass moves to `position`. See `Body.set_base_pose`."""
-        state = self.world.arrays.state.numpy
+        begun = changes_made()
+        state = world_of(self).arrays.state.numpy
         first = self.first_position
         center = state["position"][0, first : first + 3].copy()
         before = np.array(rotation_matrix(_unit(state["position"][0, first + 3 : first + 7])))
         turn = product(np.array(rotation_matrix(_unit(orientation))), before.T)
         self._change_nodes(
-            product(self.nodes - center, turn.T) + np.asarray(position), product(self.node_velocities, turn.T)
+            begun,
+            product(self.nodes - center, turn.T) + np.asarray(position),
+            product(self.node_velocities, turn.T),
         )
 
-    @alone("world.lock")
+    @whole("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Give the nodes the velocities of a rigid body: linear (centre of mass) [m/s], angular [rad/s]."""
+        begun = changes_made()
         first = self.first_position
         center = self.world.arrays.state.numpy["position"][0, first : first + 3]
         turning = np.cross(np.asarray(angular), self.nodes - center)
-        self._change_nodes(velocities=np.asarray(linear) + turning)
+        self._change_nodes(begun, velocities=np.asarray(linear) + turning)
 
-    def _change_nodes(self, positions: Array | None = None, velocities: Array | None = None) -> None:
+    def _change_nodes(
+        self, begun: int, positions: Array | None = None, velocities: Array | None = None
+    ) -> None:
         """Set positions or velocities of nodes, and with them the pose and the velocity of the base."""
-        change = Change()
+        change = Change(begun=begun)
+        world_of(self)  # raises an error if the body has been removed
         for target, values in ((self.nodes, positions), (self.node_velocities, velocities)):
             if values is not None:
                 change.write(target, values)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from ctypes import addressof, c_double, sizeof
 
 from carom.engine.quick_steps import show_steps
 from carom.errors import SimulationError
-from carom.layouts.status import STATUS, WELL
-from carom.native.change import Change, packed_block
+from carom.layouts.status import STATUS, STEPS_DONE, WELL
+from carom.native.change import Change
 from carom.native.gates import alone
 from carom.native.uninterrupted import uninterrupted
 from carom.scene.core.poses import PoseUpdates
@@ -23,17 +22,20 @@ class Stepping(PoseUpdates):
     @property
     def time(self) -> float:
         """Simulated time [s]."""
-        return self._clock.value
+        return self._clock.time
 
     @time.setter
     def time(self, value: float) -> None:
-        self._clock.value = value
+        self._clock.time = value
 
-    def note_time(self, change: Change, time: float) -> None:
-        """Set the simulated time [s] with a change."""
-        value = c_double(time)
-        block = packed_block(addressof(value), addressof(self._clock), sizeof(value))
-        change.copy_blocks(block, value)
+    @property
+    def unspent_time(self) -> float:
+        """The part of the simulated time that no substep has covered yet [s]."""
+        return self._clock.unspent_time
+
+    @unspent_time.setter
+    def unspent_time(self, value: float) -> None:
+        self._clock.unspent_time = value
 
     def step(self, count: int = 1) -> None:
         """Advance the world by `count` time steps.
@@ -42,35 +44,44 @@ class Stepping(PoseUpdates):
             ValueError: `count` is negative.
             carom.errors.SimulationError: A velocity became NaN or infinite; the whole state is as it was
                 before that step, except that applied forces and torques are cleared.
+            carom.errors.StateError: An observer has called this in the middle of a step.
         """
         if count < 0:
             raise ValueError(f"count must be at least 0, not {count}: steps cannot be undone")
+        self.refuse_in_step()
         try:
             for _ in range(count):
                 self._step()
         except BaseException:
+            self._is_in_step = False
             # Ctrl-C may come after arrays have grown and before the launches are updated.
             self.scene_changed()
             raise
 
     def _step(self) -> None:
         if self.observers:
-            for observer in self.observers:
+            for observer in self.observers.copy():
                 observer.before_step()
         with self.lock:
-            (self._derived.step or self._prepare_step())()
-            if self._status[STATUS]:
-                self._look_into_status()
-            if self._substep_observers:
-                self._tell_of_substep()
-            self._clock.value += self.parameters.time_step
+            # The usual step is a builtin, which also lets the time go on.
+            if not self.quick.take_step():
+                self._step_in_section()
             if self.observers:
                 for observer in self.observers.copy():
                     observer.after_step()
 
     @alone("lock")
     def watch_substeps(self, observer: SubstepObserver) -> None:
-        """Call an observer at every substep from now on."""
+        """Call an observer at every substep from now on.
+
+        It may read the world, and set poses, joints, motors and forces, which the next substep starts from.
+        What else would change the world raises `carom.errors.StateError`. An error of the observer is raised
+        by `step`, and the world is as it was before that step; after the last substep, as after it.
+
+        Raises:
+            carom.errors.StateError: The world is in the middle of a step.
+        """
+        self.refuse_in_step()
         self._substep_observers.append(observer)
         self.scene_changed()
 
@@ -78,6 +89,7 @@ class Stepping(PoseUpdates):
     def unwatch_substeps(self, observer: SubstepObserver) -> None:
         """Stop calling an observer at every substep."""
         if observer in self._substep_observers:
+            self.refuse_in_step()
             self._substep_observers.remove(observer)
             self.scene_changed()
 
@@ -103,22 +115,47 @@ class Stepping(PoseUpdates):
         self.prepare()
         try:
             with Profile(self.engine) as profile:
+                self.quick.forget_step()
                 self._derived.step = self._step_staged
                 self.step(count)
         finally:
             self.scene_changed()
         return {stage: seconds / count for stage, seconds in profile.seconds.items()}
 
-    def _step_staged(self) -> None:
-        self.engine.step([self._substeps_due()])
-
-    def _look_into_status(self) -> None:
-        """Repeat the step if arrays were too short; raise an error if a velocity is not finite."""
-        with self.lock, uninterrupted:
-            self.engine.recover()
-            self._renew_after_growth()
+    def _step_staged(self) -> bool:
+        due, left = self.parameters.substeps_due(self.unspent_time)
+        self.engine.step([due])
         if self._status[STATUS]:
+            return False
+        self._clock.time, self._clock.unspent_time = self.time + self.parameters.time_step, left
+        return True
+
+    def _step_in_section(self) -> None:
+        """Perform a step that the native library does not perform by itself.
+
+        It has no address of one yet, arrays were too short, or a velocity is not finite.
+        """
+        with self.lock, uninterrupted:
+            step = self._derived.step or self._prepared_step()
+            while not step():
+                self._make_room()
+            # It counts as a change.
+            Change().commit()
+
+    def _attempt(self) -> bool:
+        due, left = self.parameters.substeps_due(self.unspent_time)
+        return self.engine.attempt(due, left)
+
+    def _make_room(self) -> None:
+        """Make arrays longer after a step that has failed; raise an error if a velocity is not finite."""
+        if self._status[STATUS] > WELL:
             self._raise_fault()
+        # Also if it is broken off, everything is derived anew after arrays have grown.
+        self.scene_changed()
+        self.engine.make_room()
+        self._growths = self.engine.growths
+        for observer in self._substep_observers:
+            observer.step_repeated()
 
     def _renew_after_growth(self) -> None:
         if self.engine.growths != self._growths:
@@ -144,12 +181,12 @@ class Stepping(PoseUpdates):
         if self._derived.step is None:
             self._prepare_step()
 
-    def _prepare_step(self) -> Callable[[], None]:
+    def _prepare_step(self) -> Callable[[], bool]:
         """Write constraints and settings to the arrays; return the function that performs a step."""
         with self.lock, uninterrupted:
             return self._prepared_step()
 
-    def _prepared_step(self) -> Callable[[], None]:
+    def _prepared_step(self) -> Callable[[], bool]:
         self.constraints.write(
             self.arrays, self.bodies, self.user_constraints.rows, self.parameters.minimum_island_size
         )
@@ -166,49 +203,45 @@ class Stepping(PoseUpdates):
         self.engine.update_settings(self.parameters)
         in_substeps = self.parameters.substeps > 1
         self.engine.prepare(watched=in_substeps and bool(self._substep_observers))
-        if in_substeps:
-            step = self._step_in_substeps
-        else:
+        if not in_substeps:
             self.unspent_time = 0.0
-            step = self.engine.run_prepared
-            if not self._substep_observers:
-                show_steps(self.engine, self.quick, self._clock, self.observers, self.parameters)
+        step = self._step_watched if self._substep_observers else self._attempt
+        if not self._substep_observers:
+            show_steps(self.engine, self.quick, self.observers, self.parameters)
         self._derived.step = step
         return step
 
-    def _step_in_substeps(self) -> None:
-        """Perform one step; call observers after each substep but the last (`_step` does that one)."""
-        due = self._substeps_due()
-        if not self._substep_observers:
-            self.engine.step([due])
-            return
-        rounds = max(1, due)
-        substep = 0
-        while substep < rounds and self._status[STATUS] <= WELL:
-            if self.engine.substep(due, substep):
-                substep += 1
-                if substep < rounds and self._status[STATUS] == WELL:
-                    self._tell_of_substep()
-                continue
-            # Observers must read the new arrays.
-            self._renew_after_growth()
-            self._prepare_step()
-            for observer in self._substep_observers:
-                observer.step_repeated()
-            substep = 0
+    def _step_watched(self) -> bool:
+        """Perform a step, and call observers after each substep; an error of theirs undoes it."""
+        due, left = self.parameters.substeps_due(self.unspent_time)
+        last, time = max(1, due) - 1, self.time
+        # The first substep sets it to 0, and the last one lets the time go on.
+        self._status[STEPS_DONE] = -1
+        self._is_in_step = True
+        try:
+            for substep in range(last):
+                if not self.engine.attempt(due, left, substep, substep + 1):
+                    return False
+                self._tell_of_substep()
+            if not self.engine.attempt(due, left, last, last + 1):
+                return False
+        except BaseException:
+            if self._status[STATUS] == WELL and self._status[STEPS_DONE] >= 0 and self.time == time:
+                self.engine.abandon()
+            raise
+        finally:
+            self._is_in_step = False
+        self._tell_of_substep()
+        return True
 
     def _tell_of_substep(self) -> None:
-        for observer in self._substep_observers:
+        for observer in self._substep_observers.copy():
             observer.after_substep()
-
-    def _substeps_due(self) -> int:
-        """Substeps of the next step."""
-        due, self.unspent_time = self.parameters.substeps_due(self.unspent_time)
-        return due
 
     @alone("lock")
     def detect_collisions(self) -> None:
         """Find all contacts for the present coordinates, without a step."""
+        self.refuse_in_step()
         self.prepare()
         if self.engine.can_collide:
             self.engine.detect()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from ctypes import c_double
+from ctypes import addressof, c_double, sizeof
 from typing import TYPE_CHECKING, Any
 
 from carom.closed import Closed
@@ -11,8 +11,10 @@ from carom.engine.contact_arrays import ContactArrays
 from carom.engine.engine import Engine
 from carom.engine.parameters import DEFAULT_TIME_STEP, EngineParameters
 from carom.engine.quick_scene import QuickScene
+from carom.errors import StateError
 from carom.model.builder import WorldArrays
-from carom.native.change import Change
+from carom.native.change import Change, packed_block
+from carom.native.clock import Clock
 from carom.native.gates import alone, new_lock
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
@@ -54,10 +56,10 @@ class WorldData(StateViews, Closed):
         self.parameters: EngineParameters = EngineParameters(time_step=time_step)
         self.bodies = Bodies()
         self.listing = {}
-        self._clock = c_double(0.0)
+        self._clock = Clock()
         self.observers: list[Observer] = []
         self._substep_observers: list[SubstepObserver] = []
-        self.unspent_time: float = 0.0
+        self._is_in_step = False
         self._viewed: ArrayTable | None = None
         self._replacements = 0
         self._derived: Derived = Derived()
@@ -78,8 +80,8 @@ class WorldData(StateViews, Closed):
             free_ids=[],
             next_id=0,
             links_loaded=0,
-            unspent_time=0.0,
         )
+        self.note_time(change, unspent_time=0.0)
         change.refill(self.bodies, {})
         change.refill(self.listing, {})
         self.take_arrays(change, arrays, ContactArrays(arrays))
@@ -87,6 +89,7 @@ class WorldData(StateViews, Closed):
     def take_arrays(self, change: Change, arrays: WorldArrays, contact_arrays: ContactArrays) -> None:
         """Replace all arrays with a change, which has noted the constraints that go with them."""
         engine = Engine(arrays, contact_arrays)
+        engine.keep_times(*self._clock.addresses, self._clock)
         change.set_all(
             self,
             arrays=arrays,
@@ -96,6 +99,21 @@ class WorldData(StateViews, Closed):
             _growths=0,
         )
         self.change_scene(change)
+
+    def note_time(self, change: Change, time: float | None = None, unspent_time: float | None = None) -> None:
+        """Set the simulated time, and the part of it that no substep has covered yet, with a change [s]."""
+        for value, address in zip((time, unspent_time), self._clock.addresses, strict=True):
+            if value is not None:
+                number = c_double(value)
+                change.copy_blocks(packed_block(addressof(number), address, sizeof(number)), number)
+
+    def refuse_in_step(self) -> None:
+        """Raise `StateError` in the middle of a step, as when observers are told of its substeps."""
+        if self._is_in_step:
+            raise StateError(
+                "the world is in the middle of a step: an observer of substeps can read it and set poses, "
+                "joints, motors and forces; before_step and after_step can do everything else"
+            )
 
     def _kernel_structs(self) -> KernelStructs:
         """Structs of the present arrays, by the names of kernel arguments."""
@@ -139,6 +157,7 @@ class WorldData(StateViews, Closed):
 
     def change_scene(self, change: Change) -> None:
         """Discard derived data with a change of bodies, constraints or arrays, which has noted all else."""
+        self.refuse_in_step()
         self.quick.forget(change)
         change.set_all(self, _derived=Derived(), _made_for=None)
         change.get(self, "constraints").rows.forget(change)
@@ -175,6 +194,7 @@ class WorldData(StateViews, Closed):
 
     def pause_step(self, change: Change) -> None:
         """Set the prepared step aside with a change, after which it needs other numbers."""
+        self.refuse_in_step()
         derived = self._derived
         if derived.step is not None:
             change.set_all(derived, step=None, step_before=derived.step)

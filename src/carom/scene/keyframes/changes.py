@@ -10,6 +10,7 @@ from carom.description.keyframe import BodyKeyframe
 from carom.errors import DescriptionError
 from carom.native.change import Change
 from carom.native.gates import alone
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.handles import world_of
 from carom.scene.keyframes.state import captured, changes, check_keyframe, keyframe_of
 
@@ -33,7 +34,7 @@ def add_keyframe(body: BodyCore, keyframe: BodyKeyframe | str) -> None:
 def reset(bodies: Sequence[BodyCore], name: str, *, with_time: bool) -> None:
     """Reset bodies of a world to their keyframes of a name, and if asked for its time, all at once."""
     world = world_of(bodies[0])
-    with world.lock:
+    with world.lock, uninterrupted:
         change = Change()
         for body in bodies:
             keyframe = keyframe_of(body, name)

@@ -13,7 +13,7 @@ from carom.scene.named_constraints.owners import handle_of
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
-    from carom.scene.core.body_core import BodyCore
+    from carom.scene.core.body_core import BodyCore, JointReset
     from carom.scene.core.world_core import WorldCore
     from carom.scene.joint import Joint
 
@@ -58,12 +58,14 @@ class JointCoupling(NamedConstraint):
     @alone("_constraint.parent.world.lock")
     def error(self) -> float:
         """Position of the follower minus where it should be [rad or m]."""
-        return float(self.follower.position) - self._wanted()[0]
+        return float(self.follower.position) - self.wanted(self._leads_at())[0]
 
-    def _wanted(self) -> tuple[float, float]:
-        """Where the follower should be, and the change of that per change of the leader's position."""
+    def _leads_at(self) -> float:
+        return 0.0 if self.leader is None else float(self.leader.position)
+
+    def wanted(self, x: float) -> tuple[float, float]:
+        """Where the follower should be, and the change of that per change of the leader's position `x`."""
         constant, *factors = self.coefficients
-        x = 0.0 if self.leader is None else float(self.leader.position)
         wanted, slope, power = constant, 0.0, 1.0
         for exponent, factor in enumerate(factors, start=1):
             slope += exponent * factor * power
@@ -74,7 +76,7 @@ class JointCoupling(NamedConstraint):
     @alone("_constraint.parent.world.lock")
     def place(self) -> None:
         """Set position and velocity of the follower to those that follow from the leader's."""
-        wanted, slope = self._wanted()
+        wanted, slope = self.wanted(self._leads_at())
         rate = 0.0 if self.leader is None else slope * float(self.leader.velocity)
         self._constraint.parent.set_joint_state(self._constraint.parent_link, [wanted], [rate])
 
@@ -92,19 +94,34 @@ def couplings_of(world: WorldCore, bodies: Sequence[BodyCore]) -> list[JointCoup
     return [JointCoupling(each) for each in constraints_of(world, bodies, (UserConstraintKind.COUPLING,))]
 
 
-def place_followers(body: BodyCore, joint: int) -> None:
+def place_followers(joint: Joint) -> None:
     """Place the joints of a body that follow one of its joints, directly or through others."""
+    states = follower_states(joint.body, joint.index, joint.coordinates.tolist(), joint.rates.tolist())
+    if states:
+        joint.body.set_joint_states(states)
+
+
+def follower_states(
+    body: BodyCore, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
+) -> list[JointReset]:
+    """States of the joints of a body that follow one of its joints, directly or through others.
+
+    The state of that joint is given.
+    """
     couplings = [coupling for coupling in couplings_of(body.world, [body]) if coupling.enabled]
-    placed, pending = {joint}, [joint]
+    states: dict[int, JointReset] = {joint: (joint, position, velocity)}
+    pending = [joint]
     while pending:
         leader = pending.pop()
+        _, at, rate = states[leader]
         for coupling in couplings:
-            follower = coupling.follower.index
-            of = coupling.leader
-            if of is not None and of.body is body and of.index == leader and follower not in placed:
-                coupling.place()
-                placed.add(follower)
+            follower, of = coupling.follower.index, coupling.leader
+            if of is not None and of.body is body and of.index == leader and follower not in states:
+                wanted, slope = coupling.wanted(at[0] if at else 0.0)
+                states[follower] = follower, [wanted], [slope * (rate[0] if rate else 0.0)]
                 pending.append(follower)
+    del states[joint]
+    return list(states.values())
 
 
 def new_coupling(

@@ -11,6 +11,7 @@ from carom.description.compliance import Compliance
 from carom.layouts.codes import UserConstraintKind
 from carom.native.change import Change
 from carom.native.gates import alone
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.user_constraints import UserConstraint
 
 if TYPE_CHECKING:
@@ -61,10 +62,11 @@ def forces_of(constraint: UserConstraint, rows: int) -> np.ndarray:
 @alone("parent.world.lock")
 def change_constraint(constraint: UserConstraint, **values: Any) -> None:
     """Change attributes of a constraint, all at once."""
-    world, change = constraint.parent.world, Change()
-    change.set_all(constraint, **values)
-    world.change_constraints(change)
-    change.commit()
+    with constraint.parent.world.lock, uninterrupted:
+        world, change = constraint.parent.world, Change()
+        change.set_all(constraint, **values)
+        world.change_constraints(change)
+        change.commit()
 
 
 def yield_as(constraint: UserConstraint, compliance: Compliance) -> None:

@@ -95,6 +95,7 @@ class BodyTendon(NamedConstraint):
         return self._constraint.range[:2]
 
     @range.setter
+    @alone("_constraint.parent.world.lock")
     def range(self, value: Range) -> None:
         lower, upper = value
         if not lower <= upper:
@@ -107,6 +108,7 @@ class BodyTendon(NamedConstraint):
         return self._constraint.range[2]
 
     @friction.setter
+    @alone("_constraint.parent.world.lock")
     def friction(self, value: float) -> None:
         self._set(self._constraint.spring, (*self.range, _positive(value, "friction"), 0.0))
 

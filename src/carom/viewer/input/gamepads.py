@@ -7,6 +7,8 @@ from math import isfinite
 from threading import Lock
 from typing import Any
 
+from carom.native.uninterrupted import uninterrupted
+
 # No gamepad has more axes or buttons; a page cannot fill the memory.
 _MAX_PARTS = 64
 _MAX_GAMEPADS = 8
@@ -54,17 +56,17 @@ class Gamepads:
             )
             for pad in message["gamepads"][:_MAX_GAMEPADS]
         ]
-        with self._lock:
+        with uninterrupted, self._lock:
             self._pads[page] = pads
 
     def forget(self, page: int) -> None:
         """Drops the gamepads of a page that has been closed."""
-        with self._lock:
+        with uninterrupted, self._lock:
             self._pads.pop(page, None)
 
     def all(self) -> list[Gamepad]:
         """The present state of all gamepads, those of the page that was opened first at the beginning."""
-        with self._lock:
+        with uninterrupted, self._lock:
             return [pad for page in sorted(self._pads) for pad in self._pads[page]]
 
 

@@ -6,6 +6,8 @@ from collections import defaultdict
 from threading import Lock
 from time import monotonic
 
+from carom.native.uninterrupted import uninterrupted
+
 DOWN, TRIGGERED, RELEASED = 1, 2, 4
 # A script that has read the keys within this time is expected to read them again [s].
 _ATTENTION = 1.0
@@ -56,21 +58,21 @@ class Keyboard:
         code = key_code(key, place)
         if code is None:
             return
-        with self._lock:
+        with uninterrupted, self._lock:
             if not self._is_held(code):
                 self._states[code] = self._states.get(code, 0) | DOWN | TRIGGERED
             self._held[page][place or key] = code
 
     def release(self, page: int, key: str, place: str) -> None:
         """Records a key release on a page."""
-        with self._lock:
+        with uninterrupted, self._lock:
             code = self._held[page].pop(place or key, None)
             if code is not None:
                 self._let_go(code)
 
     def release_all(self, page: int) -> None:
         """Releases all keys of a page that has lost the focus or was closed: it reports no more releases."""
-        with self._lock:
+        with uninterrupted, self._lock:
             for code in self._held.pop(page, {}).values():
                 self._let_go(code)
 
@@ -80,7 +82,7 @@ class Keyboard:
         A key that was pressed and released between two calls is triggered and released.
         """
         self._asked = monotonic()
-        with self._lock:
+        with uninterrupted, self._lock:
             states = self._states
             self._states = {code: DOWN for code, state in states.items() if state & DOWN}
             return states
