@@ -14,10 +14,10 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "07ed762e83d6b4ad",
+    "stack": "d2db8de5c7478b19",
     "tied": "064ac2b19117a7d3",
     "questions": "54d8874ff3d1bde4",
-    "images": "fbfe3ffdd9e22025",
+    "images": "fcfeafadadc0de11",
     "robots": "82189aac0ab184bd",
     "meshes": "efd741a6c006fc49",
     "soft": "0db4d81ba8ec3d09",

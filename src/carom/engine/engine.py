@@ -20,6 +20,7 @@ from carom.engine.settings import EngineSettings
 from carom.engine.task import Task
 from carom.engine.threads import Threads
 from carom.engine.workspace import Workspace
+from carom.engine.world_parameters import WorldParameters
 from carom.layouts.programs import LANES
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
@@ -41,7 +42,7 @@ _NONE = np.zeros(0, dtype=np.int64)
 _GROWTH_OF_MANY = 1.25
 
 
-class Engine:
+class Engine(WorldParameters):
     """Performs steps.
 
     A step of a world is a function of its model, state, parameters and a workspace, and no Python code runs
@@ -498,57 +499,6 @@ class Engine:
             worlds_per_thread: Each further thread has to have so many worlds.
         """
         return Task(self, make_launches, self._make_task_interpreters(), worlds_per_thread)
-
-    def spread(self, table: str, field: str) -> None:
-        """Give each world its own value of a parameter that was shared.
-
-        Args:
-            table: "model", "shapes" or "users".
-            field: The field in it.
-        """
-        if self.table_of(table).spread(field, self.arrays.world_count):
-            self.changed()
-
-    def parameter(self, table: str, field: str, rows: int | slice) -> np.ndarray:
-        """A copy of a parameter as it is in each world: (worlds, ...).
-
-        Args:
-            table: "model", "shapes" or "users".
-            field: The field in it.
-            rows: The rows to read.
-        """
-        values = self.table_of(table).numpy[field][:, rows]
-        return np.broadcast_to(values, (self.arrays.world_count, *values.shape[1:])).copy()
-
-    def set_parameter(
-        self,
-        table: str,
-        field: str,
-        rows: int | slice,
-        values: np.ndarray,
-        worlds: slice | np.ndarray = slice(None),
-    ) -> None:
-        """Set a parameter in each world, or in some.
-
-        Args:
-            table: "model", "shapes" or "users".
-            field: The field in it.
-            rows: The rows to set.
-            values: New values; the first axis is that of the worlds.
-            worlds: Index of the worlds; all by default.
-        """
-        self.spread(table, field)
-        parameters = self.table_of(table)
-        parameters.numpy[field][worlds, rows] = values
-        parameters.written(field)
-
-    def table_of(self, table: str) -> ArrayTable:
-        """The table with parameters that can differ between worlds: "model", "shapes" or "users"."""
-        return {
-            "model": self.arrays.model,
-            "shapes": self.contact_arrays.shapes.table,
-            "users": self.contact_arrays.users,
-        }[table]
 
     def steps_done(self, worlds: np.ndarray) -> np.ndarray:
         """Number of steps that some worlds have completed in the last call."""

@@ -35,7 +35,7 @@ def write_value(world: World, space: TangentSpace, given: Input, value: float) -
     """Set a parameter of a world."""
     if given.kind in _JOINT_TERMS:
         body, joint = joint_of(space, int(space.dofs[given.row]))
-        body.change_dynamics(joint, **{_JOINT_TERMS[given.kind]: value})
+        world.bodies[body.id].change_dynamics(joint, **{_JOINT_TERMS[given.kind]: value})
     elif given.kind == "joint_friction":
         set_friction(*joint_of(space, int(space.dofs[given.row])), value)
     elif given.kind in _LINK_TERMS:
