@@ -24,14 +24,15 @@ from carom.scene import changes
 _NAME_BYTES = 64
 _CALL = struct.Struct(f"<{_NAME_BYTES}s6Q")
 _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
-# What `Interpreter` asks of `carom_perform`: addresses of program, worlds, substeps, counter, lanes; numbers.
-_RUN = struct.Struct("<5Q7i4x")
-_LANES_AT = 32
+# What `Interpreter` asks of `carom_perform`: addresses of program, worlds, substeps, counter and lanes, and of
+# the times of worlds, what is unspent of them, and what will be after each step; the duration; numbers.
+_RUN = struct.Struct("<8Qd7i4x")
+_LANES_AT, _TIMES_AT, _UNSPENT_AT, _UNSPENT_AFTER_AT = 32, 40, 48, 56
 # A program: address and stride of statuses, ends of the five parts, and for each launch five addresses.
 _PROGRAM = struct.Struct("<7q")
 _KERNEL_CALL = struct.Struct("<3Q")
 _LAUNCH = struct.Struct("<5Q")
-_INT = 4
+_INT, _DOUBLE = 4, 8
 
 
 class Elsewhere:
@@ -124,7 +125,7 @@ class Elsewhere:
     def _perform(self, address: int) -> None:
         memory = Memory(self._layouts)
         memory.add(address, _RUN.size)
-        _, _, _, _, _, worlds, steps, *_ = _RUN.unpack(ctypes.string_at(address, _RUN.size))
+        worlds, steps = _RUN.unpack(ctypes.string_at(address, _RUN.size))[9:11]
         program = memory.add_pointer(address, _PROGRAM.size)
         highest = max(
             memoryview(ctypes.string_at(memory.add_pointer(address + 8, worlds * _INT), worlds * _INT)).cast(
@@ -133,6 +134,9 @@ class Elsewhere:
         )
         memory.add_pointer(address + 16, steps * _INT)
         memory.add_pointer(address + 24, _INT)
+        for place in (_TIMES_AT, _UNSPENT_AT):
+            memory.add_pointer(address + place, (highest + 1) * _DOUBLE)
+        memory.add_pointer(address + _UNSPENT_AFTER_AT, steps * _DOUBLE)
         _, stride, *ends = _PROGRAM.unpack(ctypes.string_at(program, _PROGRAM.size))
         memory.add_pointer(program, (highest + 1) * stride)
         for index in range(ends[-1]):
