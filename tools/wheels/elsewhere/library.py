@@ -24,7 +24,7 @@ from carom.scene import changes
 _NAME_BYTES = 64
 _CALL = struct.Struct(f"<{_NAME_BYTES}s6Q")
 _FUNCTION_PLACE = struct.Struct(f"<Q{_NAME_BYTES}s")
-# What `Interpreter` asks of `carom_perform`: addresses of program, worlds, substeps, counter and lanes, and of
+# What `Interpreter` asks of `carom_perform`: addresses of program, worlds, substeps, counter, lanes, and of
 # the times of worlds, what is unspent of them, and what will be after each step; the duration; numbers.
 _RUN = struct.Struct("<8Qd7i4x")
 _LANES_AT, _TIMES_AT, _UNSPENT_AT, _UNSPENT_AFTER_AT = 32, 40, 48, 56
