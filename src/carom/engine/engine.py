@@ -16,12 +16,11 @@ from carom.engine.parameters import EngineParameters
 from carom.engine.presence import any_absent
 from carom.engine.program import Plan, Program, detection_program, step_program
 from carom.engine.quick_scene import QuickScene
+from carom.engine.runner import ProgramRunner
 from carom.engine.settings import EngineSettings
 from carom.engine.task import Task
-from carom.engine.threads import Threads
 from carom.engine.workspace import Workspace
 from carom.engine.world_parameters import WorldParameters
-from carom.layouts.programs import LANES
 from carom.layouts.status import CONTACTS_WANTED, OVERFLOW, PAIRS_WANTED, STATUS, STEPS_DONE, WELL
 from carom.model.builder import WorldArrays
 from carom.native.change import Change
@@ -33,8 +32,6 @@ ProgramMaker = Callable[[KernelStructs, Plan], Program]
 
 MAX_STEPS = 64
 """Maximum number of steps in one call."""
-# Chunks of worlds for each thread: enough to balance the load.
-_CHUNKS_PER_THREAD = 16
 # Shapes of a scene in which collisions are detected with the GIL held.
 _MAX_QUICK_SHAPES = 64
 _NONE = np.zeros(0, dtype=np.int64)
@@ -85,11 +82,8 @@ class Engine(WorldParameters):
         self._status_address = self.status.ctypes.data
         self._settings = EngineSettings()
         self._workspaces = self._make_workspaces(threads)
-        self._all_worlds = np.arange(arrays.world_count, dtype=np.int32)
-        self._worlds = self._all_worlds.copy()
+        self._runner = ProgramRunner(arrays.world_count, threads)
         self.due = np.ones(MAX_STEPS, dtype=np.int32)
-        self._counter = np.zeros(1, dtype=np.int32) if threads > 1 else None
-        self._threads = Threads(threads)
         self._interpreters: list[Stepper] = self._make_interpreters(self.due)
         # With no substep due, contacts are detected and nothing moves.
         self._detectors: list[Stepper] = self._make_interpreters(np.zeros(1, dtype=np.int32))
@@ -339,9 +333,9 @@ class Engine(WorldParameters):
             self.prepare(watched=self._watched)
         try:
             self._ask_for(due, unspent_after)
-            self.run(self._steppers, worlds, step_count=len(due))
+            self._runner.run(self._steppers, worlds, step_count=len(due))
             while self.make_room():
-                self.run(self._steppers, self._short, resumed=1, step_count=len(due))
+                self._runner.run(self._steppers, self._short, resumed=1, step_count=len(due))
         finally:
             self._ask_as_usual(len(due))
 
@@ -349,11 +343,11 @@ class Engine(WorldParameters):
         """Perform a step of one substep of all worlds; whether it went well in all of them."""
         if self._plan is None:
             self.prepare(watched=self._watched)
-        self.run(self._steppers)
+        self._runner.run(self._steppers)
         if not np.count_nonzero(self._faults):
             return True
         while self.make_room():
-            self.run(self._steppers, self._short, resumed=1)
+            self._runner.run(self._steppers, self._short, resumed=1)
         return not np.count_nonzero(self._faults)
 
     def attempt(
@@ -367,7 +361,7 @@ class Engine(WorldParameters):
         substeps = {"first_substep": first_substep, "end_substep": end_substep}
         try:
             self._ask_for([due], [unspent_after])
-            self.run(self._steppers, self._all_worlds, **substeps)
+            self._runner.run(self._steppers, self._runner.all_worlds, **substeps)
         finally:
             self._ask_as_usual(1)
         return self._first_status[STATUS] == WELL
@@ -472,19 +466,11 @@ class Engine(WorldParameters):
         return [Workspace() for _ in range(threads)]
 
     def _make_interpreters(self, due: np.ndarray) -> list[Stepper]:
-        return self._interpreters_of(self.status, due)
+        return self._runner.interpreters(self.status, due)
 
     def _make_task_interpreters(self) -> list[Stepper]:
         status, due = np.zeros_like(self.status), np.zeros(1, dtype=np.int32)
-        return self._interpreters_of(status, due)
-
-    def _interpreters_of(self, status: np.ndarray, due: np.ndarray) -> list[Stepper]:
-        threads = len(self._workspaces)
-        made: list[Stepper] = [Interpreter(status, self._worlds, due, self._counter) for _ in range(threads)]
-        if self._counter is not None:
-            for interpreter in made:
-                interpreter.ask(chunk=_chunk(len(self._all_worlds), threads))
-        return made
+        return self._runner.interpreters(status, due)
 
     # Other tasks in all worlds
 
@@ -531,33 +517,4 @@ class Engine(WorldParameters):
 
     def run(self, interpreters: list[Stepper], worlds: np.ndarray | None = None, **scalars: int) -> None:
         """Run programs on some worlds, None for all; then restore the settings of a step of all."""
-        if worlds is None and not scalars:
-            if self._counter is None:
-                interpreters[0].run()
-                return
-            if len(interpreters) == len(self._workspaces):
-                self._counter[0] = 0
-                self._threads.run([interpreter.run for interpreter in interpreters])
-                return
-        worlds = self._all_worlds if worlds is None else worlds
-        count, whole = len(worlds), len(self._all_worlds)
-        self._worlds[:count] = worlds
-        if self._counter is not None:
-            self._counter[0] = 0
-            scalars["chunk"] = _chunk(count, len(interpreters))
-        for interpreter in interpreters:
-            interpreter.ask(world_count=count, **scalars)
-        try:
-            self._threads.run([interpreter.run for interpreter in interpreters])
-        finally:
-            self._worlds[:] = self._all_worlds
-            usual = {"step_count": 1, "resumed": 0, "first_substep": 0, "end_substep": ALL_SUBSTEPS}
-            if self._counter is not None:
-                usual["chunk"] = _chunk(whole, len(self._workspaces))
-            for interpreter in interpreters:
-                interpreter.ask(world_count=whole, **usual)
-
-
-def _chunk(count: int, threads: int) -> int:
-    """Number of worlds that a thread takes at a time."""
-    return LANES * max(1, count // (threads * _CHUNKS_PER_THREAD) // LANES)
+        self._runner.run(interpreters, worlds, **scalars)

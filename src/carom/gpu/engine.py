@@ -90,10 +90,10 @@ class DeviceEngine(Engine):
         return [DeviceWorkspace(self.device, self.arrays.world_count)]
 
     def _make_interpreters(self, due: np.ndarray) -> list[Stepper]:
-        return [StepStepper(self._device_structs, self._state, self.status, self._worlds, due)]
+        return [StepStepper(self._device_structs, self._state, self.status, self._runner.worlds, due)]
 
     def _make_task_interpreters(self) -> list[Stepper]:
-        return [TaskStepper(self._worlds)]
+        return [TaskStepper(self._runner.worlds)]
 
     @property
     def _device_structs(self) -> DeviceStructs:
