@@ -43,37 +43,29 @@ def count_free(blocks: ManifoldBlocks, world: Int32, block: Int32) -> Int32:
         lateral[2 * i] = rubs ? row++ : -1;
         lateral[2 * i + 1] = rubs ? row++ : -1;
     }
-    for (int j = 0; j < own.count; ++j) {
-        const int column = normal[j];
-        if (column < 0)
-            continue;
-        inverse[column] = own.normal_inverse_mass[j];
-        mass[column] = 1.0 / inverse[column];
-        right[column] = own.normal_wanted[j];
-        for (int i = 0; i < j; ++i)
-            if (normal[i] >= 0) {
-                const auto lowered = own.normal_delassus.data[i][j];
-                equations[column * width + normal[i]] = lowered;
-                equations[normal[i] * width + column] = lowered * inverse[column] * mass[normal[i]];
-            }
-        equations[column * width + column] = own.normal_delassus.data[j][j] + own.normal_softness[j];
-    }
-    for (int j = 0; j < 2 * own.count; ++j) {
-        const int column = lateral[j];
-        if (column < 0)
-            continue;
-        inverse[column] = own.friction_inverse_mass[j];
-        mass[column] = 1.0 / inverse[column];
-        right[column] = own.friction_wanted[j];
-        for (int i = 0; i < j; ++i)
-            if (lateral[i] >= 0) {
-                const auto lowered = own.friction_delassus.data[i][j];
-                equations[column * width + lateral[i]] = lowered;
-                equations[lateral[i] * width + column] = lowered * inverse[column] * mass[lateral[i]];
-            }
-        const auto softness = own.yields != 0 ? own.friction_softness[j] : 0.0;
-        equations[column * width + column] = own.friction_delassus.data[j][j] + softness;
-    }
+    // Rows of one kind: normals, or friction.
+    auto write_kind = [&](int count, const int* rows, const auto& delassus, const auto& inverse_mass,
+                          const auto& wanted, auto softness) {
+        for (int j = 0; j < count; ++j) {
+            const int column = rows[j];
+            if (column < 0)
+                continue;
+            inverse[column] = inverse_mass[j];
+            mass[column] = 1.0 / inverse[column];
+            right[column] = wanted[j];
+            for (int i = 0; i < j; ++i)
+                if (rows[i] >= 0) {
+                    const auto lowered = delassus.data[i][j];
+                    equations[column * width + rows[i]] = lowered;
+                    equations[rows[i] * width + column] = lowered * inverse[column] * mass[rows[i]];
+                }
+            equations[column * width + column] = delassus.data[j][j] + softness(j);
+        }
+    };
+    write_kind(own.count, normal, own.normal_delassus, own.normal_inverse_mass, own.normal_wanted,
+               [&](int j) { return own.normal_softness[j]; });
+    write_kind(2 * own.count, lateral, own.friction_delassus, own.friction_inverse_mass, own.friction_wanted,
+               [&](int j) { return own.yields != 0 ? own.friction_softness[j] : 0.0; });
     for (int j = 0; j < own.count; ++j) {
         const int column = normal[j];
         if (column < 0)

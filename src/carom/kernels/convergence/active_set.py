@@ -24,7 +24,7 @@ from carom.kernels.convergence.active_rows import (
     is_visit_free,
     share_of_row,
 )
-from carom.kernels.convergence.active_system import write_system
+from carom.kernels.convergence.active_system import rows_of_single, write_system
 from carom.kernels.convergence.equations import add_row, eliminate, let_slide
 from carom.kernels.maths.blocks import add_combination4, add_combination8, combine4, combine8
 from carom.kernels.solver.articulated_manifolds import matrix_parts
@@ -67,10 +67,7 @@ def free_rows_of_unit(pair_rows: PairRows, world: Int32, code: Int32) -> Int32:
     """How many free rows a unit has: those of a contact that slides are counted, too."""
     if code < 0:
         return count_free(pair_rows.manifold_block, world, -1 - code)
-    impulse = impulses_of_contact(pair_rows, world, code, 0)
-    if not impulse[0] > 0.0:
-        return Int32(0)
-    return Int32(3) if impulse[3] > 0.0 else Int32(1)
+    return rows_of_single(pair_rows, world, code)
 
 
 @func
