@@ -40,6 +40,25 @@ def test_one_that_is_made_from_other_kernels_is_refused(copy):
         Library(copy, "0" * 32)
 
 
+def test_an_installed_one_came_with_its_sources_which_are_not_read_again(copy, monkeypatch):
+    def never(root: Path) -> str:
+        raise AssertionError(f"{root} was read")
+
+    monkeypatch.setattr(loading, "PACKAGED", copy.parent)
+    monkeypatch.setattr(loading, "_is_clone", lambda: False)
+    monkeypatch.setattr(loading, "source_digest", never)
+    assert loading._library.__wrapped__().path == copy
+
+
+def test_an_installed_one_with_the_manifest_of_another_is_refused(copy, monkeypatch):
+    manifest = copy.with_name(loading.MANIFEST)
+    manifest.write_text(manifest.read_text().replace(source_digest(ROOT), "0" * 32))
+    monkeypatch.setattr(loading, "PACKAGED", copy.parent)
+    monkeypatch.setattr(loading, "_is_clone", lambda: False)
+    with pytest.raises(NativeLibraryError, match=r"other kernels than .* Install Carom again"):
+        loading._library.__wrapped__()
+
+
 @pytest.mark.parametrize("content", [b"", b"\x7fELF damaged"])
 def test_a_damaged_one_is_refused(copy, content):
     copy.unlink()

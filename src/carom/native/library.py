@@ -30,7 +30,7 @@ _loading = free_in_forks(threading.RLock())
 
 
 class Library:
-    """A loaded library, which has the required digest; its `manifest.json` is beside it.
+    """A loaded library; its `manifest.json` is beside it, and both have the required digest, if there is one.
 
     Attributes:
         path: The file.
@@ -41,11 +41,12 @@ class Library:
         NativeLibraryError: It is damaged, for another platform, or built from other sources.
     """
 
-    def __init__(self, path: Path, digest: str) -> None:
+    def __init__(self, path: Path, digest: str | None) -> None:
         try:
             manifest = json.loads((path.parent / MANIFEST).read_text("utf-8"))
             # One of other sources is not loaded: it would stay in memory.
             found = manifest["digest"]
+            digest = digest or found
             if found == digest:
                 # Calls through it release the GIL, so that other threads run meanwhile.
                 self._loaded = ctypes.CDLL(str(path))
@@ -107,7 +108,6 @@ def library() -> Library:
 
 @functools.cache
 def _library() -> Library:
-    digest = source_digest(_ROOT)
     try:
         target = this_target()
     except NoTarget as problem:
@@ -121,6 +121,10 @@ def _library() -> Library:
     packaged = [PACKAGED / target.library_name(level) for level in levels]
     found = next((path for path in packaged if path.exists()), None)
     can_build = all(util.find_spec(compiler) for compiler in _COMPILERS)
+    if found is not None and not _is_clone():
+        # The sources came with it. Reading them all would take a tenth of the time to the first step.
+        return Library(found, None)
+    digest = source_digest(_ROOT)
     if found is not None:
         try:
             return Library(found, digest)
@@ -150,8 +154,13 @@ def _built(target: Target, level: str, digest: str) -> Path:
         raise NativeLibraryError(f"{problem}") from None
 
 
+def _is_clone() -> bool:
+    """Whether the sources are those of a clone, which somebody may edit."""
+    return (_ROOT.parent / "pyproject.toml").exists()
+
+
 def _cure() -> str:
-    if (_ROOT.parent / "pyproject.toml").exists():
+    if _is_clone():
         return (
             "Run `pip install --editable .` in the clone, which builds it; after `pip install --editable "
             "'.[build]'` it is built whenever kernels have been edited."
