@@ -35,3 +35,22 @@ def test_launches_are_told_after_an_interrupt_also_if_settings_are_what_they_wer
     update()
     update()
     assert told == [7, iterations]
+
+
+def test_gravity_changes_between_steps_without_preparing_them_again() -> None:
+    worlds = [World(), World()]
+    for world in worlds:
+        world.add_sphere(0.1)
+        world.gravity = (0.0, 0.0, -9.81)
+        world.step()
+    prepared = worlds[0]._derived.step
+    assert prepared is not None
+    for world in worlds:
+        world.gravity = (1.0, 2.0, 3.0)
+        if world is worlds[1]:
+            world.scene_changed()
+        world.step(2)
+        assert world.gravity.tolist() == [1.0, 2.0, 3.0]
+    assert worlds[0]._derived.step is prepared
+    assert (worlds[0].velocity[:6] == worlds[1].velocity[:6]).all()
+    assert worlds[0].velocity[3] == pytest.approx(2.0 / 240.0, rel=0.01)

@@ -418,6 +418,20 @@ def boxes() -> World:
     return world
 
 
+@pytest.mark.parametrize("ties", [0, 1, 3])
+def test_each_world_has_only_the_rows_that_it_uses(arm: tuple[World, Body], ties: int) -> None:
+    world, body = arm
+    for _ in range(ties):
+        world.constrain(UserConstraintKind.POINT_TO_POINT, body, -1, None, -1)
+    worlds = Worlds(world, 3)
+    worlds.step()
+    capacity, used = worlds._engine.arrays.state.capacity, worlds._engine.arrays.used
+    # One more ties the fingers.
+    assert capacity["user"] == ties + 1
+    assert capacity["batch"] == used["constraint"]
+    assert capacity["link"] == used["link"]
+
+
 @pytest.mark.skipif(
     not Path("/proc/self/statm").is_file(), reason="only Linux says how much memory is in use"
 )

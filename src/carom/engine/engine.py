@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from carom.description.pose import Vector3
 from carom.engine.can_collide import can_collide, can_sleep
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.interpreter import ALL_SUBSTEPS, Interpreter, Stepper
@@ -147,6 +148,10 @@ class Engine(WorldParameters):
     def note_parameters(self, change: Change) -> None:
         """Update the settings of kernels before the next step, after a change of parameters."""
         self._settings.note_change(change)
+
+    def note_gravity(self, change: Change, gravity: Vector3) -> None:
+        """Set gravity [m/s²] with a change; the launches of a step stay as they are."""
+        self._settings.note_gravity(change, self.arrays, gravity)
 
     @property
     def is_planned(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import fields
 from operator import attrgetter
 from typing import Any
 
+from carom.description.pose import Vector3
 from carom.engine.contact_arrays import ContactArrays
 from carom.engine.parameters import EngineParameters
 from carom.layouts.codes import FrictionBound
@@ -44,6 +45,12 @@ class EngineSettings:
     def note_change(self, change: Change) -> None:
         """Update the struct before it is used again: parameters change."""
         change.set(self, "_is_outdated", True)
+
+    def note_gravity(self, change: Change, arrays: WorldArrays, gravity: Vector3) -> None:
+        """Set gravity [m/s²] with a change: kernels read it in an array, and need no other settings."""
+        rows = arrays.model.numpy["gravity_vector"][:, 0]
+        change.write_numbers(rows, gravity * len(rows))
+        change.set(self, "_gravity", gravity)
 
     def has_counts(self, arrays: WorldArrays, contact_arrays: ContactArrays) -> bool:
         """Whether the struct has the present numbers of constraints, and parameters."""

@@ -58,7 +58,7 @@ class DeviceEngine(Engine):
         cls, device: Device, arrays: WorldArrays, contact_arrays: ContactArrays, count: int
     ) -> DeviceEngine:
         """As `like`, but without checking the free memory and for soft bodies."""
-        own_arrays = arrays.repeated(1)
+        own_arrays = arrays.repeated(1, contact_arrays.user_count)
         own_contact_arrays = contact_arrays.repeated(own_arrays)
         rows = {**own_arrays.used, "user": own_contact_arrays.user_count, "status": STEPS_DONE + 1}
         own_arrays.world_count = count

@@ -55,7 +55,7 @@ class Copies:
         world.prepare()
         self._parameters: EngineParameters = world.parameters
         self._unspent = world.unspent_time
-        arrays = world.arrays.repeated(count)
+        arrays = world.arrays.repeated(count, world.contact_arrays.user_count)
         self._set(_OwnRows(arrays, world.contact_arrays.repeated(arrays), 1))
 
     @classmethod

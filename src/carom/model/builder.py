@@ -38,6 +38,8 @@ from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 if TYPE_CHECKING:
     from carom.description.fluid import FluidEllipsoid
 
+# Numbers in the status of each of many worlds: a cache line, so that threads do not wait for each other.
+_STATUS_ROOM = 16
 DEFAULT_MAX_VELOCITY = 100.0
 DEFAULT_SLEEP_THRESHOLD = 0.05
 DEFAULT_MOTOR_IMPULSE = 1.0
@@ -108,15 +110,22 @@ class WorldArrays:
         # Whether rows that are not in use are zero.
         self._is_clear = True
 
-    def repeated(self, world_count: int) -> WorldArrays:
-        """Arrays for `world_count` worlds, all copies of the first; they share its parameters."""
+    def repeated(self, world_count: int, user_count: int) -> WorldArrays:
+        """Arrays for `world_count` worlds, all copies of the first; they share its parameters.
+
+        The state of each has the rows in use only, `user_count` of user constraints among them.
+        """
         other = WorldArrays.__new__(WorldArrays)
         other.world_count = world_count
         other.used = self.used.copy()
         other._row_changes = None
         other._is_clear = True
         other.model = self.model.copy()
-        other.state = self.state.copy(world_count, self.used)
+        batch = max(self.used["tree"], self.used["constraint"])
+        rows = {"user": user_count, "batch": batch, "status": _STATUS_ROOM}
+        # What has no room yet gets it before the first step.
+        rows = {axis: min(count, self.state.capacity[axis]) for axis, count in rows.items()}
+        other.state = self.state.copy(world_count, {**self.used, **rows})
         return other
 
     def __deepcopy__(self, memo: dict[int, Any]) -> WorldArrays:

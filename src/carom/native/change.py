@@ -35,7 +35,8 @@ packed_block = _BLOCK.pack
 
 # `layouts.table_rows.RowCut` and `KernelRun`.
 _PACK_CUT = Struct("=4Q").pack
-packed_run = Struct("=4Qq").pack
+_RUN = Struct("=4Qq")
+packed_run = _RUN.pack
 """A `layouts.table_rows.KernelRun`: addresses of a kernel, its arguments and the tree among these; a tree."""
 # Ctrl-C may come while Python makes a change: maximum number of attempts to complete it.
 _PATIENCE = 100
@@ -226,7 +227,7 @@ class Change:
         self._kept.append(kept)
 
     def run_record(self, record: bytes, kept: object) -> None:
-        """The same with a packed record."""
+        """The same with a packed record, or with several, one after the other."""
         self._runs.append(record)
         self._kept.append(kept)
 
@@ -394,7 +395,8 @@ def _make(
         for source, target, size in _BLOCK.iter_unpack(b"".join(blocks)):
             ctypes.memmove(target, source, size)
         if runs:
-            _symbols().carom_launch(b"".join(runs), ctypes.c_int64(len(runs)))
+            packed = b"".join(runs)
+            _symbols().carom_launch(packed, ctypes.c_int64(len(packed) // _RUN.size))
     kept.clear()
     if error is not None:
         raise error

@@ -102,7 +102,7 @@ def _packed_arguments(*types: Any) -> Any:
 class TreeLaunch:
     """A kernel with a tree among its arguments that can be run on any tree; for kernels of a microsecond."""
 
-    __slots__ = ("_addresses", "_launch", "_place", "_records", "_run", "_tree")
+    __slots__ = ("_addresses", "_all", "_launch", "_place", "_records", "_run", "_tree")
 
     def __init__(self, kernel: Kernel, structs: KernelStructs) -> None:
         self._launch = structs.launch(kernel, tree=0, first_world=0)
@@ -111,6 +111,7 @@ class TreeLaunch:
         self._tree = 0
         self._addresses = self._launch.addresses("tree")
         self._records: dict[int, bytes] = {}
+        self._all: tuple[int, bytes] = 0, b""
 
     def addresses(self) -> list[int]:
         """Addresses of the kernel, its two arguments and the tree; a caller must restore the tree's value."""
@@ -122,6 +123,12 @@ class TreeLaunch:
         if record is None:
             record = self._records[tree] = packed_run(*self._addresses, tree)
         return record
+
+    def records(self, count: int) -> bytes:
+        """Those to run it on each of the first trees, so many; the last ones asked for are kept."""
+        if self._all[0] != count:
+            self._all = count, b"".join(map(self.record, range(count)))
+        return self._all[1]
 
     def __call__(self, tree: int) -> None:
         """Run the kernel on a tree."""

@@ -113,7 +113,8 @@ class JointConstraints:
                     )
             elif link.limited:
                 limit = JointConstraint(body, joint, ConstraintKind.LIMIT, link.lower, link.upper)
-                limit.yield_as_described()
+                if link.limit_compliance is not None or link.limit_margin != limit.margin:
+                    limit.yield_as_described()
                 added.append(limit)
         for joint, code in enumerate(body.joint_types):
             if code in MOTOR_KIND:

@@ -7,7 +7,9 @@ shapes of bodies, constraints, gravity and the other parameters are not part of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+import operator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +18,7 @@ import numpy as np
 from carom.errors import StateError
 from carom.layouts.codes import BASE_VELOCITIES
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
-from carom.native.change import Change
+from carom.native.change import Change, packed_block
 
 if TYPE_CHECKING:
     from carom.native.tables import ArrayTable
@@ -29,6 +31,11 @@ _NOT_OF_BODIES = ("status", "user", "batch")
 _COUNTED = {"contact": THERE, "overlap": OVERLAPS}
 # Drives of joints; the rows of bases are unused.
 _DRIVES = ("dof_motor", "dof_pd")
+Pair = tuple[np.ndarray, np.ndarray]
+"""Rows of a world, and those of a snapshot."""
+
+# Each number stands for the memory of one world's arrays.
+_places = itertools.count()
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +77,51 @@ class BodyLayout:
         return mine == others
 
 
+class Blocks:
+    """How the arrays of a snapshot are copied to a world: records that are made when it first returns there.
+
+    Attributes:
+        records: `packed_block` of the arrays, one after the other.
+        place: The `Shape.place` of the world.
+        arrays: All arrays of the snapshot.
+    """
+
+    __slots__ = ("arrays", "place", "records")
+
+    def __init__(self) -> None:
+        self.records: bytes = b""
+        self.place: int = -1
+        self.arrays: list[np.ndarray] = []
+
+    def __reduce__(self) -> tuple[type[Blocks], tuple[()]]:
+        # Copies of the arrays are elsewhere.
+        return Blocks, ()
+
+    def fit(self, place: int, arrays: list[np.ndarray]) -> bool:
+        """Whether the records are of these arrays of the snapshot, and of this place."""
+        ours = self.arrays
+        return self.place == place and len(ours) == len(arrays) and all(map(operator.is_, ours, arrays))
+
+    def make(self, place: int, arrays: list[np.ndarray], pairs: Iterable[Pair]) -> bool:
+        """Make records of pairs of targets and sources; False if some arrays are too unusual for that."""
+        pairs = list(pairs)
+        if not all(_is_plain_copy(target, source) for target, source in pairs):
+            return False
+        records = [packed_block(source.ctypes.data, to.ctypes.data, source.nbytes) for to, source in pairs]
+        self.place = -1
+        self.records, self.arrays, self.place = b"".join(records), arrays, place
+        return True
+
+
+def _is_plain_copy(target: np.ndarray, source: np.ndarray) -> bool:
+    return (
+        source.shape == target.shape
+        and source.dtype == target.dtype
+        and source.flags.c_contiguous
+        and target.flags.c_contiguous
+    )
+
+
 @dataclass(slots=True)
 class Snapshot:
     """A state; get one from `World.snapshot`.
@@ -82,6 +134,7 @@ class Snapshot:
             joints only.
         contacts: Fields of `Contacts`, likewise.
         user_impulses: Impulses of the user constraints, in order of creation, (constraints, 6).
+        blocks: How it is copied back.
     """
 
     layout: Layout
@@ -90,6 +143,7 @@ class Snapshot:
     state: dict[str, np.ndarray] = field(default_factory=dict)
     contacts: dict[str, np.ndarray] = field(default_factory=dict)
     user_impulses: np.ndarray = field(default_factory=lambda: np.zeros((0, 6)))
+    blocks: Blocks = field(default_factory=Blocks, repr=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,18 +189,22 @@ class Shape:
     Attributes:
         layout: Its layout.
         rows: Fields of its state by name, with their rows in use.
+        place: The number of the memory that these are in, and its contacts.
     """
 
     layout: Layout
     rows: dict[str, np.ndarray] = field(default_factory=dict)
-    _replacements: int = -1
+    place: int = -1
+    _replacements: tuple[int, int] = -1, -1
 
     def look(self, world: WorldCore) -> None:
         """Bring `rows` up to date if arrays were replaced; bodies are as when the layout was made."""
         state = world.arrays.state
-        if state.replacements != self._replacements:
+        replacements = state.replacements, world.contact_arrays.contacts.replacements
+        if replacements != self._replacements:
             self.rows = dict(_rows(state, world.arrays.used))
-            self._replacements = state.replacements
+            self.place = next(_places)
+            self._replacements = replacements
 
 
 def take(world: WorldCore, shape: Shape) -> Snapshot:
@@ -187,21 +245,43 @@ def return_to(change: Change, world: WorldCore, shape: Shape, snapshot: Snapshot
         world.grow(world.arrays.state, {"user": len(impulses)})
         users.set_impulses(change, world.arrays.state, impulses)
     shape.look(world)
-    for name, rows in shape.rows.items():
-        saved = _of_drives(rows, snapshot, name) if name in _DRIVES else snapshot.state[name]
-        change.write(rows, saved, lasting=True)
-    counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
+    if len(snapshot.layout.joint_dofs):
+        for name in _DRIVES:
+            change.write(shape.rows[name], _of_drives(shape.rows[name], snapshot, name), lasting=True)
     if same:
-        for name, rows in _contact_rows(world, snapshot.contacts["count_contacts"]):
-            change.write(rows, snapshot.contacts[name], lasting=True)
+        _copy_back(change, world, shape, snapshot)
+        counts = world.contact_arrays.contacts.numpy["count_contacts"][0]
+        change.write(counts, snapshot.contacts["count_contacts"], lasting=True)
         # The trees that can move may be others now.
         change.write(counts[SORTED : SORTED + 1], 0)
     else:
+        for target, source in _pairs_of_state(shape, snapshot):
+            change.write(target, source, lasting=True)
         world.contact_arrays.drop_contacts(change)
         change.write(world.arrays.state.numpy["tree_reset"][0], 0)
     world.note_time(change, snapshot.time, snapshot.unspent_time)
     if world.arrays.state.numpy["tree_activity"].any() or snapshot.state["tree_activity"].any():
         world.change_scene(change)
+
+
+def _copy_back(change: Change, world: WorldCore, shape: Shape, snapshot: Snapshot) -> None:
+    """Copy everything but drives and the counts of contacts."""
+    arrays = [*snapshot.state.values(), *snapshot.contacts.values()]
+    blocks = snapshot.blocks
+    if not blocks.fit(shape.place, arrays):
+        pairs = _pairs_of_state(shape, snapshot)
+        for name, rows in _contact_rows(world, snapshot.contacts["count_contacts"]):
+            if name != "count_contacts":
+                pairs.append((rows, snapshot.contacts[name]))
+        if not blocks.make(shape.place, arrays, pairs):
+            for target, source in pairs:
+                change.write(target, source, lasting=True)
+            return
+    change.copy_blocks(blocks.records, arrays)
+
+
+def _pairs_of_state(shape: Shape, snapshot: Snapshot) -> list[Pair]:
+    return [(rows, snapshot.state[name]) for name, rows in shape.rows.items() if name not in _DRIVES]
 
 
 def _of_drives(rows: np.ndarray, snapshot: Snapshot, name: str) -> np.ndarray:

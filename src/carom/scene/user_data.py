@@ -92,9 +92,12 @@ class UserData:
         """Attach the texts that the file of a new body contains, with a change."""
         stated = {(BASE, WHOLE, key): value for key, value in spec.user_data.items()}
         for index, link in enumerate((spec.base, *spec.links), start=BASE):
-            stated.update({(index, WHOLE, key): value for key, value in link.user_data.items()})
+            # Most have none.
+            if link.user_data:
+                stated.update({(index, WHOLE, key): value for key, value in link.user_data.items()})
             for place, visual in enumerate(link.visuals):
-                stated.update({(index, place, key): value for key, value in visual.user_data.items()})
+                if visual.user_data:
+                    stated.update({(index, place, key): value for key, value in visual.user_data.items()})
         if not stated:
             return
         taken, free = len(change.content(self._by_id)), change.get(self, "_free").copy()

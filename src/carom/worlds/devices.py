@@ -31,7 +31,7 @@ def make_engine(scene: World, count: int, device: str | Device, threads: int | N
     if device == CPU:
         state, contacts = scene.arrays.state, scene.contact_arrays.contacts
         check_memory(count, state.bytes_per_world(scene.arrays.used) + contacts.bytes_per_world())
-        arrays = scene.arrays.repeated(count)
+        arrays = scene.arrays.repeated(count, scene.contact_arrays.user_count)
         return Engine(arrays, scene.contact_arrays.repeated(arrays), min(count, threads or core_count()))
     if threads is not None:
         raise ValueError("threads can be set for the device 'cpu' only")

@@ -252,9 +252,11 @@ def _checked_length(values: Any, problem: str, name: str, most: int) -> int:
 
 def sequence(values: Any, problem: str, name: str, most: int = MAX_ITEMS) -> tuple[Any, ...]:
     """The items of any sequence of at most `most`; raises `pybullet.error` if `values` is none."""
+    if type(values) in _PLAIN and len(values) <= most:
+        return tuple(values)
     count = _checked_length(values, problem, name, most)
     try:
-        return tuple(values) if type(values) in _PLAIN else tuple(islice(values, count))
+        return tuple(islice(values, count))
     except TypeError:
         fail(problem, f"{name} is {values!r}.")
 

@@ -183,8 +183,12 @@ def setGravity(gravX: float, gravY: float, gravZ: float, physicsClientId: int = 
     client = client_of(physicsClientId)
     gravity = (quantity(gravX, "gravX"), quantity(gravY, "gravY"), quantity(gravZ, "gravZ"))
     # Scripts may set the same gravity before every step: that should cost little.
-    if gravity != client.world.parameters.gravity:
-        _change(client, gravity=gravity)
+    world = client.world
+    if gravity != world.parameters.gravity:
+        with client.lock:
+            change = Change()
+            world.note_parameters(change, gravity=gravity)
+            change.commit()
 
 
 @exported

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf, nan
+from math import hypot, inf, nan
 from typing import TYPE_CHECKING, Any, SupportsFloat
 
 from carom.layouts.motor_commands import (
@@ -43,6 +43,8 @@ _ILLEGAL_MODE = "Illegal control mode."
 _DAMPING = (1.0,)
 _UNUSED = (nan,) * TARGET_ENTRIES
 _ARRAY_MODES = (TORQUE_CONTROL, PD_CONTROL, STABLE_PD_CONTROL, POSITION_CONTROL)
+_USUAL_LISTS = frozenset((list, tuple))
+_USUAL_NUMBERS = frozenset((float, int))
 _QUATERNION = 4
 _ROUNDED = 1e-12
 
@@ -165,14 +167,16 @@ def setJointMotorControlMultiDofArray(
     if count == 0 or not {0, count}.issuperset(map(len, lists)):
         return
     access = body_access(bodyUniqueId, physicsClientId, OUT_OF_RANGE)
-    joints = [joint_of(access.body, index) for index in requested]
+    joints: Sequence[int] = requested
+    if min(requested) < 0 or max(requested) >= access.body.joint_count:
+        joints = [joint_of(access.body, index) for index in requested]
     positions = _column(lists[0], "targetPositions", 4)
     velocities = _column(lists[1], "targetVelocities", 3)
     bounds = _column(lists[2], "forces", 3, inf)
-    kps = [quantity(value, "positionGains") for value in lists[3]] or [DEFAULT_POSITION_GAIN] * count
-    kds = [quantity(value, "velocityGains") for value in lists[4]] or [DEFAULT_VELOCITY_GAIN] * count
-    for position in positions.entries:
-        if len(position) == _QUATERNION:
+    kps = _gains(lists[3], "positionGains") or [DEFAULT_POSITION_GAIN] * count
+    kds = _gains(lists[4], "velocityGains") or [DEFAULT_VELOCITY_GAIN] * count
+    for position, length in zip(positions.entries, positions.counts, strict=True):
+        if length == _QUATERNION:
             _check_rotation(position)
     if mode == STABLE_PD_CONTROL:
         from carom.algorithms.stable_pd import stable_pd_torques
@@ -201,8 +205,32 @@ def _command(
 def _column(
     entries: Sequence[Vector | None], name: str, most: int, greatest: float = MAX_MAGNITUDE
 ) -> Column:
-    """The checked numbers of each joint."""
-    return column_of([_list(values, name, most, greatest) for values in entries]) if entries else NO_ENTRIES
+    """The checked numbers of each joint; usual lists are checked all at once, which is faster."""
+    if not entries:
+        return NO_ENTRIES
+    if _USUAL_LISTS.issuperset(map(type, entries)):
+        usual = column_of(entries)  # type: ignore[arg-type]
+        if max(usual.counts) <= most and _are_usual(usual.numbers, greatest):
+            return usual
+    return column_of([_list(values, name, most, greatest) for values in entries])
+
+
+def _gains(values: Sequence[float], name: str) -> Sequence[float]:
+    """Checked numbers, likewise."""
+    return values if _are_usual(values, MAX_MAGNITUDE) else [quantity(value, name) for value in values]
+
+
+def _are_usual(values: Sequence[float], greatest: float) -> bool:
+    """Whether all are Python's own numbers, finite, and their magnitudes at most `greatest`."""
+    if not _USUAL_NUMBERS.issuperset(map(type, values)):
+        return False
+    # It is not less than the greatest of them, and NaN if one is. Great numbers that the bound allows may
+    # have an infinite length: these are looked at one by one.
+    try:
+        length = hypot(*values)
+    except OverflowError:
+        return False
+    return length <= greatest and length < inf
 
 
 def _list(values: Vector | None, name: str, most: int, greatest: float = MAX_MAGNITUDE) -> Sequence[float]:

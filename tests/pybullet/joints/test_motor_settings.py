@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from math import inf
+from math import inf, nan
 from typing import Any
 
 import numpy as np
@@ -287,6 +287,29 @@ def test_torques_of_a_ball_joint(zoo: int) -> None:
     p.setJointMotorControlMultiDofArray(zoo, [3, 0], p.TORQUE_CONTROL, forces=[[1, 1, 1], [5]])
     assert torque(zoo, 3) == [2.0, 3.0, 4.0]
     assert torque(zoo, 0) == [5.0]
+
+
+@pytest.mark.parametrize("bad", [nan, inf, 1e31, -1e31, 10**40, "1", None])
+@pytest.mark.parametrize("among", [0.5, 2, -1e31, inf])
+@pytest.mark.parametrize(
+    "argument", ["targetPositions", "targetVelocities", "positionGains", "velocityGains"]
+)
+@pytest.mark.parametrize("mode", [p.POSITION_CONTROL, p.STABLE_PD_CONTROL])
+def test_no_number_of_a_list_hides_behind_others(
+    zoo: int, mode: int, argument: str, among: float, bad: Any
+) -> None:
+    values: Any = [among, bad] if argument.endswith("Gains") else [[among], [bad]]
+    given: dict[str, Any] = {argument: values}
+    before = motor(zoo, 0).copy()
+    with pytest.raises((p.error, TypeError)):
+        p.setJointMotorControlMultiDofArray(zoo, [0, 1], mode, **given)
+    assert (motor(zoo, 0) == before).all()
+
+
+@pytest.mark.parametrize("joints", [[0, 99], [-1, 0], [99, 0]])
+def test_joints_that_are_not_there_are_refused_by_arrays(zoo: int, joints: list[int]) -> None:
+    with pytest.raises(p.error, match="out-of-range"):
+        p.setJointMotorControlMultiDofArray(zoo, joints, p.TORQUE_CONTROL, forces=[[1], [1]])
 
 
 def test_lists_of_one_for_joints_of_one_freedom(zoo: int) -> None:

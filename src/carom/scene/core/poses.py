@@ -51,7 +51,9 @@ class PoseUpdates(WorldData):
     def note_link_poses(self, change: Change, *bodies: BodyCore) -> None:
         """Bring `link_pose` up to date with the coordinates of bodies, by default all, after a change."""
         launch = self._derived.pose_launch or self.prepare_poses()
-        for body in bodies or self.bodies.values():
+        if not bodies:
+            change.run_record(launch.records(self.arrays.used["tree"]), launch)
+        for body in bodies:
             change.run_record(launch.record(body.rows.tree), launch)
 
     def prepare_poses(self) -> TreeLaunch:

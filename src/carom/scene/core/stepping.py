@@ -136,7 +136,12 @@ class Stepping(PoseUpdates):
         It has no address of one yet, arrays were too short, or a velocity is not finite.
         """
         with self.lock, uninterrupted:
-            step = self._derived.step or self._prepared_step()
+            step = self._derived.step
+            if step is None:
+                step = self._prepared_step()
+                # Now it may have the address.
+                if self.quick.take_step():
+                    return
             while not step():
                 self._make_room()
             # It counts as a change.

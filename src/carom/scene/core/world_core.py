@@ -85,7 +85,7 @@ class WorldCore(Stepping):
         with uninterrupted:
             # Its number is the next one until it has been added.
             constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
-            self.add_constraint(constraint)
+            self._add_constraint(constraint)
         return constraint
 
     @alone("lock")
@@ -96,14 +96,17 @@ class WorldCore(Stepping):
             ValueError: One of its bodies is no longer in the world.
         """
         with uninterrupted:
-            world_of(constraint.parent)
-            if constraint.child is not None:
-                world_of(constraint.child)
-            change = Change()
-            self.user_constraints.put(change, constraint)
-            self.constraints.add_user(change, constraint)
-            self.change_constraints(change)
-            change.commit()
+            self._add_constraint(constraint)
+
+    def _add_constraint(self, constraint: UserConstraint) -> None:
+        world_of(constraint.parent)
+        if constraint.child is not None:
+            world_of(constraint.child)
+        change = Change()
+        self.user_constraints.put(change, constraint)
+        self.constraints.add_user(change, constraint)
+        self.change_constraints(change)
+        change.commit()
 
     @alone("lock")
     def remove_constraint(self, constraint: UserConstraint) -> None:

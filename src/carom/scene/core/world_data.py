@@ -137,6 +137,10 @@ class WorldData(StateViews, Closed):
         """Set parameters with a change, and let the next step use them."""
         if values:
             change.set_all(self.parameters, **values)
+        if len(values) == 1 and "gravity" in values:
+            self.refuse_in_step()
+            self.engine.note_gravity(change, values["gravity"])
+            return
         breaking, *structure = (
             change.get(self.parameters, name) for name in ("contact_breaking_threshold", *STRUCTURE)
         )
