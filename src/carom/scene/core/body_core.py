@@ -22,11 +22,11 @@ from carom.layouts.codes import (
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
+from carom.model.link_dynamics import LinkDynamics
 from carom.native.change import Change, change_memory, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.dynamics_changes import set_dynamics, set_present
 from carom.scene.handles import world_of
-from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
@@ -203,7 +203,7 @@ class BodyCore(Closed):
         first, first_rate, moved = self.first_position, self.first_velocity, list[bool]()
         place = self.world.position_memory[first : first + self.rows.count["position"]]
         motion = self.world.velocity_memory[first_rate : first_rate + self.rows.count["dof"]]
-        coordinates, rates = place.tolist(), motion.tolist()
+        coordinates, rates = list(place), list(motion)
         for joint, position, velocity in states:
             moves = False
             if position is not None and (count := self.position_count[joint]):
