@@ -21,7 +21,7 @@ from tests.physics.robots import (
 from carom import Body, World
 from carom.description import Box, Collision, JointType, Pose
 from carom.model.body_spec import BASE, BodySpec, LinkSpec
-from carom.scene.link_dynamics import LinkDynamics
+from carom.model.link_dynamics import LinkDynamics
 
 
 def boxes(*, fixed_base: bool = False) -> BodySpec:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -21,7 +23,8 @@ def finite(value: ArrayLike, name: str) -> Array:
     if isinstance(value, OnDevice):
         return value  # type: ignore[return-value]
     array = _numbers(value, name)
-    if not np.isfinite(array).all():
+    # NumPy takes its time with single numbers.
+    if not (np.isfinite(array).all() if array.ndim else isfinite(array)):
         raise ValueError(f"{name} must be finite, not {value!r}")
     return array
 
@@ -47,7 +50,11 @@ def one_or_each(value: ArrayLike, count: int, name: str) -> Array:
     array = _numbers(value, name)
     if array.shape not in ((), (1,), (count,)):
         raise ValueError(f"{name} must be one number or {count} of them, not shape {array.shape}: {value!r}")
-    return np.broadcast_to(array, count).copy()
+    if array.shape == (count,):
+        return array
+    each = np.empty(count)
+    each[:] = array
+    return each
 
 
 def positive(value: ArrayLike, name: str) -> Array:
@@ -71,7 +78,7 @@ def not_negative(value: ArrayLike, name: str) -> Array:
     if isinstance(value, OnDevice):
         return value  # type: ignore[return-value]
     array = _numbers(value, name)
-    if not (array >= 0.0).all():
+    if not ((array >= 0.0).all() if array.ndim else float(array) >= 0.0):
         raise ValueError(f"{name} must be >= 0, not {value!r}")
     return array
 

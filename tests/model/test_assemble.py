@@ -27,9 +27,8 @@ from carom.description import (
 from carom.description.transform import compose, quaternion_from_rpy
 from carom.errors import DescriptionError
 from carom.layouts.flags import LoadFlags
-from carom.model.assemble import assemble
+from carom.model.assemble import assemble, outline
 from carom.model.body_spec import BASE, BodySpec
-from carom.model.outline import outline
 
 NO_LIMIT = JointLimit()
 

@@ -7,7 +7,7 @@ import pytest
 from carom.description import Box, Pose, Robot
 from carom.description.printed import Printed
 from carom.engine.parameters import EngineParameters
-from carom.scene.link_dynamics import LinkDynamics
+from carom.model.link_dynamics import LinkDynamics
 
 
 @dataclass(repr=False, slots=True)

@@ -33,8 +33,8 @@ from carom.layouts.flags import LoadFlags
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.builder import WorldArrays
+from carom.model.link_dynamics import LinkDynamics
 from carom.model.shape_arrays import ShapeArrays
-from carom.scene.link_dynamics import LinkDynamics
 
 MESHES = Path(__file__).parents[1] / "formats" / "data" / "meshes"
 TETRAHEDRON = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], float)

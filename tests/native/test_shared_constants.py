@@ -10,9 +10,9 @@ from carom.layouts.model import State
 from carom.layouts.quick_calls import CHANGE_DYNAMICS
 from carom.layouts.quick_world import SURFACE, Scene
 from carom.layouts.records import Int32, Read, c_record
+from carom.model.link_dynamics import LinkDynamics
 from carom.native.building.headers import _comment, _record, header
 from carom.native.tables import fields_of
-from carom.scene.link_dynamics import LinkDynamics
 from pybullet._calls.builtin import exports
 
 

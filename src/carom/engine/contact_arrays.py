@@ -96,7 +96,7 @@ class ContactArrays:
         links = rows.first["link"], rows.count["link"]
         kept = kept_rows(self.contacts, range(first, first + count))
         renumber(kept, (first, count), links)
-        # As if the body had been moved, see `forget_warm_start`.
+        # As if the body had been moved, see `cold_starts`.
         kept["contact_warm_start"] = cold_start(kept["contact_warm_start"])
         counts = self.contacts.numpy["count_contacts"][0].copy()
         counts[KNOWN] -= max(0, min(count, int(counts[KNOWN]) - first))
@@ -143,21 +143,16 @@ class ContactArrays:
         """`forget_order` of a single world with a change."""
         change.write_numbers(self.contacts.numpy["count_contacts"][0, SORTED : SORTED + 1], (0,), "i")
 
-    def forget_warm_start(self, worlds: np.ndarray) -> None:
-        """Do not warm start contacts of worlds in the next step, because bodies were moved.
-
-        So the next steps depend only on the new poses, not on earlier ones.
-        """
-        counters, rows, values = self.cold_starts(worlds)
-        counters[rows] = values
-
     def cold_starts(self, worlds: slice | np.ndarray) -> tuple[Any, slice | np.ndarray, Any]:
-        """What `forget_warm_start` writes: an array, the index in it, and the values."""
+        """What to write where bodies were moved: an array, the index of the worlds in it, and the values.
+
+        Contacts are not warm started in the next step then: it depends only on the new poses.
+        """
         counters = self.contacts.numpy["contact_warm_start"]
         return counters, worlds, cold_start(counters[worlds])
 
     def note_cold_start(self, change: Change) -> None:
-        """`forget_warm_start` of a single world with a change."""
+        """`cold_starts` of a single world with a change."""
         arrays = self.contacts.numpy
         if count := arrays["count_contacts"].item(0, THERE):
             counters = arrays["contact_warm_start"][0, :count]

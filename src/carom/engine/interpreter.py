@@ -13,8 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from carom.engine.lane_work import LaneWork
-from carom.engine.program import Program
-from carom.engine.program_record import write_program
+from carom.engine.program import Program, write_program
 from carom.layouts.programs import Program as ProgramRecord
 from carom.layouts.programs import Run
 from carom.native.library import library

@@ -16,8 +16,7 @@ import numpy as np
 
 from carom.engine.lane_arrays import NUMBER, Wide, rows_of_lanes, rows_of_worlds, struct_of, widened
 from carom.engine.lane_sweeps import LaneSweepWork
-from carom.engine.program import Plan, lane_program
-from carom.engine.program_record import world_call, write_program
+from carom.engine.program import Plan, lane_program, world_call, write_program
 from carom.engine.workspace import Workspace
 from carom.layouts.programs import LANES, WAITING_SWEEPS, KernelCall, LaneMotion, LaneRows, LaneWorld
 from carom.model.builder import WorldArrays

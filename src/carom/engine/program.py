@@ -1,9 +1,12 @@
-"""The kernels of a step, and their order."""
+"""The kernels of a step, their order, and how native code reads them."""
 
 from __future__ import annotations
 
+from itertools import accumulate, chain
 from typing import NamedTuple
 
+from carom.layouts.programs import KernelCall, WorldCall
+from carom.layouts.programs import Program as ProgramRecord
 from carom.native.kernels import (
     Kernel,
     abandon_soft_kernel,
@@ -135,3 +138,16 @@ def _detection(structs: KernelStructs) -> list[Launch]:
 
 def _launch(structs: KernelStructs, kernel: Kernel, **scalars: int) -> Launch:
     return structs.launch(kernel, first_world=0, **scalars)
+
+
+def write_program(record: ProgramRecord, program: Program) -> None:
+    """Put the launches of a program into its record; both have to exist as long as the record is used."""
+    record.part_ends[:] = list(accumulate(map(len, program)))
+    for place, launch in enumerate(chain.from_iterable(program)):
+        record.launches[place] = world_call(launch)
+
+
+def world_call(launch: Launch) -> WorldCall:
+    """A launch for one world; it has to exist as long as the record is used."""
+    *call, first_world, substeps = launch.addresses("first_world", "substeps")
+    return WorldCall(KernelCall(*call), first_world, substeps)

@@ -13,7 +13,6 @@ from carom.layouts.flags import LoadFlags
 from carom.logger import Logger
 from carom.model.body_spec import BASE, DEFAULT_LINK_DAMPING, BodySpec, LinkSpec
 from carom.model.inertia import inertia_from_file, inertia_from_shapes
-from carom.model.outline import outline
 from carom.model.tree import TreeNode, depth_first, file_order, make_tree
 
 _log = Logger(__name__)
@@ -168,3 +167,23 @@ def _is_limited(joint: Joint) -> bool:
     if LIMIT_KIND.get(JOINT_CODE[joint.type]) == ConstraintKind.SPHERICAL_LIMIT:
         return min(limit.lower, limit.upper, limit.twist, limit.effort) > 0.0
     return False
+
+
+def outline(body: BodySpec) -> str:
+    """A body's tree of links as text: a line for each, indented by its depth, with masses and joints."""
+    depth = {BASE: 0}
+    children: dict[int, list[int]] = {}
+    for index, link in enumerate(body.links):
+        depth[index] = depth[link.parent] + 1
+        children.setdefault(link.parent, []).append(index)
+    lines = [f"{body.base.name} (mass {body.base.mass:g})"]
+    pending = children.get(BASE, [])[::-1]
+    while pending:
+        index = pending.pop()
+        link = body.links[index]
+        lines.append(
+            f"{'  ' * depth[index]}{link.name}"
+            f" (mass {link.mass:g}, {link.joint_type.value} joint {link.joint_name})"
+        )
+        pending.extend(children.get(index, [])[::-1])
+    return "\n".join(lines)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from carom.model.body_rows import BodyRows, TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.bounds import Bounds
 from carom.model.inertia import collision_margin, link_bounds, widens_bounds
+from carom.model.link_dynamics import LinkDynamics
 from carom.model.pair_filters import PairFilters
 from carom.model.placed_pieces import AXES, PlacedPiece, placed_pieces, reach, row_counts
 from carom.model.shape_pieces import ShapePiece
@@ -25,7 +26,6 @@ from carom.native.tables import ROOM_AT_FIRST, ArrayTable, room_ahead
 BREAKING_FRACTION = 0.02
 """Breaking distance of a contact, relative to the reach of the smaller shape."""
 
-# A shape whose pose in its link differs from the identity by less is in no compound.
 # Half extent of links with planes [m]; its square is still finite.
 _UNBOUNDED = 1e18
 
@@ -41,7 +41,7 @@ _INDEX_FIELDS = {
     "link_first_shape": "shape",
 }
 
-# The field of `Shapes` in which each attribute of a `Surface` is kept.
+# The field of `Shapes` in which each attribute of a link's surface is kept.
 SURFACE_FIELDS = {
     **SURFACE,
     "friction_anchor": "link_friction_anchor",
@@ -53,26 +53,6 @@ SURFACE_FIELDS = {
     "ccd_swept_sphere_radius": "shape_ccd_radius",
     "collision_margin": "shape_margin",
 }
-
-
-class Surface(Protocol):
-    """Contact parameters of a link; `carom.scene.link_dynamics.LinkDynamics` implements it."""
-
-    lateral_friction: float
-    rolling_friction: float
-    spinning_friction: float
-    restitution: float
-    contact_stiffness: float
-    contact_damping: float
-    friction_anchor: bool
-    friction_rank: int
-    contact_reference: tuple[float, float, float, float]
-    contact_impedance: tuple[float, float, float, float]
-    contact_mixing: tuple[float, float, float]
-    collision_margin: float
-    ccd_swept_sphere_radius: float
-    contact_processing_threshold: float
-    anisotropic_friction: tuple[float, float, float]
 
 
 class BodyShapes:
@@ -153,7 +133,7 @@ class ShapeArrays:
         return self.table.struct()
 
     def append(
-        self, change: Change, spec: BodySpec, rows: TreeRows, surfaces: Sequence[Surface]
+        self, change: Change, spec: BodySpec, rows: TreeRows, surfaces: Sequence[LinkDynamics]
     ) -> BodyShapes:
         """Add the shapes of a body whose links were appended to the model just before.
 
@@ -331,13 +311,15 @@ class ShapeArrays:
             if link > first_link:
                 change.set(other, "first", {axis: row - count[axis] for axis, row in other.first.items()})
 
-    def write_surface(self, link_row: int, surface: Surface) -> None:
+    def write_surface(self, link_row: int, surface: LinkDynamics) -> None:
         """Write the contact parameters of a link."""
         change = Change()
         self._write_whole_surface(change, *self._body_of(link_row), surface)
         change.commit()
 
-    def _write_whole_surface(self, change: Change, body: BodyShapes, link: int, surface: Surface) -> None:
+    def _write_whole_surface(
+        self, change: Change, body: BodyShapes, link: int, surface: LinkDynamics
+    ) -> None:
         values = {name: getattr(surface, name) for name in SURFACE_FIELDS}
         if values["collision_margin"] == body.margins[link]:
             del values["collision_margin"]

@@ -261,10 +261,10 @@ def changes_made() -> int:
     return _Maker.made.value
 
 
-def change_numbers(target: memoryview[float], values: Iterable[float], begun: int) -> None:
-    """A change that writes doubles to memory, and does nothing else; see `Change` for `begun`."""
+def change_memory(target: memoryview[float], packed: bytes, begun: int) -> None:
+    """A change that writes to memory, and does nothing else; see `Change` for `begun`."""
     make = _Maker.make or _Maker.find()
-    made = make(_NO_ATTRIBUTES, _NONE, _NONE, _NONE, [target, array("d", values)], _NONE, _NONE, _NONE, begun)
+    made = make(_NO_ATTRIBUTES, _NONE, _NONE, _NONE, [target, packed], _NONE, _NONE, _NONE, begun)
     if made is not _MISSING:
         raise Outdated
 
@@ -391,7 +391,10 @@ def _make(
         if cuts:
             _symbols().carom_cut_rows(b"".join(cuts), ctypes.c_int64(len(cuts)))
         for target, source in _in_turn(writes, 2):
-            target[slice(None) if type(target) is memoryview else ...] = source
+            if type(target) is memoryview:
+                target.cast("B")[:] = memoryview(source).cast("B")
+            else:
+                target[...] = source
         for source, target, size in _BLOCK.iter_unpack(b"".join(blocks)):
             ctypes.memmove(target, source, size)
         if runs:

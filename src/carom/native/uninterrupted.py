@@ -116,8 +116,7 @@ class Section:
 
     __slots__ = ()
 
-    def __enter__(self) -> None:
-        begin()
+    __enter__ = staticmethod(begin)
 
     def __exit__(self, *_: object) -> None:
         end()

@@ -28,8 +28,8 @@ from carom.scene.joint_terms.implicit import (
 if TYPE_CHECKING:
     from carom.description.pose import Vector3
     from carom.model.inertia import MassTerms
+    from carom.model.link_dynamics import LinkDynamics
     from carom.scene.core.body_core import BodyCore
-    from carom.scene.link_dynamics import LinkDynamics
 
 
 _SLEEP_THRESHOLD = "sleep_threshold"

@@ -12,13 +12,13 @@ from carom.checks import Array, finite, one_or_each, vector
 from carom.description import JointType
 from carom.description.pose import Vector3
 from carom.layouts.codes import BASE_POSITIONS, BASE_VELOCITIES
+from carom.model.link_dynamics import enforced_limits
 from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
 from carom.native.products import length
 from carom.scene.handles import world_of
 from carom.scene.joint_motor import Drives
 from carom.scene.joint_terms.friction import friction_of, set_friction
-from carom.scene.link_dynamics import enforced_limits
 from carom.scene.named import Named
 
 if TYPE_CHECKING:

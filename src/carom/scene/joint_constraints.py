@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, cast
 
 from carom.layouts.codes import LIMIT_KIND, MOTOR_KIND, WITH_FRICTION, ConstraintKind, JointCode
 from carom.model.builder import WorldArrays
+from carom.model.link_dynamics import DEFAULT_LIMIT_IMPULSE
 from carom.model.solver_order import IslandTags, remove_unordered
 from carom.native.change import Change
 from carom.scene.actuators.actuated_joint import actuated_joint, drives_joint
 from carom.scene.constraint_rows import ConstraintRows
-from carom.scene.link_dynamics import DEFAULT_LIMIT_IMPULSE
 
 if TYPE_CHECKING:
     from carom.description.compliance import Compliance, Four

@@ -52,6 +52,11 @@ class Drives(NamedTuple):
     substep_time: float
     begun: int = -1
 
+    @property
+    def change_at_once(self) -> bool:
+        """Whether the rows are contiguous memory of the processor, so that a change writes to them."""
+        return isinstance(self.dofs, slice) and type(self.motor) is np.ndarray
+
     def aim_at_position(
         self,
         position: ArrayLike,
@@ -135,7 +140,7 @@ class Drives(NamedTuple):
 
     def switch_off(self) -> None:
         """Switch off the motors and the PD drives."""
-        if isinstance(self.dofs, slice) and type(self.motor) is np.ndarray:
+        if self.change_at_once:
             change = Change(begun=self.begun)
             change.write(self.motor[..., self.dofs, MOTOR_MAX_IMPULSE], 0.0)
             change.write(self.pd[..., self.dofs, PD_MAX_FORCE], 0.0)
@@ -146,7 +151,7 @@ class Drives(NamedTuple):
 
     def _write(self, rows: np.ndarray, columns: Mapping[int, np.ndarray]) -> None:
         """Write columns at once if all of them fit the rows, so that an error changes nothing."""
-        if isinstance(self.dofs, slice) and type(rows) is np.ndarray:
+        if self.change_at_once:
             change, target = Change(begun=self.begun), rows[..., self.dofs, :]
             told = target.copy()
             for column, values in columns.items():

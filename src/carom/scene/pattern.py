@@ -9,7 +9,8 @@ from carom.description.pose import IDENTITY
 from carom.model.body_rows import BodyRows
 from carom.model.body_spec import BodySpec
 from carom.model.builder import WorldArrays
-from carom.model.shape_arrays import ShapeArrays, Surface
+from carom.model.link_dynamics import LinkDynamics
+from carom.model.shape_arrays import ShapeArrays
 from carom.native.change import Change
 from carom.scene.core.body_core import Outline
 
@@ -43,7 +44,7 @@ def pattern_of(spec: BodySpec) -> Pattern | None:
     return spec.pattern
 
 
-def _body_rows(spec: BodySpec, surfaces: Sequence[Surface]) -> BodyRows | None:
+def _body_rows(spec: BodySpec, surfaces: Sequence[LinkDynamics]) -> BodyRows | None:
     """The rows of a body, made by writing it to empty arrays; None if they are larger than `MAX_BYTES`.
 
     The body is not soft; `surfaces` are the contact parameters of its links, the base first.

@@ -16,6 +16,7 @@ from carom.description.pose import Vector3
 from carom.description.transform import compose, inverse
 from carom.formats.visuals.render_mesh import RenderMesh
 from carom.model.body_spec import BASE
+from carom.model.link_dynamics import enforced_limits
 from carom.render.appearance import WINDOW_COLOURS, Appearance, ShapeLook
 from carom.render.images import Texels
 from carom.render.meshes import shape_mesh
@@ -26,7 +27,6 @@ from carom.render.textures import NO_TEXTURE
 from carom.scene.actuators.actuated_joint import control_range
 from carom.scene.core.soft_core import SoftCore
 from carom.scene.joint_constraints import moving_links
-from carom.scene.link_dynamics import enforced_limits
 from carom.viewer.input.picking import follows_hand
 from carom.viewer.latest_messages import LatestMessages
 from carom.viewer.protocol import to_page

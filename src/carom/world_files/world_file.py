@@ -29,6 +29,7 @@ from carom.layouts.codes import (
     UserConstraintKind,
 )
 from carom.model.body_spec import BASE, BodySpec
+from carom.model.link_dynamics import LinkDynamics
 from carom.model.soft_spec import Anchor
 from carom.native.change import Change
 from carom.native.gates import alone
@@ -39,7 +40,6 @@ from carom.scene.core.soft_core import SoftCore
 from carom.scene.draft import draft_of
 from carom.scene.dynamics_changes import change_dynamics
 from carom.scene.joint_constraints import JointConstraint
-from carom.scene.link_dynamics import LinkDynamics
 from carom.scene.snapshot import check_same, layout
 from carom.scene.user_constraints import UserConstraint
 from carom.scene.user_data import UserDatum

@@ -76,7 +76,8 @@ class Chosen:
             if not good:
                 kind = "finite" if finite else "numbers"
                 raise ValueError(f"{name} must be {kind}, but some entries are not")
-        return np.broadcast_to(array, (len(self), *inner))
+        shape = (len(self), *inner)
+        return array if array.shape == shape else np.broadcast_to(array, shape)
 
 
 def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:
@@ -111,4 +112,6 @@ def _doubles(value: ArrayLike, name: str) -> Array:
 
 def _spreads(given: Sequence[int], wanted: Sequence[int]) -> bool:
     """Whether a shape, without more axes, broadcasts to another."""
-    return all(own in (1, length) for own, length in zip(given[::-1], wanted[::-1], strict=False))
+    return given == wanted or all(
+        own in (1, length) for own, length in zip(given[::-1], wanted[::-1], strict=False)
+    )

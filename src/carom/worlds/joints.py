@@ -269,6 +269,10 @@ class JointBatch(Batch):
     @contextmanager
     def _drives(self, columns: slice | np.ndarray, worlds: Chosen) -> Iterator[Drives]:
         """The drives of some joints in some worlds; what is set is in force at the end."""
+        drives = self._present_drives(columns)
+        if isinstance(worlds.rows, slice) and drives.change_at_once:
+            yield drives
+            return
         with self._rows_of_dofs(worlds, "dof_motor", "dof_pd") as (motor, pd):
             yield Drives(motor, pd, columns, self._scene.parameters.substep_time)
 

@@ -8,6 +8,7 @@ from carom.engine.engine import Engine
 from carom.scene.keyframes.keyframe import keyframes_of
 from carom.scene.keyframes.state import changes, check_keyframe
 from carom.world.world import World
+from carom.worlds.batch import assign
 
 
 def reset_to(scene: World, engine: Engine, name: str, worlds: np.ndarray) -> float:
@@ -27,5 +28,5 @@ def reset_to(scene: World, engine: Engine, name: str, worlds: np.ndarray) -> flo
             array = engine.arrays.state.numpy[change.field]
             array[worlds, change.rows] = change.values
     engine.status[worlds] = 0
-    engine.contact_arrays.forget_warm_start(worlds)
+    assign(engine.contact_arrays.cold_starts(worlds))
     return keyframe.time

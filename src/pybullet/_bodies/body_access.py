@@ -102,11 +102,6 @@ class BodyAccess:
             self._link_records = link_records(self.body)
             self.record.links = addressof(self._link_records)
 
-    def forget_moments(self, link: int) -> None:
-        """Let the moments of a link be computed anew when its mass changes next; -1 is the base."""
-        if self.record.moments:
-            self._moments[link + 1].is_known = False
-
     def weighed(self, link: int) -> None:
         """Let the native library handle the next changes of a link's mass; -1 is the base."""
         if self.body.spec.soft is not None:

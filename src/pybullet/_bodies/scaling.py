@@ -55,8 +55,8 @@ def unsupportedChangeScaling(bodyUniqueId: int, scaling: Vector, physicsClientId
         return
 
     from carom.layouts.flags import LoadFlags
+    from carom.model.link_dynamics import LinkDynamics
     from carom.model.scaled_shapes import scaled_collisions
-    from carom.scene.link_dynamics import LinkDynamics
 
     shapes = client.world.contact_arrays.shapes
     implicit = bool(body.spec.flags & LoadFlags.USE_IMPLICIT_CYLINDER)

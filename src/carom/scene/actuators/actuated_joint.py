@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from carom.errors import DescriptionError
 from carom.layouts.codes import DRIVEN, ActivationDynamics
-from carom.scene.link_dynamics import enforced_limits
+from carom.model.link_dynamics import enforced_limits
 
 if TYPE_CHECKING:
     from carom.description.actuator import ActuatorSpec

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import sqrt
+from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 from carom.closed import Closed
@@ -21,16 +22,17 @@ from carom.layouts.codes import (
 from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
-from carom.native.change import Change, change_numbers, changes_made
+from carom.model.link_dynamics import LinkDynamics
+from carom.native.change import Change, change_memory, changes_made
 from carom.native.gates import alone, whole
 from carom.scene.dynamics_changes import set_dynamics, set_present
 from carom.scene.handles import world_of
-from carom.scene.link_dynamics import LinkDynamics
 
 if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 _NO_REACTION = (0.0,) * BASE_VELOCITIES
+_PACK_VELOCITY = Struct(f"{BASE_VELOCITIES}d").pack
 
 JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
 """A joint, its position coordinates, and its velocity coordinates; None keeps them."""
@@ -166,12 +168,10 @@ class BodyCore(Closed):
 
         A fixed base moves with it, and as in Bullet the velocity turns with the base.
         """
-        begun = changes_made()
+        begun, packed = changes_made(), _PACK_VELOCITY(*angular, *linear)
         world, first = world_of(self), self.first_velocity
-        place = world.velocity_memory[first : first + BASE_VELOCITIES]
-        change_numbers(place, (*angular, *linear), begun)
+        change_memory(world.velocity_memory[first : first + BASE_VELOCITIES], packed, begun)
 
-    @whole("world.lock")
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from carom.engine.quick_steps import show_steps
 from carom.errors import SimulationError
 from carom.layouts.status import STATUS, STEPS_DONE, WELL
 from carom.native.change import Change
@@ -14,6 +13,9 @@ from carom.scene.core.poses import PoseUpdates
 from carom.scene.core.world_data import STRUCTURE
 from carom.scene.faults import cause_in
 from carom.scene.observers import SubstepObserver
+
+# Without contacts, a step of so few links ends within some microseconds.
+_FEW_LINKS, _FEW_SWEEPS = 32, 100
 
 
 class Stepping(PoseUpdates):
@@ -212,9 +214,19 @@ class Stepping(PoseUpdates):
             self.unspent_time = 0.0
         step = self._step_watched if self._substep_observers else self._attempt
         if not self._substep_observers:
-            show_steps(self.engine, self.quick, self.observers, self.parameters)
+            self._show_steps()
         self._derived.step = step
         return step
+
+    def _show_steps(self) -> None:
+        """Let the native library perform steps by itself, until the scene changes."""
+        engine, parameters = self.engine, self.parameters
+        contacts, substeps = engine.contact_arrays.contacts.struct(), parameters.substep_count
+        sweeps = parameters.solver_iterations * parameters.noncontact_inner_iterations * substeps
+        is_small = engine.arrays.used["link"] <= _FEW_LINKS and not engine.contact_arrays.soft.bodies
+        count = contacts.count_contacts.data if is_small and sweeps <= _FEW_SWEEPS else None
+        kept = engine, contacts
+        self.quick.set_step_addresses(engine.step_addresses(), self.observers, count, kept, substeps=substeps)
 
     def _step_watched(self) -> bool:
         """Perform a step, and call observers after each substep; an error of theirs undoes it."""

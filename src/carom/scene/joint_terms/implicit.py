@@ -14,8 +14,8 @@ from carom.native.change import Change
 if TYPE_CHECKING:
     import numpy as np
 
+    from carom.model.link_dynamics import LinkDynamics
     from carom.scene.core.body_core import BodyCore
-    from carom.scene.link_dynamics import LinkDynamics
 
 SPRING_REFERENCE = "joint_spring_reference"
 # Fields of `Model` over dofs, by the names of terms in `LinkDynamics`; that of damping depends on the body.
