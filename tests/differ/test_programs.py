@@ -169,3 +169,18 @@ def test_known_differences_are_stated():
     pages = [ROOT / "docs" / "differences.md", *sorted((ROOT / "docs" / "differences").glob("*.md"))]
     text = " ".join(" ".join(page.read_text(encoding="utf-8") for page in pages).split())
     assert [known.says for known in KNOWN if " ".join(known.says.split()) not in text] == []
+
+
+@pytest.mark.parametrize(("side", "beyond"), [(1, 1e-14), (0, 0.0), (-1, -1e-14)])
+def test_joints_at_limits_are_put_to_one_side(side: int, beyond: float):
+    limits = {"jointLowerLimit": -1.0, "jointUpperLimit": 0.0}
+    calls = [
+        call(0, "loadURDF", "cartpole.urdf", flags=2),
+        call(1, "changeDynamics", {"$": 0}, 1, **limits),
+        call(2, "resetJointState", {"$": 0}, 0, 0.25, 0.5),
+        call(3, "@nudge", 1e-14, 0, side),
+        call(4, "getJointStates", {"$": 0}, [0, 1]),
+    ]
+    slider, pole = list(perform(calls, pybullet_data.getDataPath()))[4][1]
+    assert slider[:2] == [0.25, 0.5]
+    assert pole[:2] == [beyond, 0.0]
