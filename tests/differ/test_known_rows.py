@@ -189,3 +189,22 @@ def test_fixed_bases_stay_turned_by_no_rotation(mass: int, joint: int, turn: lis
     body = call(0, "createMultiBody", mass, linkJointTypes=[0, joint], linkParentIndices=[0, 1])
     reset = call(1, "resetBasePositionAndOrientation", {"$": 0}, [0, 0, 0], turn)
     assert is_stated([body, reset, STEP, STEP], "positions.0.0", 1e-7) == expected
+
+
+SLEEP = call(5, "changeDynamics", {"$": 2}, -1, activationState=8)
+HEAVIER = call(6, "changeDynamics", {"$": 2}, -1, mass=2)
+SUBSTEPS = call(7, "setPhysicsEngineParameter", numSubSteps=2)
+
+
+@pytest.mark.parametrize(
+    ("calls", "phase", "expected"),
+    [
+        ([SUBSTEPS, BOX, SLEEP, STEP, HEAVIER], "free", True),
+        ([SUBSTEPS, BOX, SLEEP, STEP, HEAVIER], "contact", False),
+        ([SUBSTEPS, BOX, HEAVIER, SLEEP, STEP], "free", False),
+        ([SUBSTEPS, BOX, STEP, HEAVIER], "free", False),
+        ([BOX, SLEEP, STEP, HEAVIER], "free", False),
+    ],
+)
+def test_what_sleeps_keeps_its_weight(calls: list[Call], phase: str, expected: bool):
+    assert is_stated(calls, "base.0.0", 1e-6, phase) == expected

@@ -63,6 +63,7 @@ from tools.differ.causes.calls import (
 )
 from tools.differ.causes.poses import has_ends_that_stand_out, looks_from_within, starts_half_a_turn_away
 from tools.differ.causes.rows import (
+    changes_mass_of_what_sleeps,
     drives_before_restoring,
     drives_from_a_limit,
     fixes_what_touches_itself,
@@ -293,6 +294,14 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "with a fixed base and their parents",
         lambda seen: seen.differs("@probe") and touches_its_parents_rigidly(seen),
+    ),
+    Known(
+        "keeps the weight it had",
+        lambda seen: (
+            seen.difference.phase == "free"
+            and seen.differs("@probe", "getLinkState")
+            and changes_mass_of_what_sleeps(seen)
+        ),
     ),
     Known(
         "In PyBullet motors keep the targets they have",
