@@ -173,14 +173,12 @@ def test_known_differences_are_stated():
 
 @pytest.mark.parametrize(("side", "beyond"), [(1, 1e-14), (0, 0.0), (-1, -1e-14)])
 def test_joints_at_limits_are_put_to_one_side(side: int, beyond: float):
-    limits = {"jointLowerLimit": -1.0, "jointUpperLimit": 0.0}
     calls = [
-        call(0, "loadURDF", "cartpole.urdf", flags=2),
-        call(1, "changeDynamics", {"$": 0}, 1, **limits),
-        call(2, "resetJointState", {"$": 0}, 0, 0.25, 0.5),
-        call(3, "@nudge", 1e-14, 0, side),
-        call(4, "getJointStates", {"$": 0}, [0, 1]),
+        call(0, "loadURDF", "laikago/laikago_toes_limits.urdf"),
+        call(1, "resetJointState", {"$": 0}, 0, 0.25, 0.5),
+        call(2, "@nudge", 1e-14, 0, side),
+        call(3, "getJointStates", {"$": 0}, [0, 2]),
     ]
-    slider, pole = list(perform(calls, pybullet_data.getDataPath()))[4][1]
-    assert slider[:2] == [0.25, 0.5]
-    assert pole[:2] == [beyond, 0.0]
+    hip, knee = list(perform(calls, pybullet_data.getDataPath()))[3][1]
+    assert hip[:2] == [0.25, 0.5]
+    assert knee[:2] == [beyond, 0.0]
