@@ -4,6 +4,9 @@ After a contact bodies are put 1e-12 m elsewhere. In free motion it is 1e-14 m, 
 place: a difference of 1e-9 that this makes was made 50,000 times as large by what came after, as where joints
 lie exactly at their limits, rows pull in opposite directions, or a spinning body is about to tumble.
 
+Contacts of several shapes of one link come in the order of a tree there: a program with such shapes is also
+performed with them in the opposite order, and if Carom agrees then, that order was all.
+
 Joints that are at a limit are also put 1e-14 beyond it or before it, before each step. Whether such a limit
 has a row is left to rounding, which in PyBullet is always the same until something changes it.
 """
@@ -20,6 +23,7 @@ from tools.differ.pair import Outcome
 from tools.differ.programs import Call
 
 ROUNDING = "There motion agrees to rounding until rounding decides"
+ORDER_OF_SHAPES = "except those of several shapes of one link"
 MEMORY = "Some answers of PyBullet depend on what earlier commands left in its memory"
 _ELSEWHERE = {"free": 1e-14, "contact": 1e-12}
 _UNTURNED = [0.0, 0.0, 0.0, 1.0]
@@ -66,7 +70,25 @@ def doubted_by_pybullet(
         moved = _performed(pybullet, _elsewhere(calls, _ELSEWHERE[difference.phase], Random(trial)))
         if _is_as_large(calls, theirs, moved, difference):
             return ROUNDING
-    return ROUNDING if _changes_at_limits(pybullet, calls, theirs, difference) else None
+    if _changes_at_limits(pybullet, calls, theirs, difference):
+        return ROUNDING
+    turned = _with_shapes_reversed(calls)
+    if difference.phase != "contact" or turned == calls:
+        return None
+    # Carom has to agree with what PyBullet says of the shapes in their other order.
+    differs = _has(compare(calls, _performed(pybullet, turned), ours), difference, 0.0)
+    return None if differs else ORDER_OF_SHAPES
+
+
+def _with_shapes_reversed(calls: Sequence[Call]) -> list[Call]:
+    """The program with the shapes of each `createCollisionShapeArray` in the opposite order."""
+    found = copy.deepcopy(list(calls))
+    for call in found:
+        if call["f"] == "createCollisionShapeArray":
+            call["k"] = {
+                name: value[::-1] if isinstance(value, list) else value for name, value in call["k"].items()
+            }
+    return found
 
 
 def _changes_at_limits(
