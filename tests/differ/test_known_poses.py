@@ -69,3 +69,11 @@ def test_a_link_may_turn_either_way_to_what_is_half_a_turn_away(
     ask = call(2, "calculateInverseKinematics", {"$": 0}, 1, [5, 0, 0], targetOrientation=target)
     reach = call(3, "@reach", {"$": 0}, [1], {"whole": 2}, [[5, 0, 0]], target)
     assert is_known([*before, ask, reach], "worse", [5.2, 1.5, []], [5.3, 1.9, []]) == expected
+
+
+@pytest.mark.parametrize(
+    ("apart", "turned", "expected"), [(0.0, 1.7e-4, True), (1e-6, 1.7e-4, False), (0.0, 1e-3, False)]
+)
+def test_normals_of_rays_may_be_off_their_faces(apart: float, turned: float, expected: bool):
+    hits = [[0, 6, 0.5, [0.0, 0.0, z], [x, 0.0, 1.0]] for x, z in ((0.0, 0.0), (turned, apart))]
+    assert is_known([call(51, "rayTest", [0] * 3, [1] * 3)], "normal", *hits) == expected

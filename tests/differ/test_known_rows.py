@@ -158,3 +158,53 @@ def test_motors_drive_against_limits_that_are_hardly_reached(
     calls = [call(0, "loadURDF", made), call(1, "setJointMotorControl2", {"$": 0}, driven, 0), STEP, PROBE]
     difference = Difference(3, "@probe", Place(field, *values, 4e-3), "free")
     assert (statement(calls, difference) is not None) == expected
+
+
+@pytest.mark.parametrize(
+    ("flags", "fixed", "field", "phase", "expected"),
+    [
+        (8192 + 8, 1, "positions.0.2", "contact", True),
+        (8192 + 8, 1, "positions.0.2", "free", False),
+        (8192 + 8, 1, "positions.1.2", "contact", False),
+        (8192 + 8, 0, "positions.0.2", "contact", False),
+        (8192, 1, "positions.0.2", "contact", False),
+        (8, 1, "positions.0.2", "contact", False),
+    ],
+)
+def test_links_press_on_parents(flags: int, fixed: int, field: str, phase: str, expected: bool):
+    robot = call(0, "loadURDF", "quadruped/minitaur.urdf", useFixedBase=fixed, flags=flags)
+    assert is_stated([robot, BOX], field, 0.5, phase) == expected
+
+
+@pytest.mark.parametrize(
+    ("mass", "joint", "turn", "expected"),
+    [
+        (0, 2, [-0.11, -0.94, 0.25, 0.18], True),
+        (1, 2, [-0.11, -0.94, 0.25, 0.18], False),
+        (0, 0, [-0.11, -0.94, 0.25, 0.18], False),
+        (0, 2, [0.0, 0.0, 0.6, 0.8], False),
+    ],
+)
+def test_fixed_bases_stay_turned_by_no_rotation(mass: int, joint: int, turn: list[float], expected: bool):
+    body = call(0, "createMultiBody", mass, linkJointTypes=[0, joint], linkParentIndices=[0, 1])
+    reset = call(1, "resetBasePositionAndOrientation", {"$": 0}, [0, 0, 0], turn)
+    assert is_stated([body, reset, STEP, STEP], "positions.0.0", 1e-7) == expected
+
+
+SLEEP = call(5, "changeDynamics", {"$": 2}, -1, activationState=8)
+HEAVIER = call(6, "changeDynamics", {"$": 2}, -1, mass=2)
+SUBSTEPS = call(7, "setPhysicsEngineParameter", numSubSteps=2)
+
+
+@pytest.mark.parametrize(
+    ("calls", "phase", "expected"),
+    [
+        ([SUBSTEPS, BOX, SLEEP, STEP, HEAVIER], "free", True),
+        ([SUBSTEPS, BOX, SLEEP, STEP, HEAVIER], "contact", False),
+        ([SUBSTEPS, BOX, HEAVIER, SLEEP, STEP], "free", False),
+        ([SUBSTEPS, BOX, STEP, HEAVIER], "free", False),
+        ([BOX, SLEEP, STEP, HEAVIER], "free", False),
+    ],
+)
+def test_what_sleeps_keeps_its_weight(calls: list[Call], phase: str, expected: bool):
+    assert is_stated(calls, "base.0.0", 1e-6, phase) == expected

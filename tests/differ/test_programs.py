@@ -169,3 +169,16 @@ def test_known_differences_are_stated():
     pages = [ROOT / "docs" / "differences.md", *sorted((ROOT / "docs" / "differences").glob("*.md"))]
     text = " ".join(" ".join(page.read_text(encoding="utf-8") for page in pages).split())
     assert [known.says for known in KNOWN if " ".join(known.says.split()) not in text] == []
+
+
+@pytest.mark.parametrize(("side", "beyond"), [(1, 1e-14), (0, 0.0), (-1, -1e-14)])
+def test_joints_at_limits_are_put_to_one_side(side: int, beyond: float):
+    calls = [
+        call(0, "loadURDF", "laikago/laikago_toes_limits.urdf"),
+        call(1, "resetJointState", {"$": 0}, 0, 0.25, 0.5),
+        call(2, "@nudge", 1e-14, 0, side),
+        call(3, "getJointStates", {"$": 0}, [0, 2]),
+    ]
+    hip, knee = list(perform(calls, pybullet_data.getDataPath()))[3][1]
+    assert hip[:2] == [0.25, 0.5]
+    assert knee[:2] == [beyond, 0.0]

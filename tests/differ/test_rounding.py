@@ -6,7 +6,12 @@ from collections.abc import Callable, Sequence
 
 import pytest
 from tests.differ.test_programs import call, outcome
-from tools.differ.causes.rounding import MEMORY, ROUNDING, doubted_by_pybullet
+from tools.differ.causes.rounding import (
+    MEMORY,
+    ORDER_OF_SHAPES,
+    ROUNDING,
+    doubted_by_pybullet,
+)
 from tools.differ.compare import Difference
 from tools.differ.pair import ROOT, Outcome
 from tools.differ.programs import Call
@@ -76,8 +81,74 @@ def test_pybullet_is_asked_again(elsewhere: float, afresh: float, phase: str, ex
     assert said == expected
 
 
+def at_a_limit(resets: float, beyond: float) -> Callable[[Sequence[Call]], Outcome]:
+    """Answers that change by so much if joints at limits are reset, and if they are put beyond them."""
+
+    def answer(calls: Sequence[Call]) -> Outcome:
+        nudges = [one["a"] for one in calls if one["f"] == "@nudge"]
+        changes = [resets + (beyond if side == 1 else 0.0) for _, _, side in nudges]
+        found = falls(1.0 + sum(changes), touches=False)
+        # Each has a result of its own, before that of the step.
+        found["results"][2:2] = [["ok", None]] * len(nudges)
+        return found
+
+    return answer
+
+
+@pytest.mark.parametrize(
+    ("resets", "beyond", "expected"),
+    [(0.0, 0.0, None), (0.0, 3e-3, ROUNDING), (0.0, 3e-4, None), (3e-3, 3e-3, None)],
+)
+def test_joints_at_limits_are_put_on_both_sides(resets: float, beyond: float, expected: str | None):
+    place = Place("base.0.1", 1.0, 1.004, 2e-3)
+    said = doubted_by_pybullet(
+        Fake(at_a_limit(resets, beyond)),
+        Fake(lambda _: falls(1.0, touches=False)),
+        PROGRAM,
+        falls(1.0, touches=False),
+        falls(1.004, touches=False),
+        Difference(3, "@probe", place, "free"),
+    )
+    assert said == expected
+
+
+def test_differences_near_the_bound_are_seen_in_other_answers_of_pybullet():
+    error = 1.2e-6
+    place = Place("base.0.1", 1.0, 1.0 + 2 * error, error)
+    said = doubted_by_pybullet(
+        Fake(chaotic(1.4 * error, touches=True)),
+        Fake(lambda _: falls(1.0)),
+        PROGRAM,
+        falls(1.0),
+        falls(1.0 + 2 * error),
+        Difference(3, "@probe", place, "contact"),
+    )
+    assert said == ROUNDING
+
+
+@pytest.mark.parametrize(
+    ("reversed_says", "kinds", "expected"),
+    [(1.004, [3, 2], ORDER_OF_SHAPES), (1.003, [3, 2], None), (1.0, [3, 2], None), (1.004, [3], None)],
+)
+def test_shapes_of_a_link_are_taken_in_the_opposite_order(
+    reversed_says: float, kinds: list[int], expected: str | None
+):
+    program = [call(0, "createCollisionShapeArray", shapeTypes=kinds), *PROGRAM[1:]]
+    place = Place("base.0.1", 1.0, 1.004, 2e-3)
+    said = doubted_by_pybullet(
+        Fake(lambda calls: falls(reversed_says if calls[0]["k"]["shapeTypes"] == [2, 3] else 1.0)),
+        Fake(lambda _: falls(1.0)),
+        program,
+        falls(1.0),
+        falls(1.004),
+        Difference(3, "@probe", place, "contact"),
+    )
+    assert said == expected
+
+
 def test_what_pybullet_doubts_is_stated():
     pages = (ROOT / "docs" / "differences" / "contact.md", ROOT / "docs" / "conformance" / "method.md")
     text = " ".join(" ".join(page.read_text(encoding="utf-8").split()) for page in pages)
     assert ROUNDING in text
+    assert ORDER_OF_SHAPES in text
     assert MEMORY in text

@@ -77,8 +77,22 @@ class _Lost(Exception):
     """PyBullet's state is NaN."""
 
 
-def compare(calls: Sequence[Call], theirs: Outcome, ours: Outcome) -> list[Difference]:
-    """All differences between the results of a program, as far as they can be compared."""
+def compare(
+    calls: Sequence[Call],
+    theirs: Outcome,
+    ours: Outcome,
+    strict: float = STRICT,
+    after_contact: float = AFTER_CONTACT,
+) -> list[Difference]:
+    """All differences between the results of a program, as far as they can be compared.
+
+    Args:
+        calls: The program.
+        theirs: PyBullet's results.
+        ours: Carom's.
+        strict: The greatest difference of numbers that agree, before the first contact.
+        after_contact: The same after it.
+    """
     found: list[Difference] = []
     phase, since = "start", 0
     a, b = theirs["results"], ours["results"]
@@ -93,7 +107,7 @@ def compare(calls: Sequence[Call], theirs: Outcome, ours: Outcome) -> list[Diffe
             if since > STEPS_AFTER_CONTACT or min(x[1][2], y[1][2]) < DEEP:
                 return found
         try:
-            place = difference(function, x, y, AFTER_CONTACT if phase == "contact" else STRICT)
+            place = difference(function, x, y, after_contact if phase == "contact" else strict)
         except _Lost:
             return found
         if place:

@@ -16,11 +16,14 @@ import select
 import signal
 import sys
 import time
+from random import Random
 
 import pybullet as p
 
 MAX_JOINTS = 64
 """So many joints of a body are in `@probe`."""
+AT_LIMIT = 5e-15
+"""So near to a limit a joint is at it, as far as rounding lets one tell."""
 
 
 def serve():
@@ -197,7 +200,27 @@ def reach(body, links, answer, targets, turn):
     return [far, angle, list(answer)]
 
 
-OWN = {"@probe": probe, "@reach": reach}
+def nudge(distance, seed, side):
+    """Put joints that are at a limit so far to one side of it.
+
+    They stay where they are if `side` is 0; they lie beyond the limit if it is 1, before it if it is -1, and
+    each on either side, as the seed has it, if it is null. Each joint is reset in any case.
+    """
+    random = Random(seed)
+    for body in sorted(p.getBodyUniqueId(place) for place in range(p.getNumBodies())):
+        for joint in range(p.getNumJoints(body)):
+            said = p.getJointInfo(body, joint)
+            if said[2] not in (p.JOINT_REVOLUTE, p.JOINT_PRISMATIC):
+                continue
+            position, velocity = p.getJointState(body, joint)[:2]
+            lower, upper = said[8:10]
+            if lower <= upper:
+                beyond = (abs(position - upper) <= AT_LIMIT) - (abs(position - lower) <= AT_LIMIT)
+                position += beyond * distance * (random.choice((-1, 1)) if side is None else side)
+            p.resetJointState(body, joint, position, velocity)
+
+
+OWN = {"@probe": probe, "@reach": reach, "@nudge": nudge}
 
 if __name__ == "__main__":
     serve()

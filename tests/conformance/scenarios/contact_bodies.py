@@ -286,3 +286,21 @@ def _both(p: Any, bodies: tuple[int, int]) -> dict[str, Any]:
         "orientation": [p.getBasePositionAndOrientation(body)[1] for body in bodies],
         "velocity": [p.getBaseVelocity(body)[0] for body in bodies],
     }
+
+
+@scenario(tolerance=1e-9)
+def rolling_friction_yields_with_global_cfm(p: Any) -> dict[str, Any]:
+    """A brick that leans into a plane: what yields are its rolling and spinning friction, too."""
+    series: dict[str, Any] = {}
+    for name, friction in (("rolling", {"rollingFriction": 0.01}), ("spinning", {"spinningFriction": 0.01})):
+        p.resetSimulation()
+        p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.1, 0.05, 0.05])
+        turn = p.getQuaternionFromEuler([0.6, 0.9, 0.4])
+        brick = p.createMultiBody(3, shape, basePosition=[0, 0, 0.119], baseOrientation=turn)
+        p.changeDynamics(brick, -1, **friction)
+        p.changeDynamics(brick, -1, localInertiaDiagonal=[0.09, 0.01, 0.26])
+        p.setPhysicsEngineParameter(globalCFM=0.01)
+        p.resetBaseVelocity(brick, [0, 0, 0], [0.1, 0.2, 0.3])
+        series |= under(name, simulate(p, 2 / 240, lambda brick=brick: base_motion(p, brick)))
+    return series

@@ -26,6 +26,21 @@ def _boxes(p: Any, turn: float, places: Sequence[tuple[float, float, float]]) ->
     return bodies
 
 
+def _hinge(p: Any, shape: int) -> dict[str, Any]:
+    """What `createMultiBody` takes for a link on a hinge."""
+    return {
+        "linkCollisionShapeIndices": [shape],
+        "linkVisualShapeIndices": [-1],
+        "linkPositions": [[0.1, -0.4, 0.5]],
+        "linkOrientations": [[0, 0, 0, 1]],
+        "linkInertialFramePositions": [[0, 0, 0]],
+        "linkInertialFrameOrientations": [[0, 0, 0, 1]],
+        "linkParentIndices": [0],
+        "linkJointTypes": [p.JOINT_REVOLUTE],
+        "linkJointAxis": [[0, 1, 0]],
+    }
+
+
 def _places(p: Any, bodies: Sequence[int]) -> dict[str, Any]:
     return {f"place of {i}": p.getBasePositionAndOrientation(body)[0] for i, body in enumerate(bodies)}
 
@@ -172,3 +187,21 @@ def kukas_side_by_side_reach(p: Any) -> dict[str, Any]:
         }
 
     return simulate(p, 1.6, observe, control, stride=24)
+
+
+@scenario(tolerance=1e-9)
+def what_is_tied_to_a_still_link_is_an_island_of_its_own(p: Any) -> dict[str, Any]:
+    """A box hangs on the base of a cart on rails, and on its cart: only the latter makes them one island."""
+    series: dict[str, Any] = {}
+    for name, link in (("base", -1), ("cart", 0)):
+        p.resetSimulation()
+        p.setGravity(1, -2, -9.8)
+        rail = load_asset(p, "cartpole.urdf")
+        shape = p.createCollisionShape(p.GEOM_BOX, halfExtents=[HALF, HALF, HALF])
+        box = p.createMultiBody(10, shape, basePosition=[2, -2, 3], linkMasses=[5], **_hinge(p, shape))
+        p.createConstraint(rail, link, box, 0, p.JOINT_FIXED, [0, 0, 1], [0.4, 0.3, 0], [0.9, 0.9, 0.4])
+        observed = simulate(
+            p, 1 / 240, lambda rail=rail: {"joints": [state[0] for state in p.getJointStates(rail, (0, 1))]}
+        )
+        series |= under(name, observed)
+    return series

@@ -250,3 +250,18 @@ def fixed_bases_with_a_velocity_sleep(p: Any) -> dict[str, Any]:
         _fall_asleep(p, body)
         series |= under(f"falls, mass {mass}", simulate(p, 0.05, lambda body=body: _whole_motion(p, body)))
     return series
+
+
+@scenario(tolerance=1e-6)
+def links_that_sleep_are_reported_where_they_are(p: Any) -> dict[str, Any]:
+    """`getLinkState` of a body that moves tells of the start of a step, but where it fell asleep."""
+    series: dict[str, Any] = {}
+    for substeps in (1, 2):
+        p.resetSimulation()
+        p.setGravity(1, -2, -9.8)
+        p.setPhysicsEngineParameter(numSubSteps=substeps)
+        body = _slider(p, 1.0)
+        _fall_asleep(p, body)
+        seen = simulate(p, 4 / 240, lambda body=body: {"link": p.getLinkState(body, 0)[0]})
+        series |= under(f"{substeps} substeps", seen)
+    return series

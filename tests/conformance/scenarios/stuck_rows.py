@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..scenario import scenario, simulate, under
+from ..scenario import load_asset, scenario, simulate, under
 
 SLIDE, TURN = 1, 0
 FIXED = 4
@@ -246,3 +246,16 @@ def constraints_of_freed_bodies(p: Any) -> dict[str, Any]:
                 } | simulate(p, 0.03, lambda body=body: _motion(p, body))
                 results |= under(f"{name}, link {link}, masses {[loaded, *masses]}", case)
     return results
+
+
+@scenario(tolerance=1e-9)
+def inner_sweeps_go_on_after_stuck_rows(p: Any) -> dict[str, Any]:
+    """Points of a pendulum in a plane are tied where they cannot be, with two inner sweeps in each."""
+    pendulum = load_asset(p, "pendulum5.urdf")
+    p.setPhysicsEngineParameter(numNonContactInnerIterations=2)
+    for links, pivots in (((1, 2), ([0.3, 0.3, 0.3], [0, 1.3, 2.2])), ((0, 1), ([0, -0.3, 0], [0, -1, 4]))):
+        p.createConstraint(pendulum, links[0], pendulum, links[1], p.JOINT_POINT2POINT, [0, 0, 1], *pivots)
+    joints = range(p.getNumJoints(pendulum))
+    return simulate(
+        p, 1 / 240, lambda: {"joints": [state[0] for state in p.getJointStates(pendulum, joints)]}
+    )

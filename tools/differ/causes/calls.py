@@ -76,6 +76,8 @@ _NO_ROTATION = 1e-6
 LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
 _TOO_FAR, _ROUNDED = 2e-4, 1e-9
+# How far PyBullet's normals are off those of the planes through its own points, 1.7e-4 or less.
+_NEARLY_NORMAL = 2e-4
 # What PyBullet's search leaves in the normal and distance of faces that are parallel.
 _OPPOSITE = 1e-6
 # Sizes of files pass through single precision.
@@ -207,6 +209,17 @@ def is_near_what_no_rotation_turned(seen: Seen) -> bool:
     return any(body in seen.call["a"] for body in _turned_by_no_rotation(seen, 0))
 
 
+def holds_a_ball_joint_by_no_rotation(seen: Seen) -> bool:
+    """Whether a fixed base with a spherical joint was reset so, at any time: no step makes it a rotation."""
+    fixed = {
+        call["id"]
+        for call in seen.before
+        if (call["f"] == "createMultiBody" and call["a"][:1] == [0]) or call["k"].get("useFixedBase")
+    }
+    turned = {body["$"] for body in _turned_by_no_rotation(seen, len(seen.before)) if isinstance(body, dict)}
+    return any(body in fixed & turned for body, _ in balls(seen))
+
+
 def _turned_by_no_rotation(seen: Seen, steps: int) -> Iterator[Any]:
     """The bodies that were reset to a quaternion whose length is not 1, at most so many steps ago."""
     for call in reversed(seen.before):
@@ -326,6 +339,14 @@ def is_a_little_before(seen: Seen) -> bool:
     apart = abs(sum(part * normal for part, normal in zip(further, ours[4], strict=True)))
     same = max(abs(a - b) for a, b in zip(theirs[4], ours[4], strict=True)) < _SAME_FACE
     return theirs[2] < ours[2] and apart < _MARGIN and same
+
+
+def hits_the_same_face(seen: Seen) -> bool:
+    """Whether a ray ends at the same point in both, and only the normal there is a little turned."""
+    theirs, ours = seen.difference.place[1:3]
+    apart = max(abs(a - b) for a, b in zip(theirs[3], ours[3], strict=True))
+    turned = max(abs(a - b) for a, b in zip(theirs[4], ours[4], strict=True))
+    return max(abs(theirs[2] - ours[2]), apart) < _ROUNDED and turned < _NEARLY_NORMAL
 
 
 def _is_fine(call: Call) -> bool:

@@ -33,6 +33,8 @@ from tools.differ.causes.calls import (
     goes_on_with_masses,
     has_joints,
     hits_another_at_the_same_place,
+    hits_the_same_face,
+    holds_a_ball_joint_by_no_rotation,
     holds_half_a_turn,
     is_a_little_before,
     is_a_little_nearer,
@@ -61,6 +63,7 @@ from tools.differ.causes.calls import (
 )
 from tools.differ.causes.poses import has_ends_that_stand_out, looks_from_within, starts_half_a_turn_away
 from tools.differ.causes.rows import (
+    changes_mass_of_what_sleeps,
     drives_before_restoring,
     drives_from_a_limit,
     fixes_what_touches_itself,
@@ -68,6 +71,7 @@ from tools.differ.causes.rows import (
     renumbers_islands,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
+    touches_its_parents_rigidly,
     touches_itself_rigidly,
 )
 from tools.differ.compare import Difference
@@ -172,6 +176,10 @@ KNOWN: tuple[Known, ...] = (
         lambda seen: seen.differs("rayTest fraction", "rayTestBatch fraction") and is_a_little_before(seen),
     ),
     Known(
+        "are off those of the faces they hit",
+        lambda seen: seen.differs("rayTest normal", "rayTestBatch normal") and hits_the_same_face(seen),
+    ),
+    Known(
         "Those thinner than 4 cm are nearer in PyBullet",
         lambda seen: seen.differs("getClosestPoints distance") and is_as_thick_as_a_margin(seen),
     ),
@@ -261,8 +269,10 @@ KNOWN: tuple[Known, ...] = (
         "constraints, and the motors of spherical joints, to hold them there",
         lambda seen: (
             seen.differs("@probe")
-            and (seen.has("createConstraint") or bool(balls(seen)))
-            and turns_by_no_rotation(seen, 1)
+            and (
+                ((seen.has("createConstraint") or bool(balls(seen))) and turns_by_no_rotation(seen, 1))
+                or holds_a_ball_joint_by_no_rotation(seen)
+            )
         ),
     ),
     Known(
@@ -280,6 +290,18 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "and whose base `changeDynamics` has fixed",
         lambda seen: seen.differs("@probe") and fixes_what_touches_itself(seen),
+    ),
+    Known(
+        "with a fixed base and their parents",
+        lambda seen: seen.differs("@probe") and touches_its_parents_rigidly(seen),
+    ),
+    Known(
+        "keeps the weight it had",
+        lambda seen: (
+            seen.difference.phase == "free"
+            and seen.differs("@probe", "getLinkState")
+            and changes_mass_of_what_sleeps(seen)
+        ),
     ),
     Known(
         "In PyBullet motors keep the targets they have",

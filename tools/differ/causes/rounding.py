@@ -3,6 +3,12 @@
 After a contact bodies are put 1e-12 m elsewhere. In free motion it is 1e-14 m, a few times the rounding of a
 place: a difference of 1e-9 that this makes was made 50,000 times as large by what came after, as where joints
 lie exactly at their limits, rows pull in opposite directions, or a spinning body is about to tumble.
+
+Contacts of several shapes of one link come in the order of a tree there: a program with such shapes is also
+performed with them in the opposite order, and if Carom agrees then, that order was all.
+
+Joints that are at a limit are also put 1e-14 beyond it or before it, before each step. Whether such a limit
+has a row is left to rounding, which in PyBullet is always the same until something changes it.
 """
 
 from __future__ import annotations
@@ -12,15 +18,18 @@ from collections.abc import Sequence
 from random import Random
 from typing import Any, Protocol
 
-from tools.differ.compare import Difference, compare
+from tools.differ.compare import AFTER_CONTACT, STRICT, Difference, compare
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
 
 ROUNDING = "There motion agrees to rounding until rounding decides"
+ORDER_OF_SHAPES = "except those of several shapes of one link"
 MEMORY = "Some answers of PyBullet depend on what earlier commands left in its memory"
 _ELSEWHERE = {"free": 1e-14, "contact": 1e-12}
 _UNTURNED = [0.0, 0.0, 0.0, 1.0]
 _TRIALS, _SHARE = 4, 0.5
+# Whether joints at a limit are put beyond it, before it, or each to either side.
+_AT_LIMIT, _AS_IT_IS, _SIDES = 1e-14, 0, (1, -1, None, None)
 
 
 class Performer(Protocol):
@@ -59,9 +68,65 @@ def doubted_by_pybullet(
         return None
     for trial in range(_TRIALS):
         moved = _performed(pybullet, _elsewhere(calls, _ELSEWHERE[difference.phase], Random(trial)))
-        if _has(compare(calls, theirs, moved), difference, _SHARE * difference.place.error):
+        if _is_as_large(calls, theirs, moved, difference):
             return ROUNDING
-    return None
+    if _changes_at_limits(pybullet, calls, theirs, difference):
+        return ROUNDING
+    turned = _with_shapes_reversed(calls)
+    if difference.phase != "contact" or turned == calls:
+        return None
+    # Carom has to agree with what PyBullet says of the shapes in their other order.
+    differs = _has(compare(calls, _performed(pybullet, turned), ours), difference, 0.0)
+    return None if differs else ORDER_OF_SHAPES
+
+
+def _with_shapes_reversed(calls: Sequence[Call]) -> list[Call]:
+    """The program with the shapes of each `createCollisionShapeArray` in the opposite order."""
+    found = copy.deepcopy(list(calls))
+    for call in found:
+        if call["f"] == "createCollisionShapeArray":
+            call["k"] = {
+                name: value[::-1] if isinstance(value, list) else value for name, value in call["k"].items()
+            }
+    return found
+
+
+def _changes_at_limits(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, difference: Difference
+) -> bool:
+    """Whether PyBullet's answer changes as joints at limits are beyond or before them, and only then."""
+    if _is_as_large(calls, theirs, _at_limits(pybullet, calls, _AS_IT_IS, 0), difference):
+        return False
+    return any(
+        _is_as_large(calls, theirs, _at_limits(pybullet, calls, side, seed), difference)
+        for seed, side in enumerate(_SIDES)
+    )
+
+
+def _at_limits(pybullet: Performer, calls: Sequence[Call], side: int | None, seed: int) -> Outcome:
+    """What comes of a program if joints at limits are put to one side of them before each step."""
+    made: list[Call] = []
+    places: list[int] = []
+    for call in calls:
+        if call["f"] == "stepSimulation":
+            made.append({"f": "@nudge", "a": [_AT_LIMIT, seed, side], "k": {}, "id": -1})
+        places.append(len(made))
+        made.append(call)
+    outcome = _performed(pybullet, made)
+    results = outcome["results"]
+    kept = [results[place] for place in places if place < len(results)]
+    return {"results": kept, "died": outcome["died"]}
+
+
+def _is_as_large(calls: Sequence[Call], theirs: Outcome, moved: Outcome, difference: Difference) -> bool:
+    """Whether two answers of PyBullet differ by much of a difference, there or before."""
+    least = _SHARE * difference.place.error
+    found = (
+        compare(calls, theirs, moved, strict=min(least, STRICT))
+        if difference.phase == "free"
+        else compare(calls, theirs, moved, after_contact=min(least, AFTER_CONTACT))
+    )
+    return _has(found, difference, least)
 
 
 def _performed(pybullet: Performer, calls: list[Call]) -> Outcome:

@@ -22,7 +22,9 @@ _ROBOTS = 2
 _STILL = 1e-9
 _MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 _INERTIA_FROM_FILE = 2
+_SLEEP = 8
 _RENUMBERS = 131072 | 524288
+_TOUCHES_PARENTS = 8192
 # Files whose mass matrices lack full rank with this flag: in PyBullet the least eigenvalue is at most 1e-16
 # of the greatest. Those of ant, hopper, walker2d, reacher and the pendulums have full rank.
 _DEPENDENT = tuple(
@@ -148,6 +150,30 @@ def fixes_what_touches_itself(seen: Seen) -> bool:
         call["f"] == "changeDynamics" and call["k"].get("mass") == 0 and call["a"][0].get("$") in touching
         for call in seen.before
     )
+
+
+def touches_its_parents_rigidly(seen: Seen) -> bool:
+    """Whether a body with a fixed base and links that may touch their parents moves otherwise."""
+    said = re.match(r"[a-z]+\.(\d+)\.", seen.difference.place.field)
+    body = None if said is None else maker_of(seen, int(said[1]))
+    if seen.difference.phase != "contact" or body is None or not body["f"].startswith(MAKE):
+        return False
+    flags = body["k"].get("flags", 0)
+    fixed = body["k"].get("useFixedBase") or (body["f"] == "createMultiBody" and body["a"][:1] == [0])
+    return bool(fixed and flags & TOUCHES_ITSELF and flags & _TOUCHES_PARENTS)
+
+
+def changes_mass_of_what_sleeps(seen: Seen) -> bool:
+    """Whether a body that was told to sleep was given another mass later, with several substeps in a step."""
+    several, asleep = False, list[Any]()
+    for call in seen.before:
+        several |= call["k"].get("numSubSteps", 0) > 1
+        if call["f"] == "changeDynamics":
+            if "mass" in call["k"] and call["a"][0] in asleep:
+                return several
+            if call["k"].get("activationState", 0) & _SLEEP:
+                asleep.append(call["a"][0])
+    return False
 
 
 def drives_before_restoring(seen: Seen) -> bool:

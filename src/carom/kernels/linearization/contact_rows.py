@@ -135,7 +135,7 @@ def add_normal(
         free = steps.velocity[(3 * place + 1) * n + dof]
         approach -= steps.jacobian[row * n + dof] * free
         steps.side[row * space.columns + dof] -= touch.gain * parting(touch, steps, place * n + dof)
-    add_yielding(shapes, space, steps, place, world, touch, CONTACT_ROW, row, Int32(1))
+    add_yielding(settings, shapes, space, steps, place, world, touch, CONTACT_ROW, row, Int32(1))
     restitution = combined_restitution(shapes, world, touch.link_a, touch.link_b)
     if restitution > 0.0 and approach >= settings.restitution_threshold:
         note_problem(steps, place, BOUNCE, touch.known_as)

@@ -77,7 +77,7 @@ def add_mass_changes(
         return real(1.0)
     n = space.dofs
     angular = wp.where(kind == CONTACT_FRICTION, Int32(0), Int32(1))
-    law = law_of_row(touch, kind)
+    law = law_of_row(settings, touch, kind)
     inverse = law[1] + write_mass_changes(model, state, space, steps, place, world, row)
     add_turning_changes(space, steps, place, touch, number, angular)
     change = place * n * space.most_rows + n
@@ -127,7 +127,7 @@ def slide(
         steps.beta[entry + 1] = y / size
         steps.beta[first * room + normal - place * room] = -friction
         # ... and opposite to the change of the impulses that the rows still ask for.
-        law = law_of_row(touch, kind)
+        law = law_of_row(settings, touch, kind)
         asked, asked_of_second = law[1] * x, law[1] * y
         for index in range(touch.reach):
             dof = steps.reach[place * n + index]
@@ -225,7 +225,7 @@ def add_friction_rows(
     angular = wp.where(kind == CONTACT_FRICTION, Int32(0), Int32(1))
     alone = kind == SPINNING_FRICTION
     direction = wp.where(alone, Int32(0), Int32(1))
-    kept = law_of_row(touch, kind)[0]
+    kept = law_of_row(settings, touch, kind)[0]
     first = add_row_of_links(settings, space, steps, place, touch, kind, direction, angular, x, kept)
     count = Int32(1)
     if not alone:
@@ -253,4 +253,4 @@ def add_friction_rows(
         )
         if x != 0.0 or y != 0.0:
             set_friction(shapes, space, steps, world, touch, kind, first, push)
-    add_yielding(shapes, space, steps, place, world, touch, kind, first, count)
+    add_yielding(settings, shapes, space, steps, place, world, touch, kind, first, count)

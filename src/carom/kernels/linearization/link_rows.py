@@ -5,6 +5,7 @@ import warp as wp
 from carom.kernels.linearization.dof_motion import follows
 from carom.kernels.linearization.matrices import clear
 from carom.kernels.linearization.rows import add_row
+from carom.kernels.solver.contact_terms import torsion_softness
 from carom.kernels.structs import Settings, StepBatch, StepSpace, TouchingLinks
 from carom.kernels.types import Int32, Vector3, Vector4, func, real
 from carom.layouts.linearization import CONTACT_FRICTION, CONTACT_ROW, MOVES_A, MOVES_B, ROW_HOLDS
@@ -18,10 +19,10 @@ def direction_of(touch: TouchingLinks, number: Int32) -> Vector3:
 
 
 @func
-def law_of_row(touch: TouchingLinks, kind: Int32) -> Vector4:
-    """How rows of a kind yield, see `TouchingLinks`; those of rolling and spinning friction are rigid."""
-    rigid = Vector4(0.0, 0.0, 0.0, 0.0)
-    sideways = wp.where(kind == CONTACT_FRICTION, touch.lateral_law, rigid)
+def law_of_row(settings: Settings, touch: TouchingLinks, kind: Int32) -> Vector4:
+    """How rows of a kind yield, see `TouchingLinks`; for rolling and spinning friction the world says it."""
+    about = Vector4(0.0, torsion_softness(settings), 0.0, 0.0)
+    sideways = wp.where(kind == CONTACT_FRICTION, touch.lateral_law, about)
     return wp.where(kind == CONTACT_ROW, touch.normal_law, sideways)
 
 

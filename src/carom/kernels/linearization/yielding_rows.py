@@ -115,6 +115,7 @@ def set_friction(
 
 @func
 def add_yielding(
+    settings: Settings,
     shapes: Shapes,
     space: StepSpace,
     steps: StepBatch,
@@ -133,7 +134,7 @@ def add_yielding(
     n = space.dofs
     room = space.most_rows
     number = first - place * room
-    law = law_of_row(touch, kind)
+    law = law_of_row(settings, touch, kind)
     for row in range(first, first + count):
         for other in range(first, first + count):
             entry = row * room + number + other - first

@@ -10,6 +10,7 @@ from carom.kernels.solver.contact_terms import (
     keep_contact_impulse,
     lateral_change,
     normal_change,
+    torsion_softness,
 )
 from carom.kernels.solver.pair_rows import write_pair_jacobian, write_row
 from carom.kernels.solver.warm_starting import NOT_RESTING
@@ -79,6 +80,8 @@ def add_contact_rows(
         if place == rows[LATERAL_ROW] or place == rows[LATERAL_ROW] + 1:
             change = lateral_change(settings, terms, velocity, place - row, linear)
             softness = terms.lateral_softness + 0.0
+        elif place != row and terms.ignored == 0:
+            softness = torsion_softness(settings)
         lower = -coefficient
         upper = coefficient
         if place == row:

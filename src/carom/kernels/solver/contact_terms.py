@@ -24,6 +24,12 @@ def contact_damping(shapes: Shapes, world: Int32, link: Int32) -> real:
 
 
 @func
+def torsion_softness(settings: Settings) -> real:
+    """Softness of rolling and spinning friction: as in Bullet that of the world, per impulse of a step."""
+    return settings.contact_softness * settings.time_step
+
+
+@func
 def contact_stiffness(settings: Settings, shapes: Shapes, world: Int32, a: Int32, b: Int32):
     """Softness and error reduction of the normal row between two links."""
     stiffness_a = shapes.link_stiffness[world, a]

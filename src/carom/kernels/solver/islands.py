@@ -9,6 +9,7 @@ import warp as wp
 from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.activity import (
     can_move,
+    counts_as_moving,
     is_asleep,
     is_in_force,
     is_left_out,
@@ -36,11 +37,20 @@ def unite(model: Model, state: State, world: Int32, a: Int32, b: Int32):
 
 
 @func
+def may_unite(model: Model, link: Int32) -> bool:
+    """Whether constraints of a link may unite its tree with others: not those of one that is still."""
+    return link_moves(model, link) or counts_as_moving(model, link)
+
+
+@func
 def unite_tied(settings: Settings, model: Model, state: State, users: UserConstraints, world: Int32):
-    """Put trees that user constraints join into one island."""
+    """Put trees that user constraints join into one island; as in Bullet, not by a link that is still."""
     for user in range(settings.user_count):
-        if is_in_force(state, users, world, user):
-            unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
+        a = users.user_link_a[user]
+        b = users.user_link_b[user]
+        if is_in_force(state, users, world, user) and a >= 0 and b >= 0:
+            if may_unite(model, a) and may_unite(model, b):
+                unite(model, state, world, users.user_tree_a[user], users.user_tree_b[user])
 
 
 @func

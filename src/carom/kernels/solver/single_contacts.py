@@ -24,6 +24,7 @@ from carom.kernels.solver.contact_terms import (
     keep_contact_impulse,
     lateral_change,
     normal_change,
+    torsion_softness,
 )
 from carom.kernels.solver.pair_rows import tree_blocks
 from carom.kernels.solver.rigid_manifold_rows import row_direction
@@ -541,11 +542,12 @@ def write_torsion_row(
         tree = terms.ends[2]
         axis = -axis
         body += 1
+    softness = torsion_softness(settings)
     if terms.ignored != 0:
-        inverse_mass = real(0.0)
+        inverse_mass, softness = real(0.0), real(0.0)
     # A drift is along the surface, so there is none about an axis.
     change = friction_change(settings, velocity + carried, terms.drift, Vector3(0.0, 0.0, 0.0))
-    write_numbers_of_single(pair_rows, world, second, row, inverse_mass, 0.0, change)
+    write_numbers_of_single(pair_rows, world, second, row, inverse_mass, softness, change)
 
 
 @func
@@ -567,7 +569,7 @@ def write_twisting_contact(
     pair_rows.single_contact[world, second] = contact
     pair_rows.single_place[world, second] = pair_rows.single_place[world, single]
     pair_rows.single_impulse[world, second] = Vector4(0.0, 0.0, 0.0, terms.friction[1])
-    pair_rows.single_softness[world, second] = real(0.0)
+    pair_rows.single_softness[world, second] = torsion_softness(settings)
     pair_rows.single_normal[world, second].friction = terms.friction[2]
     row = Int32(0)
     while row < 3:

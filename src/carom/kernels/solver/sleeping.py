@@ -8,6 +8,7 @@ active, and wakes up when one is. As in Bullet, neither forces nor motors wake a
 import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet
+from carom.kernels.dynamics.kinematics import forward_kinematics
 from carom.kernels.maths.union_find import find_root
 from carom.kernels.solver.activity import is_absent, link_moves, squared_motion
 from carom.kernels.solver.islands import unite, unite_tied
@@ -87,6 +88,9 @@ def settle_kernel(
         activity = state.tree_activity[world, tree]
         if activity != ACTIVE and activity != ABSENT and has_moving_shapes(model, shapes, tree):
             if pair_rows.tree_awake[world, find_root(state.tree_island, world, tree)] == 0:
+                if activity != ASLEEP:
+                    # From now on its links are reported where they are, and no longer as a substep starts.
+                    forward_kinematics(model, state, state.link_pose, world, tree)
                 state.tree_activity[world, tree] = ASLEEP
             elif activity == ASLEEP:
                 state.tree_activity[world, tree] = WOKEN

@@ -127,7 +127,7 @@ def visit_sweep(
     while inner < settings.inner_iterations:
         inner += 1
         residual = sweep_over_visits(scratch, pair_rows, world, visits, sweep)
-        if residual == 0.0:
+        if residual == 0.0 and not has_stuck_visits(scratch, pair_rows, world, visits):
             # No row has changed, so further inner sweeps would not change any.
             inner = settings.inner_iterations
     return residual
