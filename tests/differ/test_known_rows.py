@@ -158,3 +158,73 @@ def test_motors_drive_against_limits_that_are_hardly_reached(
     calls = [call(0, "loadURDF", made), call(1, "setJointMotorControl2", {"$": 0}, driven, 0), STEP, PROBE]
     difference = Difference(3, "@probe", Place(field, *values, 4e-3), "free")
     assert (statement(calls, difference) is not None) == expected
+
+
+TREE = {"linkJointTypes": [0, 4, 4, 4], "linkParentIndices": [0, 1, 0, 3]}
+
+
+@pytest.mark.parametrize(
+    ("robot", "links", "expected"),
+    [
+        # Links with joints of their own are numbered as they are given here, and after their parents there.
+        (call(1, "createMultiBody", 0, flags=8, **TREE), (0, 1), True),
+        (call(1, "createMultiBody", 0, flags=8, **TREE), (-1, 3), True),
+        (call(1, "createMultiBody", 0, flags=8, **TREE), (1, 2), False),
+        (call(1, "createMultiBody", 0, flags=0, **TREE), (0, 1), False),
+        (
+            call(1, "createMultiBody", 0, flags=8, linkJointTypes=[0, 0, 4], linkParentIndices=[0, 0, 1]),
+            (0, 1),
+            True,
+        ),
+        (
+            call(1, "createMultiBody", 0, flags=8, linkJointTypes=[0, 0, 4], linkParentIndices=[0, 0, 1]),
+            (0, 2),
+            False,
+        ),
+        (
+            call(
+                1,
+                "createMultiBody",
+                0,
+                flags=8 | 131072,
+                linkJointTypes=[0, 0, 4],
+                linkParentIndices=[0, 0, 1],
+            ),
+            (0, 2),
+            True,
+        ),
+        (call(1, "loadURDF", "quadruped/spirit40.urdf", flags=8 | 131072), (2, 3), True),
+        (call(1, "loadURDF", "quadruped/spirit40.urdf", flags=8 | 524288), (2, 3), False),
+        (call(1, "loadURDF", "quadruped/minitaur.urdf", flags=8 | 131072), (2, 10), True),
+        (call(1, "loadURDF", "quadruped/minitaur.urdf", flags=8 | 131072), (1, 2), False),
+        (call(1, "loadURDF", "quadruped/minitaur.urdf", flags=8), (1, 2), True),
+    ],
+)
+def test_fixed_joints_tie_links_however_they_are_numbered(
+    robot: Call, links: tuple[int, int], expected: bool
+):
+    calls = [BOX, robot, call(2, "getContactPoints")]
+    assert is_known(calls, "links", [((1, links[0]), (1, links[1]))], []) == expected
+
+
+@pytest.mark.parametrize(
+    ("asked", "missing", "expected"),
+    [
+        ({"linkIndexA": 13}, [((0, 12), (0, 13))], True),
+        ({"linkIndexA": 12}, [((0, 12), (0, 13))], True),
+        ({"linkIndexA": 11}, [((0, 12), (0, 13))], False),
+        ({}, [((0, 12), (0, 13))], False),
+        ({"linkIndexA": 13}, [((0, 12), (1, 13))], False),
+    ],
+)
+def test_contacts_of_a_body_with_itself_are_asked_for_by_either_link(
+    asked: dict[str, int], missing: list[Any], expected: bool
+):
+    calls = [ARM, call(2, "getContactPoints", bodyA={"$": 0}, **asked)]
+    assert is_known(calls, "links", [], missing) == expected
+    assert not is_known(calls, "links", missing, [])
+    (a, b) = missing[0]
+    points = [[0, a[0], b[0], a[1], b[1]], [0, 0, 1, 13, 2]]
+    second = expected and asked["linkIndexA"] == b[1]
+    assert is_known(calls, ".len", points[1:], points) == second
+    assert not is_known(calls, ".len", points, points[1:])

@@ -61,6 +61,7 @@ from tools.differ.causes.calls import (
 )
 from tools.differ.causes.poses import has_ends_that_stand_out, looks_from_within, starts_half_a_turn_away
 from tools.differ.causes.rows import (
+    asks_for_the_other_link,
     drives_before_restoring,
     drives_from_a_limit,
     fixes_what_touches_itself,
@@ -368,6 +369,7 @@ KNOWN: tuple[Known, ...] = (
             seen.differs("getContactPoints links", "getContactPoints .len") and touches_itself_rigidly(seen)
         ),
     ),
+    Known("PyBullet leaves out those where the other link does.", asks_for_the_other_link),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",
         lambda seen: (
