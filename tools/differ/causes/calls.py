@@ -107,14 +107,14 @@ def pybullet_raises(seen: Seen) -> bool:
 
 def joint_types(seen: Seen) -> dict[int, list[int]]:
     """The types of the joints of bodies, by the call that made the body."""
-    types = {call["id"]: _types_in_order(call) for call in seen.before}
+    types = {call["id"]: types_in_order(call) for call in seen.before}
     for call in seen.before:
         if call["f"] == "loadURDF":
             types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
     return types
 
 
-def _types_in_order(call: Call) -> list[int]:
+def types_in_order(call: Call) -> list[int]:
     """The types of the joints that `createMultiBody` makes, as it numbers them."""
     given = list(call["k"].get("linkJointTypes", ()))
     order = order_of_links(call)
