@@ -69,3 +69,27 @@ def test_a_link_may_turn_either_way_to_what_is_half_a_turn_away(
     ask = call(2, "calculateInverseKinematics", {"$": 0}, 1, [5, 0, 0], targetOrientation=target)
     reach = call(3, "@reach", {"$": 0}, [1], {"whole": 2}, [[5, 0, 0]], target)
     assert is_known([*before, ask, reach], "worse", [5.2, 1.5, []], [5.3, 1.9, []]) == expected
+
+
+CYLINDER, HULL = call(0, "createCollisionShape", 4), call(1, "createCollisionShape", 5, fileName="duck.obj")
+SURFACE = call(1, "createCollisionShape", 5, fileName="duck.obj", flags=1)
+
+
+@pytest.mark.parametrize(
+    ("calls", "field", "away", "expected"),
+    [
+        ([CYLINDER, HULL], ".0.5", 1e-3, True),
+        ([CYLINDER, call(1, "loadURDF", "xarm/link6.urdf")], ".0.6", 1e-3, True),
+        ([call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), HULL], ".2.5", 1e-3, True),
+        ([CYLINDER, HULL], ".0.5", 1e-2, False),
+        ([CYLINDER, HULL], ".0.7", 1e-3, False),
+        ([CYLINDER, SURFACE], ".0.5", 1e-3, False),
+        ([HULL], ".0.5", 1e-3, False),
+        ([CYLINDER], ".0.5", 1e-3, False),
+    ],
+)
+def test_the_order_of_corners_decides_where_a_cylinder_touches_a_hull(
+    calls: list[Call], field: str, away: float, expected: bool
+):
+    calls = [*calls, call(2, "getContactPoints")]
+    assert is_known(calls, field, [0.0, 0.0, 1.0], [away, 0.0, 1.0]) == expected

@@ -228,3 +228,21 @@ def test_contacts_of_a_body_with_itself_are_asked_for_by_either_link(
     second = expected and asked["linkIndexA"] == b[1]
     assert is_known(calls, ".len", points[1:], points) == second
     assert not is_known(calls, ".len", points, points[1:])
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "error", "phase", "expected"),
+    [
+        ("reacher", "velocities.1.0", 2e-6, "contact", True),
+        ("reacher", "velocities.0.0", 2e-6, "contact", False),
+        ("reacher", "base.1.0", 2e-6, "contact", False),
+        ("reacher", "velocities.1.0", 2e-3, "contact", False),
+        ("swimmer", "velocities.1.0", 2e-6, "contact", False),
+    ],
+)
+def test_arm_and_target_of_a_file_are_one_island(
+    name: str, field: str, error: float, phase: str, expected: bool
+):
+    robot = call(3, "loadMJCF", f"mjcf/{name}.xml")
+    assert is_stated([BOX, robot], field, error, phase) == expected
+    assert not is_stated([robot], field, error, phase)

@@ -22,6 +22,8 @@ from tools.differ.programs import Call
 
 _ROBOTS = 2
 _STILL = 1e-9
+_ONE_OF_ITS_OWN = "mjcf/reacher.xml"
+"""A file with two bodies whose first links, without shapes, are in one place."""
 _MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 _INERTIA_FROM_FILE = 2
 _MERGES_LINKS = 524288
@@ -168,6 +170,19 @@ def drives_from_a_limit(seen: Seen) -> bool:
 
 def _number(value: Any) -> float:
     return value[0] if isinstance(value, list) else value
+
+
+def lies_in_one_island(seen: Seen) -> bool:
+    """Whether a body of a file differs whose links without shapes are in one place, beside others."""
+    said = re.match(r"(?:positions|velocities|reactions)\.(\d+)\.", seen.difference.place.field)
+    body = maker_of(seen, int(said[1])) if said else None
+    return (
+        seen.difference.phase == "contact"
+        and seen.difference.place.error < LEFT_OVER
+        and body is not None
+        and body["a"][:1] == [_ONE_OF_ITS_OWN]
+        and any(call["f"].startswith(MAKE) and call is not body for call in seen.before)
+    )
 
 
 def fixes_what_touches_itself(seen: Seen) -> bool:
