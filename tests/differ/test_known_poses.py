@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from tests.differ.test_known import is_known
+from tests.differ.test_known import PROBE, STEP, is_known
 from tests.differ.test_programs import call
+from tools.differ.causes.known import statement
+from tools.differ.compare import Difference
 from tools.differ.programs import Call
+from tools.differ.values import Place
 
 HALF = 0.7071067811865476
 ROUND_LINK = {
@@ -93,3 +96,22 @@ def test_the_order_of_corners_decides_where_a_cylinder_touches_a_hull(
 ):
     calls = [*calls, call(2, "getContactPoints")]
     assert is_known(calls, field, [0.0, 0.0, 1.0], [away, 0.0, 1.0]) == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "deepest", "error", "phase", "expected"),
+    [
+        (CYLINDER, -0.0038, 8e-6, "contact", True),
+        (call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), -0.0038, 8e-6, "contact", True),
+        (CYLINDER, -0.0015, 8e-6, "contact", False),
+        (CYLINDER, -0.0038, 1e-3, "contact", False),
+        (CYLINDER, -0.0038, 8e-6, "free", False),
+        (call(0, "createCollisionShape", 3), -0.0038, 8e-6, "contact", False),
+    ],
+)
+def test_normals_at_edges_of_cylinders_are_of_another_search(
+    shape: Call, deepest: float, error: float, phase: str, expected: bool
+):
+    calls = [shape, call(1, "createMultiBody", 1, {"$": 0}), STEP, PROBE]
+    difference = Difference(3, "@probe", Place("base.0.2", 0.0, error, error), phase, deepest)
+    assert (statement(calls, difference) is not None) == expected

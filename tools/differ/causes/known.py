@@ -61,6 +61,7 @@ from tools.differ.causes.calls import (
 )
 from tools.differ.causes.poses import (
     has_ends_that_stand_out,
+    is_deep_at_a_cylinder,
     looks_from_within,
     starts_half_a_turn_away,
     touches_a_hull_with_a_cylinder,
@@ -379,6 +380,10 @@ KNOWN: tuple[Known, ...] = (
     Known(
         "The arm and the target of `reacher.xml`",
         lambda seen: seen.differs("@probe") and lies_in_one_island(seen),
+    ),
+    Known(
+        "normals differ by up to 3e-4 at",
+        lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
     ),
     Known("PyBullet's search ends where that order leads it", touches_a_hull_with_a_cylinder),
     Known(

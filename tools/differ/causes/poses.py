@@ -17,6 +17,7 @@ _NO_TURN = (0.0, 0.0, 0.0, 1.0)
 _PLACE = re.compile(r"\.\d+\.[56]")
 _CYLINDER, _MESH, _CONCAVE = 4, 5, 1
 _ELSEWHERE_ON_A_FACE = 3e-3
+_BOTH_MARGINS, _OF_OTHER_NORMALS = 2e-3, 3e-4
 _MOVES = ("reset", "restore", "step")
 
 
@@ -65,6 +66,16 @@ def touches_a_hull_with_a_cylinder(seen: Seen) -> bool:
         math.dist(theirs, ours) < _ELSEWHERE_ON_A_FACE
         and any(map(_makes_a_cylinder, seen.before))
         and any(map(_may_make_a_hull, seen.before))
+    )
+
+
+def is_deep_at_a_cylinder(seen: Seen) -> bool:
+    """Whether states differ by as little as normals do at edges of cylinders, deeper than both margins."""
+    return (
+        seen.difference.phase == "contact"
+        and seen.difference.deepest < -_BOTH_MARGINS
+        and seen.difference.place.error < _OF_OTHER_NORMALS
+        and any(map(_makes_a_cylinder, seen.before))
     )
 
 
