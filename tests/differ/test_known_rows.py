@@ -22,11 +22,11 @@ DRIVE = call(8, "setJointMotorControl2", {"$": 0}, 0, 0)
 REMOVE = call(4, "removeBody", {"$": 2})
 
 
-def is_stated(calls: list[Call], field: str, error: float, phase: str = "free") -> bool:
+def is_stated(calls: list[Call], field: str, error: float, phase: str = "free", deepest: float = 0.0) -> bool:
     """Whether a difference so large, and in this phase, is one that docs/differences states."""
     calls = [*calls, STEP, PROBE]
     place = Place(field, 0.0, error, error)
-    return statement(calls, Difference(len(calls) - 1, "@probe", place, phase)) is not None
+    return statement(calls, Difference(len(calls) - 1, "@probe", place, phase, deepest)) is not None
 
 
 @pytest.mark.parametrize(
@@ -246,3 +246,21 @@ def test_arm_and_target_of_a_file_are_one_island(
     robot = call(3, "loadMJCF", f"mjcf/{name}.xml")
     assert is_stated([BOX, robot], field, error, phase) == expected
     assert not is_stated([robot], field, error, phase)
+
+
+@pytest.mark.parametrize(
+    ("calls", "field", "error", "deepest", "expected"),
+    [
+        ([ARM, OTHER, FIX], "base.0.3", 1e-6, 0.0, True),
+        ([ARM, OTHER, FIX], "base.1.3", 1e-6, 0.0, False),
+        ([ARM, OTHER, FIX], "base.0.3", 1e-3, 0.0, False),
+        ([ARM, OTHER, FIX], "base.0.3", 1e-6, -1e-4, False),
+        ([ARM, OTHER], "base.0.3", 1e-6, 0.0, False),
+        ([ARM, FIX], "base.0.3", 1e-6, 0.0, False),
+        ([ARM, OTHER, call(4, "changeDynamics", {"$": 0}, -1, restitution=0)], "base.0.3", 1e-6, 0.0, False),
+    ],
+)
+def test_islands_of_a_robot_that_was_freed_are_renumbered_after_a_contact(
+    calls: list[Call], field: str, error: float, deepest: float, expected: bool
+):
+    assert is_stated(calls, field, error, "contact", deepest) == expected

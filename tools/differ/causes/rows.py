@@ -53,12 +53,29 @@ def shares_with_a_limit(seen: Seen) -> bool:
 
 
 def renumbers_islands(seen: Seen) -> bool:
-    """Whether a body was removed, or a base freed or fixed, beside robots, and states hardly differ."""
-    if seen.difference.phase != "free" or seen.difference.place.error > LEFT_OVER:
+    """Whether a body was removed, or a base freed or fixed, beside robots, and states hardly differ.
+
+    After a contact only the robot whose base was freed or fixed counts, and only while nothing overlaps.
+    """
+    if seen.difference.place.error > LEFT_OVER:
+        return False
+    if seen.difference.phase != "free" and not _frees_or_fixes_what_differs(seen):
         return False
     robots = sum(call["f"].startswith(MAKE) and has_joints(seen, call) for call in seen.before)
     return robots >= _ROBOTS and any(
         call["f"] == "removeBody" or _may_free_or_fix(call) for call in seen.before
+    )
+
+
+def _frees_or_fixes_what_differs(seen: Seen) -> bool:
+    """Whether the base was freed or fixed of the robot that differs, and nothing overlaps."""
+    said = re.match(r"[a-z]+\.(\d+)\.", seen.difference.place.field)
+    body = maker_of(seen, int(said[1])) if said else None
+    return (
+        body is not None
+        and has_joints(seen, body)
+        and seen.difference.deepest == 0.0
+        and any(_may_free_or_fix(call) and call["a"][0].get("$") == body["id"] for call in seen.before)
     )
 
 
