@@ -115,3 +115,22 @@ def test_normals_at_edges_of_cylinders_are_of_another_search(
     calls = [shape, call(1, "createMultiBody", 1, {"$": 0}), STEP, PROBE]
     difference = Difference(3, "@probe", Place("base.0.2", 0.0, error, error), phase, deepest)
     assert (statement(calls, difference) is not None) == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "bodies", "expected"),
+    [
+        (SURFACE, (0, 1), True),
+        (SURFACE, (0, 2), False),
+        (HULL, (0, 1), False),
+        (call(1, "createCollisionShape", 3, flags=1), (0, 1), False),
+    ],
+)
+def test_links_meet_surfaces_early(shape: Call, bodies: tuple[int, int], expected: bool):
+    cubes = [call(3, "createMultiBody", 1), call(5, "createMultiBody", 1)]
+    surface = call(4, "createMultiBody", 0, -1, linkCollisionShapeIndices=[{"$": 1}])
+    calls = [shape, cubes[0], surface, cubes[1], call(6, "getContactPoints")]
+    pairs = [((bodies[0], -1), (bodies[1], 0))]
+    assert is_known(calls, "links", pairs, []) == expected
+    assert not is_known(calls, "links", pairs, pairs)
+    assert not is_known(calls, "links", [], pairs)

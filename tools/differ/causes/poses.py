@@ -69,6 +69,24 @@ def touches_a_hull_with_a_cylinder(seen: Seen) -> bool:
     )
 
 
+def meets_a_surface_early(seen: Seen) -> bool:
+    """Whether PyBullet has more contacts of bodies, of each pair one with a mesh that is not convex."""
+    field, theirs, ours = seen.difference.place[:3]
+    if seen.call["f"] != "getContactPoints" or field != "links" or ours or not theirs:
+        return False
+    return all(_has_a_surface(seen, a[0]) or _has_a_surface(seen, b[0]) for a, b in theirs)
+
+
+def _has_a_surface(seen: Seen, number: int) -> bool:
+    body = maker_of(seen, number)
+    return body is not None and any(
+        call["f"] == "createCollisionShape"
+        and call["a"][:1] == [_MESH]
+        and bool(call["k"].get("flags", 0) & _CONCAVE)
+        for call in made_for(seen, [body["a"], body["k"]])
+    )
+
+
 def is_deep_at_a_cylinder(seen: Seen) -> bool:
     """Whether states differ by as little as normals do at edges of cylinders, deeper than both margins."""
     return (
