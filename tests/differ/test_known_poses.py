@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from tests.differ.test_known import is_known
+from tests.differ.test_known import PROBE, STEP, is_known
 from tests.differ.test_programs import call
+from tools.differ.causes.known import statement
+from tools.differ.compare import Difference
 from tools.differ.programs import Call
+from tools.differ.values import Place
 
 HALF = 0.7071067811865476
 ROUND_LINK = {
@@ -77,3 +80,65 @@ def test_a_link_may_turn_either_way_to_what_is_half_a_turn_away(
 def test_normals_of_rays_may_be_off_their_faces(apart: float, turned: float, expected: bool):
     hits = [[0, 6, 0.5, [0.0, 0.0, z], [x, 0.0, 1.0]] for x, z in ((0.0, 0.0), (turned, apart))]
     assert is_known([call(51, "rayTest", [0] * 3, [1] * 3)], "normal", *hits) == expected
+
+
+CYLINDER, HULL = call(0, "createCollisionShape", 4), call(1, "createCollisionShape", 5, fileName="duck.obj")
+SURFACE = call(1, "createCollisionShape", 5, fileName="duck.obj", flags=1)
+
+
+@pytest.mark.parametrize(
+    ("calls", "field", "away", "expected"),
+    [
+        ([CYLINDER, HULL], ".0.5", 1e-3, True),
+        ([CYLINDER, call(1, "loadURDF", "xarm/link6.urdf")], ".0.6", 1e-3, True),
+        ([call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), HULL], ".2.5", 1e-3, True),
+        ([CYLINDER, HULL], ".0.5", 1e-2, False),
+        ([CYLINDER, HULL], ".0.7", 1e-3, False),
+        ([CYLINDER, SURFACE], ".0.5", 1e-3, False),
+        ([HULL], ".0.5", 1e-3, False),
+        ([CYLINDER], ".0.5", 1e-3, False),
+    ],
+)
+def test_the_order_of_corners_decides_where_a_cylinder_touches_a_hull(
+    calls: list[Call], field: str, away: float, expected: bool
+):
+    calls = [*calls, call(2, "getContactPoints")]
+    assert is_known(calls, field, [0.0, 0.0, 1.0], [away, 0.0, 1.0]) == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "deepest", "error", "phase", "expected"),
+    [
+        (CYLINDER, -0.0038, 8e-6, "contact", True),
+        (call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), -0.0038, 8e-6, "contact", True),
+        (CYLINDER, -0.0015, 8e-6, "contact", False),
+        (CYLINDER, -0.0038, 1e-3, "contact", False),
+        (CYLINDER, -0.0038, 8e-6, "free", False),
+        (call(0, "createCollisionShape", 3), -0.0038, 8e-6, "contact", False),
+    ],
+)
+def test_normals_at_edges_of_cylinders_are_of_another_search(
+    shape: Call, deepest: float, error: float, phase: str, expected: bool
+):
+    calls = [shape, call(1, "createMultiBody", 1, {"$": 0}), STEP, PROBE]
+    difference = Difference(3, "@probe", Place("base.0.2", 0.0, error, error), phase, deepest)
+    assert (statement(calls, difference) is not None) == expected
+
+
+@pytest.mark.parametrize(
+    ("shape", "bodies", "expected"),
+    [
+        (SURFACE, (0, 1), True),
+        (SURFACE, (0, 2), False),
+        (HULL, (0, 1), False),
+        (call(1, "createCollisionShape", 3, flags=1), (0, 1), False),
+    ],
+)
+def test_links_meet_surfaces_early(shape: Call, bodies: tuple[int, int], expected: bool):
+    cubes = [call(3, "createMultiBody", 1), call(5, "createMultiBody", 1)]
+    surface = call(4, "createMultiBody", 0, -1, linkCollisionShapeIndices=[{"$": 1}])
+    calls = [shape, cubes[0], surface, cubes[1], call(6, "getContactPoints")]
+    pairs = [((bodies[0], -1), (bodies[1], 0))]
+    assert is_known(calls, "links", pairs, []) == expected
+    assert not is_known(calls, "links", pairs, pairs)
+    assert not is_known(calls, "links", [], pairs)

@@ -22,11 +22,11 @@ DRIVE = call(8, "setJointMotorControl2", {"$": 0}, 0, 0)
 REMOVE = call(4, "removeBody", {"$": 2})
 
 
-def is_stated(calls: list[Call], field: str, error: float, phase: str = "free") -> bool:
+def is_stated(calls: list[Call], field: str, error: float, phase: str = "free", deepest: float = 0.0) -> bool:
     """Whether a difference so large, and in this phase, is one that docs/differences states."""
     calls = [*calls, STEP, PROBE]
     place = Place(field, 0.0, error, error)
-    return statement(calls, Difference(len(calls) - 1, "@probe", place, phase)) is not None
+    return statement(calls, Difference(len(calls) - 1, "@probe", place, phase, deepest)) is not None
 
 
 @pytest.mark.parametrize(
@@ -208,3 +208,109 @@ SUBSTEPS = call(7, "setPhysicsEngineParameter", numSubSteps=2)
 )
 def test_what_sleeps_keeps_its_weight(calls: list[Call], phase: str, expected: bool):
     assert is_stated(calls, "base.0.0", 1e-6, phase) == expected
+
+
+TREE = {"linkJointTypes": [0, 4, 4, 4], "linkParentIndices": [0, 1, 0, 3]}
+
+
+@pytest.mark.parametrize(
+    ("robot", "links", "expected"),
+    [
+        # Links with joints of their own are numbered as they are given here, and after their parents there.
+        (call(1, "createMultiBody", 0, flags=8, **TREE), (0, 1), True),
+        (call(1, "createMultiBody", 0, flags=8, **TREE), (-1, 3), True),
+        (call(1, "createMultiBody", 0, flags=8, **TREE), (1, 2), False),
+        (call(1, "createMultiBody", 0, flags=0, **TREE), (0, 1), False),
+        (
+            call(1, "createMultiBody", 0, flags=8, linkJointTypes=[0, 0, 4], linkParentIndices=[0, 0, 1]),
+            (0, 1),
+            True,
+        ),
+        (
+            call(1, "createMultiBody", 0, flags=8, linkJointTypes=[0, 0, 4], linkParentIndices=[0, 0, 1]),
+            (0, 2),
+            False,
+        ),
+        (
+            call(
+                1,
+                "createMultiBody",
+                0,
+                flags=8 | 131072,
+                linkJointTypes=[0, 0, 4],
+                linkParentIndices=[0, 0, 1],
+            ),
+            (0, 2),
+            True,
+        ),
+        (call(1, "loadURDF", "quadruped/spirit40.urdf", flags=8 | 131072), (2, 3), True),
+        (call(1, "loadURDF", "quadruped/spirit40.urdf", flags=8 | 524288), (2, 3), False),
+        (call(1, "loadURDF", "quadruped/minitaur.urdf", flags=8 | 131072), (2, 10), True),
+        (call(1, "loadURDF", "quadruped/minitaur.urdf", flags=8 | 131072), (1, 2), False),
+        (call(1, "loadURDF", "quadruped/minitaur.urdf", flags=8), (1, 2), True),
+    ],
+)
+def test_fixed_joints_tie_links_however_they_are_numbered(
+    robot: Call, links: tuple[int, int], expected: bool
+):
+    calls = [BOX, robot, call(2, "getContactPoints")]
+    assert is_known(calls, "links", [((1, links[0]), (1, links[1]))], []) == expected
+
+
+@pytest.mark.parametrize(
+    ("asked", "missing", "expected"),
+    [
+        ({"linkIndexA": 13}, [((0, 12), (0, 13))], True),
+        ({"linkIndexA": 12}, [((0, 12), (0, 13))], True),
+        ({"linkIndexA": 11}, [((0, 12), (0, 13))], False),
+        ({}, [((0, 12), (0, 13))], False),
+        ({"linkIndexA": 13}, [((0, 12), (1, 13))], False),
+    ],
+)
+def test_contacts_of_a_body_with_itself_are_asked_for_by_either_link(
+    asked: dict[str, int], missing: list[Any], expected: bool
+):
+    calls = [ARM, call(2, "getContactPoints", bodyA={"$": 0}, **asked)]
+    assert is_known(calls, "links", [], missing) == expected
+    assert not is_known(calls, "links", missing, [])
+    (a, b) = missing[0]
+    points = [[0, a[0], b[0], a[1], b[1]], [0, 0, 1, 13, 2]]
+    second = expected and asked["linkIndexA"] == b[1]
+    assert is_known(calls, ".len", points[1:], points) == second
+    assert not is_known(calls, ".len", points, points[1:])
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "error", "phase", "expected"),
+    [
+        ("reacher", "velocities.1.0", 2e-6, "contact", True),
+        ("reacher", "velocities.0.0", 2e-6, "contact", False),
+        ("reacher", "base.1.0", 2e-6, "contact", False),
+        ("reacher", "velocities.1.0", 2e-3, "contact", False),
+        ("swimmer", "velocities.1.0", 2e-6, "contact", False),
+    ],
+)
+def test_arm_and_target_of_a_file_are_one_island(
+    name: str, field: str, error: float, phase: str, expected: bool
+):
+    robot = call(3, "loadMJCF", f"mjcf/{name}.xml")
+    assert is_stated([BOX, robot], field, error, phase) == expected
+    assert not is_stated([robot], field, error, phase)
+
+
+@pytest.mark.parametrize(
+    ("calls", "field", "error", "deepest", "expected"),
+    [
+        ([ARM, OTHER, FIX], "base.0.3", 1e-6, 0.0, True),
+        ([ARM, OTHER, FIX], "base.1.3", 1e-6, 0.0, False),
+        ([ARM, OTHER, FIX], "base.0.3", 1e-3, 0.0, False),
+        ([ARM, OTHER, FIX], "base.0.3", 1e-6, -1e-4, False),
+        ([ARM, OTHER], "base.0.3", 1e-6, 0.0, False),
+        ([ARM, FIX], "base.0.3", 1e-6, 0.0, False),
+        ([ARM, OTHER, call(4, "changeDynamics", {"$": 0}, -1, restitution=0)], "base.0.3", 1e-6, 0.0, False),
+    ],
+)
+def test_islands_of_a_robot_that_was_freed_are_renumbered_after_a_contact(
+    calls: list[Call], field: str, error: float, deepest: float, expected: bool
+):
+    assert is_stated(calls, field, error, "contact", deepest) == expected

@@ -124,6 +124,14 @@ def test_nothing_is_compared_after_bodies_were_deep_in_each_other():
         assert bool(found) == differs
 
 
+def test_how_deep_bodies_are_is_told_with_a_difference_of_states():
+    calls = [call(0, "stepSimulation"), call(1, "@probe")]
+    theirs, ours = (
+        outcome(["ok", None], state(velocity, 1, depth)) for velocity, depth in ((1, -0.001), (2, -0.003))
+    )
+    assert [one.deepest for one in compare(calls, theirs, ours)] == [-0.003]
+
+
 def test_a_process_that_dies_differs():
     calls = [call(0, "a"), call(1, "b")]
     found = compare(calls, outcome(["ok", 1], ["ok", 1]), outcome(["ok", 1], died="signal 11"))

@@ -146,6 +146,39 @@ def test_shapes_of_a_link_are_taken_in_the_opposite_order(
     assert said == expected
 
 
+@pytest.mark.parametrize(("share", "expected"), [(1.0, ROUNDING), (0.0, None)])
+def test_joints_are_put_elsewhere_that_a_program_leaves_as_they_are(share: float, expected: str | None):
+    types = {"linkJointTypes": [0, 2, 4], "linkParentIndices": [0, 1, 2]}
+    program = [
+        call(0, "createMultiBody", 0, -1, -1, [0.0, 0.0, 1.0], **types),
+        call(1, "loadMJCF", "mjcf/reacher.xml"),
+        *PROGRAM[2:],
+    ]
+
+    def answer(calls: Sequence[Call]) -> Outcome:
+        resets = [one for one in calls if one["f"] == "resetJointState"]
+        size = max((abs(one["a"][2]) for one in resets), default=0.0)
+        assert size <= 1e-14
+        # Resets look for pairs, which changes answers as well.
+        velocity = 1.0 + share * 3e-3 * (size > 0.0) + 3e-3 * bool(resets)
+        results = falls(velocity, touches=False)["results"]
+        places = [n for n, one in enumerate(calls) if one["f"] not in ("resetJointState", "@nudge")]
+        made = [["ok", None]] * len(calls)
+        for place, result in zip(places, results, strict=True):
+            made[place] = result
+        ends = {(one["a"][0]["$"], one["a"][0].get("i"), one["a"][1]) for one in resets}
+        assert not ends or {(0, None, 0), (0, None, 2)} <= ends
+        assert (0, None, 1) not in ends
+        assert not ends or any(body == 1 and number is not None for body, number, _ in ends)
+        return outcome(*made)
+
+    difference = Difference(3, "@probe", Place("base.0.1", 1.0, 1.004, 2e-3), "free")
+    afresh = Fake(lambda calls: falls(1.0, touches=False))
+    ours = falls(1.004, touches=False)
+    said = doubted_by_pybullet(Fake(answer), afresh, program, falls(1.0, False), ours, difference)
+    assert said == expected
+
+
 def test_what_pybullet_doubts_is_stated():
     pages = (ROOT / "docs" / "differences" / "contact.md", ROOT / "docs" / "conformance" / "method.md")
     text = " ".join(" ".join(page.read_text(encoding="utf-8").split()) for page in pages)

@@ -57,5 +57,12 @@ SWEPT: dict[str, tuple[float, float]] = {
 """The least radius [m] of capsules that MJCF files give by two points, and the greatest of round shapes."""
 THIN: dict[str, float] = json.loads(Path(__file__).with_name("thin.json").read_text(encoding="utf-8"))
 """How thin boxes of files are [m], if thinner than 5 cm."""
-TIED: dict[str, list[int]] = json.loads(Path(__file__).with_name("tied.json").read_text(encoding="utf-8"))
-"""Of URDF files with fixed joints, of each link the one from which on fixed joints lead to it."""
+TIED: dict[str, tuple[list[int], list[int]]] = {
+    name: (numbered, listed)
+    for name, (numbered, listed) in json.loads(
+        Path(__file__).with_name("tied.json").read_text(encoding="utf-8")
+    ).items()
+}
+"""Of URDF files with fixed joints, of each link the one from which on fixed joints lead to it.
+
+First as links are numbered without flags, then as they are with `URDF_MAINTAIN_LINK_ORDER`."""

@@ -60,12 +60,14 @@ class Difference:
         function: What was called.
         place: Which part of the result differs, and how.
         phase: "start" before the first step, "free" before the first contact, "contact" after it.
+        deepest: The least distance [m] of contact points of the step, 0 if none are below; of `@probe` only.
     """
 
     call: int
     function: str
     place: Place
     phase: str
+    deepest: float = 0.0
 
     @property
     def signature(self) -> str:
@@ -111,7 +113,9 @@ def compare(
         except _Lost:
             return found
         if place:
-            found.append(Difference(number, function, place, phase))
+            probed = function == "@probe" and x[0] == y[0] == "ok"
+            deepest = min(x[1][2], y[1][2]) if probed else 0.0
+            found.append(Difference(number, function, place, phase, deepest))
             if function == "@probe" or x[0] != y[0]:
                 return found
     if ours["died"] and len(b) < len(a):

@@ -6,7 +6,8 @@ corners, and meshes that make one. `bare.json` are those with a link that has a 
 shape. `long_and_round.json` are those that show cylinders or capsules, and `swept.json` those with capsules
 that are given by two points: the least radius of these, and the greatest of these and of balls [m].
 `thin.json` are those with boxes thinner than 5 cm, and how thin [m]. `tied.json` are those with fixed joints:
-of each link the one that fixed joints tie it to, which is nearest to the base.
+of each link the one that fixed joints tie it to, which is nearest to the base; once as links are numbered
+without flags, and once with `URDF_MAINTAIN_LINK_ORDER`.
 
 Run by the interpreter with PyBullet; it needs nothing else.
 """
@@ -64,11 +65,12 @@ def at_limit(body):
 
 def tied(body):
     """Of each link that from which on fixed joints lead to it; -1 is the base."""
-    first = []
-    for j in range(p.getNumJoints(body)):
-        info = p.getJointInfo(body, j)
-        kind, parent = info[2], info[16]
-        first.append(j if kind != p.JOINT_FIXED else first[parent] if parent >= 0 else -1)
+    infos = [p.getJointInfo(body, j) for j in range(p.getNumJoints(body))]
+    first = list(range(len(infos)))
+    for j in range(len(infos)):
+        # A link may have a number below that of its parent.
+        while first[j] >= 0 and infos[first[j]][2] == p.JOINT_FIXED:
+            first[j] = infos[first[j]][16]
     return first
 
 
@@ -159,7 +161,8 @@ def main():
         if name.endswith(".urdf") and thinnest_box(name) is not None:
             thin[name] = thinnest_box(name)
         if name.endswith(".urdf") and p.JOINT_FIXED in types[0]:
-            ties[name] = tied(bodies[0])
+            listed = p.loadURDF(name, flags=p.URDF_MAINTAIN_LINK_ORDER)
+            ties[name] = [tied(bodies[0]), tied(listed)]
         if any(map(has_a_bare_link, bodies)):
             bare.append(name)
         if any(map(at_limit, bodies)):

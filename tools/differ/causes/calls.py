@@ -87,7 +87,7 @@ _OF_SIMPLIFIED_HULLS = 4e-3
 _MARGIN, _SAME_FACE, _MARGIN_OF_SWEPT = 1e-3, 1e-6, 0.04
 _SEARCHED_DEPTH = 0.02
 _SHARE_OF_ROUND_EDGES, _SHARE_FROM_CLOSE_BY, _SHARE_OF_NEARER = 0.12, 0.2, 0.9
-_MAINTAIN_LINK_ORDER = 131072
+MAINTAIN_LINK_ORDER = 131072
 _QUATERNION = 4
 OTHER_SHAPES_ID = re.compile(r"getCollisionShapeData \.[1-9]\d*\.[01] ")
 NOT_THE_SAME_BODY = re.compile(r"Body \d+ has .*; it had ")
@@ -109,18 +109,25 @@ def pybullet_raises(seen: Seen) -> bool:
 
 def joint_types(seen: Seen) -> dict[int, list[int]]:
     """The types of the joints of bodies, by the call that made the body."""
-    types = {call["id"]: _types_in_order(call) for call in seen.before}
+    types = {call["id"]: types_in_order(call) for call in seen.before}
     for call in seen.before:
         if call["f"] == "loadURDF":
             types[call["id"]] = [joint.type for joint in FILES.get(call["a"][0], ((),))[0]]
     return types
 
 
-def _types_in_order(call: Call) -> list[int]:
-    """The types of the joints that `createMultiBody` makes, as it numbers them: children after parents."""
-    given, parents = (list(call["k"].get(name, ())) for name in ("linkJointTypes", "linkParentIndices"))
-    if len(parents) != len(given) or call["k"].get("flags", 0) & _MAINTAIN_LINK_ORDER:
-        return given
+def types_in_order(call: Call) -> list[int]:
+    """The types of the joints that `createMultiBody` makes, as it numbers them."""
+    given = list(call["k"].get("linkJointTypes", ()))
+    order = order_of_links(call)
+    return [given[link] for link in order] if len(order) == len(given) else given
+
+
+def order_of_links(call: Call) -> list[int]:
+    """The given links of a body that `createMultiBody` makes, as it numbers them: children after parents."""
+    parents = list(call["k"].get("linkParentIndices", ()))
+    if call["k"].get("flags", 0) & MAINTAIN_LINK_ORDER:
+        return list(range(len(parents)))
     order: list[int] = []
     waiting = [0]
     while waiting:
@@ -128,7 +135,7 @@ def _types_in_order(call: Call) -> list[int]:
         order += [parent - 1] if parent else []
         # 0 is the base, and 1 the first link.
         waiting += [link + 1 for link in reversed(range(len(parents))) if parents[link] == parent]
-    return [given[link] for link in order]
+    return order
 
 
 def has_joints(seen: Seen, call: Call) -> bool:
@@ -435,7 +442,7 @@ def numbers_a_child_first(seen: Seen) -> bool:
     return any(
         call["f"] == "loadURDF"
         and call["a"][0] in CHILDREN_FIRST
-        and call["k"].get("flags", 0) & _MAINTAIN_LINK_ORDER
+        and call["k"].get("flags", 0) & MAINTAIN_LINK_ORDER
         for call in seen.before
     )
 

@@ -61,13 +61,22 @@ from tools.differ.causes.calls import (
     starts_with_a_ball_joint,
     turns_by_no_rotation,
 )
-from tools.differ.causes.poses import has_ends_that_stand_out, looks_from_within, starts_half_a_turn_away
+from tools.differ.causes.poses import (
+    has_ends_that_stand_out,
+    is_deep_at_a_cylinder,
+    looks_from_within,
+    meets_a_surface_early,
+    starts_half_a_turn_away,
+    touches_a_hull_with_a_cylinder,
+)
 from tools.differ.causes.rows import (
+    asks_for_the_other_link,
     changes_mass_of_what_sleeps,
     drives_before_restoring,
     drives_from_a_limit,
     fixes_what_touches_itself,
     leaves_inertia_to_mjcf,
+    lies_in_one_island,
     renumbers_islands,
     shares_with_a_limit,
     ties_a_link_taken_for_still,
@@ -390,6 +399,17 @@ KNOWN: tuple[Known, ...] = (
             seen.differs("getContactPoints links", "getContactPoints .len") and touches_itself_rigidly(seen)
         ),
     ),
+    Known("PyBullet leaves out those where the other link does.", asks_for_the_other_link),
+    Known(
+        "The arm and the target of `reacher.xml`",
+        lambda seen: seen.differs("@probe") and lies_in_one_island(seen),
+    ),
+    Known(
+        "normals differ by up to 3e-4 at",
+        lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
+    ),
+    Known("PyBullet may list a link some millimetres before it touches", meets_a_surface_early),
+    Known("PyBullet's search ends where that order leads it", touches_a_hull_with_a_cylinder),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",
         lambda seen: (

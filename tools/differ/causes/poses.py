@@ -14,6 +14,10 @@ _HALF_A_TURN = 1e-9
 _MARGIN = 2e-3
 """PyBullet's flat ends stand out by up to 1 mm; depths [m] are along the camera's axis."""
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
+_PLACE = re.compile(r"\.\d+\.[56]")
+_CYLINDER, _MESH, _CONCAVE = 4, 5, 1
+_ELSEWHERE_ON_A_FACE = 3e-3
+_BOTH_MARGINS, _OF_OTHER_NORMALS = 2e-3, 3e-4
 _MOVES = ("reset", "restore", "step")
 
 
@@ -51,6 +55,61 @@ def has_ends_that_stand_out(seen: Seen) -> bool:
     near, far = made["a"][place : place + 2]
     theirs, own = (near * far / (far - (far - near) * depth) for depth in (float(found[1]), ours))
     return 0.0 < own - theirs < _MARGIN
+
+
+def touches_a_hull_with_a_cylinder(seen: Seen) -> bool:
+    """Whether places of a contact differ by little, and a cylinder was made beside a hull."""
+    field, theirs, ours = seen.difference.place[:3]
+    if seen.call["f"] != "getContactPoints" or not _PLACE.fullmatch(field):
+        return False
+    return (
+        math.dist(theirs, ours) < _ELSEWHERE_ON_A_FACE
+        and any(map(_makes_a_cylinder, seen.before))
+        and any(map(_may_make_a_hull, seen.before))
+    )
+
+
+def meets_a_surface_early(seen: Seen) -> bool:
+    """Whether PyBullet has more contacts of bodies, of each pair one with a mesh that is not convex."""
+    field, theirs, ours = seen.difference.place[:3]
+    if seen.call["f"] != "getContactPoints" or field != "links" or ours or not theirs:
+        return False
+    return all(_has_a_surface(seen, a[0]) or _has_a_surface(seen, b[0]) for a, b in theirs)
+
+
+def _has_a_surface(seen: Seen, number: int) -> bool:
+    body = maker_of(seen, number)
+    return body is not None and any(
+        call["f"] == "createCollisionShape"
+        and call["a"][:1] == [_MESH]
+        and bool(call["k"].get("flags", 0) & _CONCAVE)
+        for call in made_for(seen, [body["a"], body["k"]])
+    )
+
+
+def is_deep_at_a_cylinder(seen: Seen) -> bool:
+    """Whether states differ by as little as normals do at edges of cylinders, deeper than both margins."""
+    return (
+        seen.difference.phase == "contact"
+        and seen.difference.deepest < -_BOTH_MARGINS
+        and seen.difference.place.error < _OF_OTHER_NORMALS
+        and any(map(_makes_a_cylinder, seen.before))
+    )
+
+
+def _makes_a_cylinder(call: Call) -> bool:
+    if call["f"] == "createCollisionShapeArray":
+        return _CYLINDER in call["k"]["shapeTypes"]
+    return call["f"] == "createCollisionShape" and call["a"][:1] == [_CYLINDER]
+
+
+def _may_make_a_hull(call: Call) -> bool:
+    """Whether a call makes a convex mesh, or loads a file that may have some."""
+    if call["f"] == "createCollisionShapeArray":
+        return _MESH in call["k"]["shapeTypes"]
+    if call["f"] == "createCollisionShape":
+        return call["a"][:1] == [_MESH] and not call["k"].get("flags", 0) & _CONCAVE
+    return call["f"].startswith("load")
 
 
 def starts_half_a_turn_away(seen: Seen) -> bool:

@@ -2,7 +2,10 @@
 
 After a contact bodies are put 1e-12 m elsewhere. In free motion it is 1e-14 m, a few times the rounding of a
 place: a difference of 1e-9 that this makes was made 50,000 times as large by what came after, as where joints
-lie exactly at their limits, rows pull in opposite directions, or a spinning body is about to tumble.
+lie exactly at their limits, rows pull in opposite directions, or a spinning body is about to tumble. There
+joints are put elsewhere as well that the program leaves as they are made: what hangs by some turns as fast as
+it can or not at all. Since PyBullet looks for pairs when a joint is reset, such answers are compared with one
+that has the same calls, but puts nothing elsewhere.
 
 Contacts of several shapes of one link come in the order of a tree there: a program with such shapes is also
 performed with them in the opposite order, and if Carom agrees then, that order was all.
@@ -14,10 +17,12 @@ has a row is left to rounding, which in PyBullet is always the same until someth
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from random import Random
 from typing import Any, Protocol
 
+from tools.differ.assets import FILES, SPHERICAL
+from tools.differ.causes.calls import MAINTAIN_LINK_ORDER, types_in_order
 from tools.differ.compare import AFTER_CONTACT, STRICT, Difference, compare
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
@@ -26,6 +31,8 @@ ROUNDING = "There motion agrees to rounding until rounding decides"
 ORDER_OF_SHAPES = "except those of several shapes of one link"
 MEMORY = "Some answers of PyBullet depend on what earlier commands left in its memory"
 _ELSEWHERE = {"free": 1e-14, "contact": 1e-12}
+_ONE_BODY = ("createMultiBody", "loadURDF")
+_RENUMBERS = MAINTAIN_LINK_ORDER | 524288
 _UNTURNED = [0.0, 0.0, 0.0, 1.0]
 _TRIALS, _SHARE = 4, 0.5
 # Whether joints at a limit are put beyond it, before it, or each to either side.
@@ -66,9 +73,17 @@ def doubted_by_pybullet(
         return MEMORY
     if difference.function != "@probe" or difference.phase not in _ELSEWHERE:
         return None
+    free = difference.phase == "free"
+    # Resetting joints makes PyBullet look for pairs: only the same calls can be compared.
+    reference = _performed_with_joints(pybullet, calls, 0.0, Random(0)) if free else theirs
     for trial in range(_TRIALS):
-        moved = _performed(pybullet, _elsewhere(calls, _ELSEWHERE[difference.phase], Random(trial)))
-        if _is_as_large(calls, theirs, moved, difference):
+        random = Random(trial)
+        there = _elsewhere(calls, _ELSEWHERE[difference.phase], random)
+        if free:
+            moved = _performed_with_joints(pybullet, there, _ELSEWHERE["free"], random)
+        else:
+            moved = _performed(pybullet, there)
+        if _is_as_large(calls, reference, moved, difference):
             return ROUNDING
     if _changes_at_limits(pybullet, calls, theirs, difference):
         return ROUNDING
@@ -132,6 +147,42 @@ def _is_as_large(calls: Sequence[Call], theirs: Outcome, moved: Outcome, differe
 def _performed(pybullet: Performer, calls: list[Call]) -> Outcome:
     pybullet.order(calls)
     return pybullet.answer()
+
+
+def _performed_with_joints(
+    pybullet: Performer, calls: Sequence[Call], distance: float, random: Random
+) -> Outcome:
+    """What came of a program whose joints are put up to so far from 0 as soon as they are made."""
+    made: list[Call] = []
+    own: set[int] = set()
+    for call in calls:
+        own.add(len(made))
+        made += [call, *_resets(call, distance, random)]
+    outcome = _performed(pybullet, made)
+    results = [result for place, result in enumerate(outcome["results"]) if place in own]
+    return {"results": results, "died": outcome["died"]}
+
+
+def _resets(call: Call, distance: float, random: Random) -> Iterator[Call]:
+    """Calls that put all joints of the bodies that a call makes, but for spherical ones, near 0."""
+    for number, types in enumerate(_joints(call)):
+        body = {"$": call["id"]} if call["f"] in _ONE_BODY else {"$": call["id"], "i": number}
+        for joint, kind in enumerate(types):
+            if kind != SPHERICAL:
+                arguments = [body, joint, distance * random.uniform(-1, 1)]
+                yield Call(f="resetJointState", a=arguments, k={}, id=-1)
+
+
+def _joints(call: Call) -> Sequence[Sequence[int]]:
+    """Of each body that a call makes the types of the joints, as they are numbered; none if unknown."""
+    if call["f"] == "createMultiBody":
+        return [] if "batchPositions" in call["k"] else [types_in_order(call)]
+    if not call["f"].startswith("load") or not call["a"]:
+        return []
+    bodies = [[joint.type for joint in joints] for joints in FILES.get(str(call["a"][0]), ())]
+    # Which joint has which number depends on flags; this matters only where there are spherical ones.
+    known = not call["k"].get("flags", 0) & _RENUMBERS or not any(SPHERICAL in types for types in bodies)
+    return bodies if known else []
 
 
 def _has(found: list[Difference], difference: Difference, least: float) -> bool:

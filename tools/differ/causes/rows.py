@@ -9,22 +9,27 @@ from typing import Any
 from tools.differ.assets import AT_LIMITS, FIXED, TIED
 from tools.differ.causes.calls import (
     LEFT_OVER,
+    MAINTAIN_LINK_ORDER,
     MAKE,
     TOUCHES_ITSELF,
     Seen,
     has_joints,
     joint_types,
     maker_of,
+    order_of_links,
 )
 from tools.differ.programs import Call
 
 _ROBOTS = 2
 _STILL = 1e-9
+_ONE_OF_ITS_OWN = "mjcf/reacher.xml"
+"""A file with two bodies whose first links, without shapes, are in one place."""
 _MOTORS = ("setJointMotorControl2", "setJointMotorControlArray")
 _INERTIA_FROM_FILE = 2
 _SLEEP = 8
 _RENUMBERS = 131072 | 524288
 _TOUCHES_PARENTS = 8192
+_MERGES_LINKS = 524288
 # Files whose mass matrices lack full rank with this flag: in PyBullet the least eigenvalue is at most 1e-16
 # of the greatest. Those of ant, hopper, walker2d, reacher and the pendulums have full rank.
 _DEPENDENT = tuple(
@@ -51,12 +56,29 @@ def shares_with_a_limit(seen: Seen) -> bool:
 
 
 def renumbers_islands(seen: Seen) -> bool:
-    """Whether a body was removed, or a base freed or fixed, beside robots, and states hardly differ."""
-    if seen.difference.phase != "free" or seen.difference.place.error > LEFT_OVER:
+    """Whether a body was removed, or a base freed or fixed, beside robots, and states hardly differ.
+
+    After a contact only the robot whose base was freed or fixed counts, and only while nothing overlaps.
+    """
+    if seen.difference.place.error > LEFT_OVER:
+        return False
+    if seen.difference.phase != "free" and not _frees_or_fixes_what_differs(seen):
         return False
     robots = sum(call["f"].startswith(MAKE) and has_joints(seen, call) for call in seen.before)
     return robots >= _ROBOTS and any(
         call["f"] == "removeBody" or _may_free_or_fix(call) for call in seen.before
+    )
+
+
+def _frees_or_fixes_what_differs(seen: Seen) -> bool:
+    """Whether the base was freed or fixed of the robot that differs, and nothing overlaps."""
+    said = re.match(r"[a-z]+\.(\d+)\.", seen.difference.place.field)
+    body = maker_of(seen, int(said[1])) if said else None
+    return (
+        body is not None
+        and has_joints(seen, body)
+        and seen.difference.deepest == 0.0
+        and any(_may_free_or_fix(call) and call["a"][0].get("$") == body["id"] for call in seen.before)
     )
 
 
@@ -108,10 +130,41 @@ def _are_tied(seen: Seen, a: Sequence[int], b: Sequence[int]) -> bool:
         return False
     if not has_joints(seen, body):
         return True
-    if body["f"] != "loadURDF" or body["k"].get("flags", 0) & _RENUMBERS:
-        return False
-    first = [*TIED.get(body["a"][0], ()), -1]
+    first = [*_firsts(body), -1]
     return max(a[1], b[1]) < len(first) - 1 and first[a[1]] == first[b[1]]
+
+
+def _firsts(body: Call) -> list[int]:
+    """Of each link of a body the one from which on fixed joints lead to it, as far as that is known."""
+    flags = body["k"].get("flags", 0)
+    if body["f"] == "loadURDF":
+        known = not flags & _MERGES_LINKS and body["a"][0] in TIED
+        return TIED[body["a"][0]][bool(flags & MAINTAIN_LINK_ORDER)] if known else []
+    if body["f"] != "createMultiBody":
+        return []
+    order, given = order_of_links(body), body["k"]
+    # 0 is the base, and 1 the first link.
+    parents = [-1 if parent == 0 else order.index(parent - 1) for parent in given["linkParentIndices"]]
+    types = given["linkJointTypes"]
+    first = list(range(len(order)))
+    for link in first:
+        while first[link] >= 0 and types[order[first[link]]] == FIXED:
+            first[link] = parents[order[first[link]]]
+    return first
+
+
+def asks_for_the_other_link(seen: Seen) -> bool:
+    """Whether PyBullet lacks only contacts of one body whose second link is the one asked for."""
+    field, theirs, ours = seen.difference.place[:3]
+    asked = seen.call["k"].get("linkIndexA")
+    if seen.call["f"] != "getContactPoints" or asked is None:
+        return False
+    if field == "links":
+        return not theirs and all(a[0] == b[0] and asked in (a[1], b[1]) for a, b in ours)
+    if field != ".len":
+        return False
+    others = [point for point in ours if point[1] != point[2] or point[3] == asked or point[4] != asked]
+    return len(others) == len(theirs) < len(ours)
 
 
 def drives_from_a_limit(seen: Seen) -> bool:
@@ -137,6 +190,19 @@ def drives_from_a_limit(seen: Seen) -> bool:
 
 def _number(value: Any) -> float:
     return value[0] if isinstance(value, list) else value
+
+
+def lies_in_one_island(seen: Seen) -> bool:
+    """Whether a body of a file differs whose links without shapes are in one place, beside others."""
+    said = re.match(r"(?:positions|velocities|reactions)\.(\d+)\.", seen.difference.place.field)
+    body = maker_of(seen, int(said[1])) if said else None
+    return (
+        seen.difference.phase == "contact"
+        and seen.difference.place.error < LEFT_OVER
+        and body is not None
+        and body["a"][:1] == [_ONE_OF_ITS_OWN]
+        and any(call["f"].startswith(MAKE) and call is not body for call in seen.before)
+    )
 
 
 def fixes_what_touches_itself(seen: Seen) -> bool:
