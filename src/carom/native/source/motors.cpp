@@ -17,7 +17,7 @@ struct Targets {
 };
 static_assert(sizeof(Targets) == (TARGET_LISTS * ENTRIES + 1) * sizeof(double), "as Python packs it");
 
-double* list_of(Targets& targets, int number) { return targets.position + number * ENTRIES; }
+double* list_of(Targets& targets, int number) { return reinterpret_cast<double*>(&targets) + number * ENTRIES; }
 
 bool is_mode(double mode) { return mode == VELOCITY || mode == TORQUE || mode == POSITION || mode == PD; }
 
