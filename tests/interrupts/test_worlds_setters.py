@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -12,6 +14,8 @@ from tests.interrupts.faults import Fault
 from tests.interrupts.test_prepared_changes import at_lines
 
 from carom import World, Worlds
+from carom.description.keyframe import BodyKeyframe
+from carom.description.pose import Pose
 
 # Of the lines of a call, about so many are tried.
 _TRIED = 20
@@ -21,7 +25,9 @@ _SOME = [0, 2]
 def _made(*, pulled: bool = False) -> Worlds:
     world = World()
     world.load_urdf("plane.urdf")
-    world.load_urdf("r2d2.urdf", (0.0, 0.0, 0.4), as_pybullet=True)
+    body = world.load_urdf("r2d2.urdf", (0.0, 0.0, 0.4), as_pybullet=True)
+    pose = Pose((0.0, 0.0, 1.0), (0.0, 0.6, 0.0, 0.8))
+    body.add_keyframe(BodyKeyframe("up", pose=pose, velocities=(1.0,) * sum(body.velocity_count)))
     world.gravity = (0.0, 0.0, -9.81)
     worlds = Worlds(world, 3)
     worlds.step(40)
@@ -38,7 +44,8 @@ def _seen(worlds: Worlds) -> list[tuple[str, bytes]]:
         np.unique(array, axis=0) if len(array) else array for table in tables for array in table.values()
     ]
     names = [name for table in tables for name in table]
-    return [(name, array.tobytes()) for name, array in zip(names, shapes, strict=True)]
+    clock = ("times", worlds.times.tobytes()), ("status", worlds._engine.status.tobytes())
+    return [*clock, *((name, array.tobytes()) for name, array in zip(names, shapes, strict=True))]
 
 
 SETTERS: dict[str, Callable[[Worlds], Any]] = {
@@ -50,6 +57,8 @@ SETTERS: dict[str, Callable[[Worlds], Any]] = {
     "set_velocity_targets": lambda worlds: worlds[1].set_velocity_targets(0.3, where=_SOME),
     "set_springs": lambda worlds: worlds[1].set_springs(0.3, stiffness=2.0, damping=1.0),
     "set_torques": lambda worlds: worlds[1].set_torques(0.3),
+    "set_torques of some": lambda worlds: worlds[1].set_torques(0.3, joints=[2, 3]),
+    "reset_to": lambda worlds: worlds.reset_to("up", where=_SOME),
     "disable_motors": lambda worlds: worlds[1].disable_motors(),
     "disable_motors of some": lambda worlds: worlds[1].disable_motors(where=_SOME),
     "enable_sensors": lambda worlds: worlds[1].enable_sensors(1, 3),
@@ -90,3 +99,33 @@ def test_an_exception_at_any_line_leaves_before_or_after(name: str) -> None:
         assert now in (before, after), (place, [a[0] for a, b in zip(now, before, strict=True) if a != b])
         if now == after:
             worlds = _made(pulled="motors" in name)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals of POSIX")
+def test_torques_that_a_handler_sets_in_the_middle_stay() -> None:
+    worlds, lines = _made(), 0
+    batch = worlds[1]
+    columns = batch.columns([2]), batch.columns([3])
+
+    def count() -> None:
+        nonlocal lines
+        lines += 1
+
+    at_lines(lambda: batch.set_torques(0.3, joints=[2]), count)
+    before = signal.signal(signal.SIGUSR1, lambda *_: batch.set_torques(0.5, joints=[3], where=_SOME))
+    try:
+        for place in range(1, lines + 1):
+            batch.joint_torques[:] = 0.0
+            left = place
+
+            def come() -> None:
+                nonlocal left
+                left -= 1
+                if left == 0:
+                    signal.raise_signal(signal.SIGUSR1)
+
+            at_lines(lambda: batch.set_torques(0.3, joints=[2]), come)
+            found = [batch.joint_torques[_SOME, column].ravel().tolist() for column in columns]
+            assert found == [[0.3, 0.3], [0.5, 0.5]], place
+    finally:
+        signal.signal(signal.SIGUSR1, before)

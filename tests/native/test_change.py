@@ -132,6 +132,44 @@ def test_arrays_of_any_shape_and_stride_are_written() -> None:
     assert one == 3.0
 
 
+@pytest.mark.usefixtures("way")
+def test_nothing_is_changed_if_there_are_too_few_or_too_many_numbers() -> None:
+    plain, numbers, integers = Plain(), np.zeros(4), np.zeros(4, dtype=np.int32)
+    for count, target in ((3, numbers), (5, numbers), (2, integers[:1]), (4, integers)):
+        change = Change()
+        change.set(plain, "number", 2)
+        change.write(numbers[:1], 1.0)
+        change.write_numbers(target, [7.0] * count)
+        with pytest.raises(ValueError, match="too few or too many numbers"):
+            change.commit()
+        assert plain.number == 1
+        assert not numbers.any()
+        assert not integers.any()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda body: body.set_base_pose((1.0, 2.0), (0.0, 0.0, 0.0, 1.0)),
+        lambda body: body.set_base_pose((1.0, 2.0, 3.0, 4.0), (0.0, 0.0, 0.0, 1.0)),
+        lambda body: body.set_base_velocity((1.0, 2.0), (3.0, 4.0, 5.0, 6.0)),
+        lambda body: body.set_joint_state(2, (0.1, 0.2), None),
+        lambda body: body.set_joint_state(2, (), (0.1,)),
+        lambda body: body.set_joint_state(2, None, ()),
+        lambda body: body.set_joint_states([(2, (0.1, 0.2), None), (3, (), None)]),
+    ],
+)
+def test_setters_of_a_body_refuse_too_few_or_too_many_numbers(call: Any) -> None:
+    import carom
+
+    world = carom.World()
+    body = world.load_urdf("r2d2.urdf", (0.0, 0.0, 1.0), as_pybullet=True)
+    before = world.position.tobytes(), world.velocity.tobytes()
+    with pytest.raises(ValueError, match=r"too many|not enough|numbers"):
+        call(body)
+    assert (world.position.tobytes(), world.velocity.tobytes()) == before
+
+
 def test_nothing_is_changed_if_an_array_cannot_be_written() -> None:
     if changes._commit() is None:
         pytest.skip("Python makes changes here")

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from carom.native import uninterrupted as module
 from carom.native.uninterrupted import begin, end, uninterrupted
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals of POSIX")
@@ -40,6 +41,24 @@ def test_a_handler_runs_at_the_end_of_the_outermost_section(heard: list[int]) ->
     assert sorted(heard) == sorted(_NUMBERS)
     signal.raise_signal(signal.SIGUSR1)
     assert heard[2:] == [signal.SIGUSR1]
+
+
+@posix
+def test_the_library_knows_when_a_handler_has_been_set(heard: list[int]) -> None:
+    with uninterrupted:
+        pass
+    state = module._State
+    if state.same_handlers is None:
+        pytest.skip("Python asks here")
+    assert state.same_handlers(module._SIGNALS, state.seen)
+    for handler in (lambda *_: None, signal.SIG_IGN, signal.SIG_DFL):
+        signal.signal(signal.SIGUSR2, handler)
+        assert not state.same_handlers(module._SIGNALS, state.seen)
+        with uninterrupted:
+            assert state.same_handlers(module._SIGNALS[:1], state.seen[:1])
+        assert state.same_handlers(module._SIGNALS, state.seen)
+    assert not state.same_handlers(module._SIGNALS, state.seen[:-1])
+    assert heard == []
 
 
 @posix

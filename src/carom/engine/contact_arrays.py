@@ -146,17 +146,11 @@ class ContactArrays:
     def cold_starts(self, worlds: slice | np.ndarray) -> tuple[Any, slice | np.ndarray, Any]:
         """What to write where bodies were moved: an array, the index of the worlds in it, and the values.
 
-        Contacts are not warm started in the next step then: it depends only on the new poses.
+        Contacts are not warm started in the next step then: it depends only on the new poses. In a single
+        world `QuickScene.cold_start` does it.
         """
         counters = self.contacts.numpy["contact_warm_start"]
         return counters, worlds, cold_start(counters[worlds])
-
-    def note_cold_start(self, change: Change) -> None:
-        """`cold_starts` of a single world with a change."""
-        arrays = self.contacts.numpy
-        if count := arrays["count_contacts"].item(0, THERE):
-            counters = arrays["contact_warm_start"][0, :count]
-            change.write(counters, cold_start(counters))
 
     def note_resets(self, change: Change, tree: int, *moved: bool) -> None:
         """Note that a change resets a body of a single world, for the order in which contacts are relaxed.

@@ -5,7 +5,7 @@ As in Bullet, all other contacts stay, with their impulses, and overlaps keep th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -45,14 +45,6 @@ def renumber(rows: Rows, shapes: tuple[int, int], links: tuple[int, int]) -> Non
         (rows["contact_shapes"][:, 2:], links),
     ):
         numbers -= count * (numbers >= first + count)
-
-
-def write_rows(numpy: Mapping[str, np.ndarray], rows: Rows, world: int = 0) -> None:
-    """Write these contacts and overlaps to the arrays of contacts."""
-    for name, kept in rows.items():
-        numpy[name][world, : len(kept)] = kept
-    counts = numpy["count_contacts"][world]
-    counts[THERE], counts[OVERLAPS] = counts_of(rows)
 
 
 def counts_of(rows: Rows) -> tuple[int, int]:

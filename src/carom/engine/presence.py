@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.engine.lost_contacts import kept_rows, write_rows
+from carom.engine.lost_contacts import counts_of, kept_rows
 from carom.layouts.codes import ABSENT, ACTIVE, ASLEEP
 from carom.layouts.contacts import OVERLAPS, SORTED, THERE
 from carom.native.change import Change
@@ -101,7 +101,9 @@ def change_presence(
     tied = np.flatnonzero(own[: contact_arrays.user_count])
     numpy = _numpy(contacts, change)
     for world, left in kept.items():
-        write_rows(numpy, left, world)
+        for name, rows_left in left.items():
+            numpy[name][world, : len(rows_left)] = rows_left
+        numpy["count_contacts"][world, [THERE, OVERLAPS]] = counts_of(left)
     activity[going, tree], activity[coming, tree] = ABSENT, ACTIVE
     for user in tied.tolist():
         state["user_impulse"][changed, user] = 0.0

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from ctypes import addressof, c_char, c_int64
+from ctypes import addressof, c_char, c_int32, c_int64, c_void_p, cast
 from sys import intern
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom.layouts.quick_world import OF_BODY, SURFACE, ContactColumns, ContactQuery, Scene, TreeCall
-from carom.native.change import Change, blank
+from carom.native.change import Change, blank, packed_run
 from carom.native.kernels import forward_kinematics_kernel
 from carom.native.launch import KernelStructs, TreeLaunch
+from carom.native.library import library
 from carom.native.step_builtin import step_taker
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ _ALL = (
     "nearest.search.function",
 )
 _MINUS_ONE = c_int64(-1)
+# Where a function that is none of a tree finds the number of one.
+_NO_TREE = c_int32(0)
 
 
 class QuickScene:
@@ -50,6 +53,8 @@ class QuickScene:
         take_step: Performs a step, whose addresses are known, and lets the time go on; returns whether
             it has. If not, nothing has happened, and Python has to perform it. The caller has the lock of
             the world.
+        cold_start: The packed record of a function for changes, after which the next step does not warm start
+            the contacts there are, because a body was moved. The addresses for poses have to be known.
     """
 
     __slots__ = (
@@ -62,12 +67,15 @@ class QuickScene:
         "_run",
         "_step",
         "_stepped",
+        "cold_start",
         "record",
         "take_step",
     )
 
     def __init__(self) -> None:
         self.record = Scene()
+        start_cold = cast(library().symbols.carom_start_cold, c_void_p).value
+        self.cold_start: bytes = packed_run(start_cold, self.address, 0, addressof(_NO_TREE), 0)
         # The objects that the addresses point to.
         self._kept: list[Any] = []
         self._stepped: tuple[Any, ...] = ()

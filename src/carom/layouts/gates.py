@@ -17,6 +17,9 @@ class Conduct(IntEnum):
     READS = 1
     # No signal handler, finalizer or trace function of the user runs in the middle of it.
     CHANGES = 2
+    # It reads, and then makes one change, which does nothing if others have been made since the function was
+    # called; then that is called again as one that changes.
+    COMMITS = 3
 
 
 @c_record()

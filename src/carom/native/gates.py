@@ -98,17 +98,17 @@ def alone(lock: str) -> Callable[[F], F]:
 
 def in_section(lock: str) -> Callable[[F], F]:
     """As `alone`, and no signal handler, finalizer or trace function runs in the middle."""
-    lock_of = attrgetter(lock)
+    guard = alone(lock)
 
-    def guard(function: F) -> F:
+    def guard_section(function: F) -> F:
         @wraps(function)
-        def call(first: Any, /, *arguments: Any, **keywords: Any) -> Any:
-            with lock_of(first), uninterrupted:
-                return function(first, *arguments, **keywords)
+        def call(*arguments: Any, **keywords: Any) -> Any:
+            with uninterrupted:
+                return function(*arguments, **keywords)
 
-        return cast("F", call)
+        return guard(cast("F", call))
 
-    return guard
+    return guard_section
 
 
 def whole(lock: str) -> Callable[[F], F]:
@@ -126,14 +126,15 @@ def whole(lock: str) -> Callable[[F], F]:
                 try:
                     return function(first, *arguments, **keywords)
                 except Outdated:
-                    return _again(function, first, *arguments, **keywords)
+                    return again(function, first, *arguments, **keywords)
 
         return cast("F", call)
 
     return guard
 
 
-def _again(function: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
+def again(function: Callable[..., Any], *arguments: Any, **keywords: Any) -> Any:
+    """Call a function that was `Outdated` until its change is the first one since."""
     # Only other worlds change now, in other threads.
     with uninterrupted:
         while True:

@@ -31,6 +31,7 @@ class _State:
     Attributes:
         depths: The number of sections that a thread is in, by thread.
         seen: The handlers of all signals, as they were found last.
+        same_handlers: Whether these, given the signals and `seen`, are the present ones; see `handlers.cpp`.
         users: Those of them that are functions of the user, by signal.
         handlers: The same while the main thread is in a section.
         arrived: The signals that have come since, with the frames in which they did.
@@ -44,6 +45,7 @@ class _State:
 
     depths: ClassVar[dict[int, int]] = {}
     seen: ClassVar[list[Any]] = []
+    same_handlers: Callable[[tuple[int, ...], list[Any]], bool] | None = None
     users: ClassVar[dict[int, Callable[[int, Any], Any]]] = {}
     handlers: ClassVar[dict[int, Callable[[int, Any], Any]]] = {}
     arrived: ClassVar[dict[int, Any]] = {}
@@ -122,6 +124,16 @@ class Section:
         end()
 
 
+def ask_natively(same_handlers: Any) -> None:
+    """Let the native library find out whether users have set handlers of signals."""
+    _State.same_handlers = same_handlers
+
+
+def in_section() -> bool:
+    """Whether this thread is in a section."""
+    return get_ident() in _State.depths
+
+
 uninterrupted = Section()
 """`with uninterrupted:` is a section."""
 
@@ -155,8 +167,8 @@ def _finish(thread: int) -> None:
 
 
 def _put_handlers_aside() -> None:
-    handlers = [*map(_signal.getsignal, _SIGNALS)]
-    if handlers != _State.seen:
+    if _State.same_handlers is None or not _State.same_handlers(_SIGNALS, _State.seen):
+        handlers = [*map(_signal.getsignal, _SIGNALS)]
         _State.users = {
             number: handler
             for number, handler in zip(_SIGNALS, handlers, strict=True)

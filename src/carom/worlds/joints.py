@@ -12,6 +12,7 @@ from carom.checks import Array, finite
 from carom.description import JointType
 from carom.layouts.codes import SENSED
 from carom.native.gates import alone, in_section
+from carom.native.uninterrupted import uninterrupted
 from carom.scene.joint_motor import Drives
 from carom.worlds.batch import Batch, assign
 from carom.worlds.checks import choose
@@ -231,7 +232,11 @@ class JointBatch(Batch):
         number = len(places) if joints is not None else self._dofs.stop - self._dofs.start
         worlds = self._chosen(where)
         values = worlds.values(self._take(torques), (number,), "torques")
-        with self._rows_of_dofs(worlds, "dof_torque") as (rows,):
+        if isinstance(columns, slice):
+            # One statement.
+            self._state["dof_torque"][worlds.rows, self._dofs] = values
+            return
+        with uninterrupted, self._rows_of_dofs(worlds, "dof_torque") as (rows,):
             rows[:, columns] = values
 
     @in_section("_scene.lock")

@@ -23,6 +23,7 @@ from carom.scene.named import Named
 from carom.scene.user_constraints import UserConstraint
 from carom.world.world import World
 from carom.worlds.algorithms.linearizing import Linearizing
+from carom.worlds.batch import assign
 from carom.worlds.body import BodyBatch
 from carom.worlds.checkpoint import parameters_of, set_parameters
 from carom.worlds.checks import Mask
@@ -30,7 +31,7 @@ from carom.worlds.chosen import Chosen, world_numbers
 from carom.worlds.contact_queries import ContactQueries
 from carom.worlds.devices import CPU, make_engine
 from carom.worlds.images import Images, ImageTaker
-from carom.worlds.keyframes import reset_to
+from carom.worlds.keyframes import resets_to
 from carom.worlds.lone import copy_coordinates, lone_world
 from carom.worlds.rays import RayCaster, RayHits
 from carom.worlds.saved import SavedWorlds
@@ -316,8 +317,8 @@ class Worlds(ContactQueries, Linearizing, Closed):
             KeyError: No body has a keyframe of this name.
         """
         worlds = world_numbers(self._engine.take(where), self.count)
-        self.times[worlds] = reset_to(self._scene, self._engine, name, worlds)
-        self.halted[worlds] = False
+        writes, time = resets_to(self._scene, self._engine, name, worlds)
+        assign(*writes, (self.times, worlds, time), (self.halted, worlds, False))
 
     @alone("lock")
     def extract(self, world: int) -> World:

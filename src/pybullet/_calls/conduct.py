@@ -3,7 +3,8 @@
 PyBullet's functions are atomic: they are C code that holds the GIL. Here a call has the world for itself from
 its arguments to its results (`native/source/gate.h`), and other threads wait. In the thread itself, signal
 handlers, finalizers and trace functions may run between the lines of a function that only reads: if they call
-functions of this connection, it reads again. In the middle of a function that changes something they do not.
+functions of this connection, it reads again. In the middle of a function that changes something they do not,
+unless all it does is to commit one change: if others come first, that does nothing, and is prepared again.
 """
 
 from __future__ import annotations
@@ -30,6 +31,9 @@ FREE = frozenset(
     | {"executePluginCommand", "loadPlugin", "stepSimulation", "submitProfileTiming", "unloadPlugin"}
 )
 """Functions that do not need the lock of a world, or take it themselves."""
+
+COMMITS = frozenset({"setGravity", "createConstraint", "changeConstraint", "removeConstraint"})
+"""Functions that make one change after they have only read, which `quick.begun` begins."""
 
 _BEGINNINGS = ("calculate", "compute", "get", "ray", "save")
 _READS = frozenset({"performCollisionDetection"})

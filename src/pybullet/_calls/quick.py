@@ -11,8 +11,10 @@ from threading import Lock
 from typing import TYPE_CHECKING
 
 from carom.layouts.quick_calls import CHANGE_DYNAMICS
+from carom.native.change import changes_made
+from carom.native.uninterrupted import in_section
 from pybullet._calls.builtin import Export, exports, vectorcall
-from pybullet._calls.conduct import FREE, client_place, reads
+from pybullet._calls.conduct import COMMITS, FREE, client_place, reads
 from pybullet._calls.errors import logger
 
 if TYPE_CHECKING:
@@ -99,6 +101,14 @@ def install() -> QuickCalls | None:
     return _Installed.calls
 
 
+def begun() -> int:
+    """`begun` of the change that a function of `COMMITS` makes; to be asked first.
+
+    It is -1 in a section, where nothing comes in between, and where the library does not call again.
+    """
+    return -1 if _Installed.calls is None or in_section() else changes_made()
+
+
 def pause(*, paused: bool) -> None:
     """Leaves all calls that name a connection to Python if `paused`, otherwise lets the library try them."""
     with _installing:
@@ -110,7 +120,8 @@ def pause(*, paused: bool) -> None:
 def _guard(calls: QuickCalls, name: str, export: Export) -> None:
     from carom.layouts.gates import Conduct
 
-    conduct = Conduct.FREE if name in FREE else Conduct.READS if reads(name) else Conduct.CHANGES
+    conduct = Conduct.READS if reads(name) else Conduct.COMMITS if name in COMMITS else Conduct.CHANGES
+    conduct = Conduct.FREE if name in FREE else conduct
     if name in _KERNELS:
         _quicken(calls, export, *_KERNELS[name])
     elif conduct == Conduct.FREE:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from threading import current_thread, local
 from typing import Any
 
+from carom.native.change import Outdated
+from carom.native.gates import again
 from carom.remote.connection import Connection
 from carom.remote.errors import Malformed, NoServer, RemoteError
 from carom.remote.frames import OF_RESULTS, Frame, check_size
@@ -129,7 +131,10 @@ class Served:
         if function.name == _STEP:
             return function.plain(*arguments, **keywords)
         with self._client.lock:
-            return function.plain(*arguments, **keywords)
+            try:
+                return function.plain(*arguments, **keywords)
+            except Outdated:
+                return again(function.plain, *arguments, **keywords)
 
 
 def _checked(request: Any) -> tuple[str, list[Any], dict[str, Any]]:

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import IDENTITY, Pose
 from carom.layouts.codes import UserConstraintKind
+from carom.native.change import Change
 from pybullet._calls.arguments import Vector, integer, real
 from pybullet._calls.builtin import exported
 from pybullet._calls.constants import JOINT_GEAR, JOINT_POINT2POINT
 from pybullet._calls.errors import fail, logger
 from pybullet._calls.optional_vectors import optional_rotation, optional_vector3
+from pybullet._calls.quick import begun
 from pybullet._clients.clients import Client, client_of
 from pybullet._clients.lookup import link_of, no_body
 from pybullet._maths.rotations import unit
@@ -91,7 +93,7 @@ def createConstraint(
         >>> round(p.getBasePositionAndOrientation(cube)[0][2], 2)
         1.0
     """
-    client = client_of(physicsClientId)
+    change, client = Change(begun=begun()), client_of(physicsClientId)
     parent = _body(client, parentBodyUniqueId, "parentBodyUniqueId")
     parent_link = link_of(parent, parentLinkIndex, "parentLinkIndex", _FAILED)
     child, child_link = None, integer(childLinkIndex, "childLinkIndex")
@@ -107,17 +109,11 @@ def createConstraint(
     parent_frame = _frame(parentFramePosition, parentFrameOrientation, *_PARENT_FRAME)
     child_frame = _frame(childFramePosition, childFrameOrientation, *_CHILD_FRAME)
     axis = optional_vector3(jointAxis, _FAILED, "jointAxis") or IDENTITY.position
+    world, ends = client.world, (parent, parent_link, child, child_link)
     with client.lock:
-        constraint = client.world.constrain(
-            kind,
-            parent,
-            parent_link,
-            child,
-            child_link,
-            axis=axis,
-            parent_frame=parent_frame,
-            child_frame=child_frame,
-        )
+        constraint = world.user_constraints.new(kind, *ends, axis, parent_frame, child_frame)
+        world.note_constraint(change, constraint)
+        change.commit()
     return constraint.id
 
 
@@ -156,7 +152,7 @@ def changeConstraint(
         >>> p.getConstraintInfo(tie)[10]
         50.0
     """
-    client = client_of(physicsClientId)
+    first, client = begun(), client_of(physicsClientId)
     constraint = client.world.user_constraints.get(integer(userConstraintUniqueId, "userConstraintUniqueId"))
     force, ratio = real(maxForce, "maxForce"), real(gearRatio, "gearRatio")
     auxiliary, share = integer(gearAuxLink, "gearAuxLink"), real(erp, "erp")
@@ -186,7 +182,7 @@ def changeConstraint(
             values["relative_position_target"] = target
         if share >= 0.0:
             values["erp"] = share
-        client.world.change_constraint(constraint, values)
+        client.world.change_constraint(constraint, values, first)
 
 
 @exported
@@ -206,7 +202,7 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
         >>> p.getNumConstraints()
         0
     """
-    client = client_of(physicsClientId)
+    change, client = Change(begun=begun()), client_of(physicsClientId)
     number = integer(userConstraintUniqueId, "userConstraintUniqueId")
     constraint = client.world.user_constraints.get(number)
     if number in client.world.contact_arrays.soft.anchors:
@@ -219,7 +215,8 @@ def removeConstraint(userConstraintUniqueId: int, physicsClientId: int = 0) -> N
         logger.warning("removeConstraint: there is no constraint %s.", number)
         return
     with client.lock:
-        client.world.remove_constraint(constraint)
+        client.world.note_no_constraint(change, constraint)
+        change.commit()
 
 
 @exported

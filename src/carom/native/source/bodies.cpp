@@ -12,12 +12,6 @@ enum { LINK_NUMBERS = 3 * POSE_NUMBERS + SPATIAL_NUMBERS, MAX_LINKS = 32 };
 
 bool is_given(double number) { return number == number; }
 
-// The counter of a contact's warm start after a body was moved; as in `contact_arrays.py`.
-double cold_start(double counter) {
-    const bool held = counter == contacts::HOLDING || counter == contacts::HELD_BEFORE;
-    return held ? contacts::HELD_BEFORE : 0.0;
-}
-
 struct Pose {
     Vector position;
     Quaternion orientation;
@@ -93,6 +87,17 @@ CAROM_QUICK(apply_torque) {
     return 1;
 }
 
+// Contacts of a scene are not warm started in the next step, because a body was moved; as in `contact_arrays.py`. It is
+// called as a kernel is.
+extern "C" CAROM_EXPORT void carom_start_cold(void* its_scene, void*) {
+    const Scene& scene = *static_cast<const Scene*>(its_scene);
+    for (int32_t i = 0; i < *scene.contact_count && i < scene.contact_room; ++i) {
+        double& counter = scene.contact_warm_starts[i];
+        const bool held = counter == contacts::HOLDING || counter == contacts::HELD_BEFORE;
+        counter = held ? contacts::HELD_BEFORE : 0.0;
+    }
+}
+
 // Arguments: body, position, orientation, connection.
 CAROM_QUICK(place_base) {
     const Body& body = *call->body;
@@ -115,8 +120,7 @@ CAROM_QUICK(place_base) {
     for (int i = 0; i < POSE_NUMBERS; ++i)
         moved |= body.position[i] != before[i];
     note_reset(scene, body.tree, moved);
-    for (int32_t i = 0; i < *scene.contact_count && i < scene.contact_room; ++i)
-        scene.contact_warm_starts[i] = cold_start(scene.contact_warm_starts[i]);
+    carom_start_cold(const_cast<Scene*>(&scene), nullptr);
     run(scene.find_poses, body.tree);
     return 1;
 }

@@ -8,62 +8,16 @@
 #include "python.h"
 #include "table_rows.h"
 
-// Those functions of Python that this file uses, in a table that `carom.native.change` fills. It is no part of the
-// table `python`, which waits for the first connection.
-#define CAROM_CHANGE_FUNCTIONS(F)                                       \
-    F(PyObject*, PyObject_GenericGetAttr, (PyObject*, PyObject*))       \
-    F(int, PyObject_GenericSetAttr, (PyObject*, PyObject*, PyObject*))  \
-    F(PyObject*, PyTuple_GetItem, (PyObject*, intptr_t))                \
-    F(intptr_t, PyList_Size, (PyObject*))                               \
-    F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                 \
-    F(int, PyList_SetItem, (PyObject*, intptr_t, PyObject*))            \
-    F(int, PyList_SetSlice, (PyObject*, intptr_t, intptr_t, PyObject*)) \
-    F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**)) \
-    F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))       \
-    F(int, PyDict_SetItem, (PyObject*, PyObject*, PyObject*))           \
-    F(int, PyDict_DelItem, (PyObject*, PyObject*))                      \
-    F(void, PyDict_Clear, (PyObject*))                                  \
-    F(int, PyDict_Update, (PyObject*, PyObject*))                       \
-    F(int, PyBytes_AsStringAndSize, (PyObject*, char**, intptr_t*))     \
-    F(long long, PyLong_AsLongLong, (PyObject*))                        \
-    F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
-    F(void, PyBuffer_Release, (PyBuffer*))                              \
-    F(void*, PyMem_Malloc, (uintptr_t))                                 \
-    F(void, PyMem_Free, (void*))                                        \
-    F(PyObject*, PyErr_NoMemory, ())                                    \
-    F(PyObject*, PyErr_Occurred, ())                                    \
-    F(void, PyErr_Clear, ())                                            \
-    F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))          \
-    F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))           \
-    F(void, Py_IncRef, (PyObject*))                                     \
-    F(void, Py_DecRef, (PyObject*))
-
-struct ChangeFunctions {
-#define F(result, name, arguments) result(*name) arguments;
-    CAROM_CHANGE_FUNCTIONS(F)
-#undef F
-};
-
-extern "C" CAROM_EXPORT ChangeFunctions carom_change_table;
-ChangeFunctions carom_change_table;
-
-// Names of the functions that the host writes to the table, in order.
-#define F(result, name, arguments) #name " "
-extern "C" CAROM_EXPORT const char carom_change_functions[] = CAROM_CHANGE_FUNCTIONS(F);
-#undef F
-
 extern "C" CAROM_EXPORT int64_t carom_changes_made;
 int64_t carom_changes_made = 0;
 
 namespace {
 
-const ChangeFunctions& host = carom_change_table;
-
-// What a change consists of: a dictionary of attributes, and lists.
+// What a change consists of: a dictionary of attributes, lists, and records in byte strings.
 enum Part { ATTRIBUTES, ITEMS, CONTENTS, MORE, WRITES, CUTS, BLOCKS, RUNS, BEGUN };
 
-// Flags of buffers: any strides, with or without permission to write.
-constexpr int STRIDED = 0x18, WRITABLE = 0x01;
+// Flags of buffers: any strides, or none at all; permission to write.
+constexpr int STRIDED = 0x18, CONTIGUOUS = 0x38, WRITABLE = 0x01;
 
 // Exchanges parts of a change that are Python's objects. `missing` stands for no value. Functions return false if memory
 // is short, with an error of Python; then they have done nothing.
@@ -71,18 +25,18 @@ struct Exchange {
     PyObject* missing;
 
     bool attribute(PyObject* owner, PyObject* values, PyObject* name, PyObject* value) {
-        PyObject* old = host.PyObject_GenericGetAttr(owner, name);
+        PyObject* old = python.PyObject_GenericGetAttr(owner, name);
         if (!old) {
-            host.PyErr_Clear();
-            host.Py_IncRef(old = missing);
+            python.PyErr_Clear();
+            python.Py_IncRef(old = missing);
         }
-        host.Py_IncRef(value);
-        const bool made = !host.PyObject_GenericSetAttr(owner, name, value == missing ? nullptr : value);
+        python.Py_IncRef(value);
+        const bool made = !python.PyObject_GenericSetAttr(owner, name, value == missing ? nullptr : value);
         // The key is there, so that this takes no memory.
         if (made)
-            host.PyDict_SetItem(values, name, old);
-        host.Py_DecRef(value);
-        host.Py_DecRef(old);
+            python.PyDict_SetItem(values, name, old);
+        python.Py_DecRef(value);
+        python.Py_DecRef(old);
         return made;
     }
 
@@ -90,9 +44,9 @@ struct Exchange {
     bool attributes(PyObject* owners, intptr_t& count) {
         intptr_t place = 0, made = 0;
         PyObject *number, *entry, *name, *value;
-        while (made < count && host.PyDict_Next(owners, &place, &number, &entry)) {
-            PyObject *owner = host.PyTuple_GetItem(entry, 0), *values = host.PyTuple_GetItem(entry, 1);
-            for (intptr_t within = 0; made < count && host.PyDict_Next(values, &within, &name, &value); ++made) {
+        while (made < count && python.PyDict_Next(owners, &place, &number, &entry)) {
+            PyObject *owner = python.PyTuple_GetItem(entry, 0), *values = python.PyTuple_GetItem(entry, 1);
+            for (intptr_t within = 0; made < count && python.PyDict_Next(values, &within, &name, &value); ++made) {
                 if (!attribute(owner, values, name, value)) {
                     count = made;
                     return false;
@@ -105,63 +59,64 @@ struct Exchange {
 
     // An item, at a place in a list of dictionaries, keys and values.
     bool item(PyObject* list, intptr_t place) {
-        PyObject *dictionary = host.PyList_GetItem(list, place), *key = host.PyList_GetItem(list, place + 1);
-        PyObject *value = host.PyList_GetItem(list, place + 2), *old = host.PyDict_GetItemWithError(dictionary, key);
-        if (!old && host.PyErr_Occurred())
+        PyObject *dictionary = python.PyList_GetItem(list, place), *key = python.PyList_GetItem(list, place + 1);
+        PyObject *value = python.PyList_GetItem(list, place + 2),
+                 *old = python.PyDict_GetItemWithError(dictionary, key);
+        if (!old && python.PyErr_Occurred())
             return false;
         const bool is_new = !old;
         if (is_new)
             old = missing;
-        host.Py_IncRef(old);
-        host.Py_IncRef(value);
-        const bool made = value != missing ? !host.PyDict_SetItem(dictionary, key, value)
-                                           : is_new || !host.PyDict_DelItem(dictionary, key);
+        python.Py_IncRef(old);
+        python.Py_IncRef(value);
+        const bool made = value != missing ? !python.PyDict_SetItem(dictionary, key, value)
+                                           : is_new || !python.PyDict_DelItem(dictionary, key);
         if (made)
-            host.PyList_SetItem(list, place + 2, old);
+            python.PyList_SetItem(list, place + 2, old);
         else
-            host.Py_DecRef(old);
-        host.Py_DecRef(value);
+            python.Py_DecRef(old);
+        python.Py_DecRef(value);
         return made;
     }
 
     // All items of a dictionary, at a place in a list of dictionaries, contents and copies of their present contents.
     bool content(PyObject* list, intptr_t place) {
-        PyObject* dictionary = host.PyList_GetItem(list, place);
-        PyObject *next = host.PyList_GetItem(list, place + 1), *now = host.PyList_GetItem(list, place + 2);
-        host.PyDict_Clear(dictionary);
-        if (host.PyDict_Update(dictionary, next)) {
+        PyObject* dictionary = python.PyList_GetItem(list, place);
+        PyObject *next = python.PyList_GetItem(list, place + 1), *now = python.PyList_GetItem(list, place + 2);
+        python.PyDict_Clear(dictionary);
+        if (python.PyDict_Update(dictionary, next)) {
             PyObject *type, *value, *traceback;
-            host.PyErr_Fetch(&type, &value, &traceback);
-            host.PyDict_Clear(dictionary);
-            host.PyDict_Update(dictionary, now);
-            host.PyErr_Restore(type, value, traceback);
+            python.PyErr_Fetch(&type, &value, &traceback);
+            python.PyDict_Clear(dictionary);
+            python.PyDict_Update(dictionary, now);
+            python.PyErr_Restore(type, value, traceback);
             return false;
         }
-        host.Py_IncRef(next);
-        host.Py_IncRef(now);
-        host.PyList_SetItem(list, place + 1, now);
-        host.PyList_SetItem(list, place + 2, next);
+        python.Py_IncRef(next);
+        python.Py_IncRef(now);
+        python.PyList_SetItem(list, place + 1, now);
+        python.PyList_SetItem(list, place + 2, next);
         return true;
     }
 
     // Items for the end of a list, at a place in a list of such pairs.
     bool extend(PyObject* list, intptr_t place) {
-        PyObject *extended = host.PyList_GetItem(list, place), *more = host.PyList_GetItem(list, place + 1);
-        const intptr_t length = host.PyList_Size(extended);
-        return length >= 0 && !host.PyList_SetSlice(extended, length, length, more);
+        PyObject *extended = python.PyList_GetItem(list, place), *more = python.PyList_GetItem(list, place + 1);
+        const intptr_t length = python.PyList_Size(extended);
+        return length >= 0 && !python.PyList_SetSlice(extended, length, length, more);
     }
 
     void shorten(PyObject* list, intptr_t place) {
-        PyObject *extended = host.PyList_GetItem(list, place), *more = host.PyList_GetItem(list, place + 1);
-        const intptr_t length = host.PyList_Size(extended);
-        host.PyList_SetSlice(extended, length - host.PyList_Size(more), length, nullptr);
+        PyObject *extended = python.PyList_GetItem(list, place), *more = python.PyList_GetItem(list, place + 1);
+        const intptr_t length = python.PyList_Size(extended);
+        python.PyList_SetSlice(extended, length - python.PyList_Size(more), length, nullptr);
     }
 
     // All of them, or none.
     bool all(PyObject* const* parts) {
         intptr_t attributes_made = INTPTR_MAX, items = 0, contents = 0, mores = 0;
-        const intptr_t item_end = host.PyList_Size(parts[ITEMS]), content_end = host.PyList_Size(parts[CONTENTS]);
-        const intptr_t more_end = host.PyList_Size(parts[MORE]);
+        const intptr_t item_end = python.PyList_Size(parts[ITEMS]), content_end = python.PyList_Size(parts[CONTENTS]);
+        const intptr_t more_end = python.PyList_Size(parts[MORE]);
         bool made = attributes(parts[ATTRIBUTES], attributes_made);
         for (; made && items < item_end; items += made ? 3 : 0)
             made = item(parts[ITEMS], items);
@@ -172,7 +127,7 @@ struct Exchange {
         if (made)
             return true;
         PyObject *type, *value, *traceback;
-        host.PyErr_Fetch(&type, &value, &traceback);
+        python.PyErr_Fetch(&type, &value, &traceback);
         while ((mores -= 2) >= 0)
             shorten(parts[MORE], mores);
         while ((contents -= 3) >= 0)
@@ -180,7 +135,7 @@ struct Exchange {
         while ((items -= 3) >= 0)
             item(parts[ITEMS], items);
         attributes(parts[ATTRIBUTES], attributes_made);
-        host.PyErr_Restore(type, value, traceback);
+        python.PyErr_Restore(type, value, traceback);
         return false;
     }
 };
@@ -204,25 +159,30 @@ struct Buffers {
 
     ~Buffers() {
         while (count)
-            host.PyBuffer_Release(&buffers[--count]);
-        host.PyMem_Free(buffers);
+            python.PyBuffer_Release(&buffers[--count]);
+        python.PyMem_Free(buffers);
     }
 
-    // False after an error.
+    // False after an error: nothing is written unless each target gets exactly as many bytes as it has.
     bool get(PyObject* arrays) {
-        const intptr_t wanted = host.PyList_Size(arrays);
+        const intptr_t wanted = python.PyList_Size(arrays);
         if (!wanted)
             return true;
-        buffers = static_cast<PyBuffer*>(host.PyMem_Malloc(wanted * sizeof(PyBuffer)));
+        buffers = static_cast<PyBuffer*>(python.PyMem_Malloc(wanted * sizeof(PyBuffer)));
         if (!buffers) {
-            host.PyErr_NoMemory();
+            python.PyErr_NoMemory();
             return false;
         }
         for (; count < wanted; ++count) {
-            const int flags = count % 2 ? STRIDED : STRIDED | WRITABLE;
-            if (host.PyObject_GetBuffer(host.PyList_GetItem(arrays, count), &buffers[count], flags))
+            const int flags = count % 2 ? CONTIGUOUS : STRIDED | WRITABLE;
+            if (python.PyObject_GetBuffer(python.PyList_GetItem(arrays, count), &buffers[count], flags))
                 return false;
         }
+        for (intptr_t i = 0; i < count; i += 2)
+            if (buffers[i].bytes != buffers[i + 1].bytes) {
+                python.PyErr_SetString(python.ValueError, "too few or too many numbers for what they are written to");
+                return false;
+            }
         return true;
     }
 
@@ -241,18 +201,15 @@ struct Buffers {
     }
 };
 
-// Calls a function with each record in a list of byte strings.
+// Calls a function with each record in a byte string.
 template <typename Record, typename Function>
-void each(PyObject* list, Function function) {
-    const intptr_t count = host.PyList_Size(list);
-    for (intptr_t i = 0; i < count; ++i) {
-        char* bytes;
-        intptr_t size;
-        host.PyBytes_AsStringAndSize(host.PyList_GetItem(list, i), &bytes, &size);
-        const Record* record = reinterpret_cast<const Record*>(bytes);
-        for (intptr_t left = size / intptr_t(sizeof(Record)); left; --left, ++record)
-            function(*record);
-    }
+void each(PyObject* records, Function function) {
+    char* bytes;
+    intptr_t size;
+    python.PyBytes_AsStringAndSize(records, &bytes, &size);
+    const Record* record = reinterpret_cast<const Record*>(bytes);
+    for (intptr_t left = size / intptr_t(sizeof(Record)); left; --left, ++record)
+        function(*record);
 }
 
 }  // namespace
@@ -273,7 +230,7 @@ static void launch(const KernelRun& launched) {
 // - a dictionary of pairs of an object and its attributes, a dictionary;
 // - lists of dictionaries, keys and values; of dictionaries, contents and copies of their present contents; of lists and
 //   items for their ends; of arrays and what is written to them, each in turn;
-// - lists of byte strings of records: `RowCut`, `Block` and `KernelRun`;
+// - byte strings of records: `RowCut`, `Block` and `KernelRun`;
 // - the number of changes at which it was begun: if others have been made since, nothing is done, and this number is
 //   returned. -1 if that is of no importance.
 // Rows are taken out of tables before memory is written, and kernels run after that.
@@ -281,9 +238,9 @@ extern "C" CAROM_EXPORT PyObject* carom_commit(PyObject* missing, PyObject* cons
     Buffers writes;
     if (!writes.get(parts[WRITES]))
         return nullptr;
-    const int64_t begun = host.PyLong_AsLongLong(parts[BEGUN]);
+    const int64_t begun = python.PyLong_AsLongLong(parts[BEGUN]);
     if (begun >= 0 && begun != carom_changes_made) {
-        host.Py_IncRef(parts[BEGUN]);
+        python.Py_IncRef(parts[BEGUN]);
         return parts[BEGUN];
     }
     if (!Exchange{missing}.all(parts))
@@ -293,7 +250,7 @@ extern "C" CAROM_EXPORT PyObject* carom_commit(PyObject* missing, PyObject* cons
     writes.copy();
     each<Block>(parts[BLOCKS], [](const Block& block) { carom_copy_blocks(&block, 1); });
     each<KernelRun>(parts[RUNS], launch);
-    host.Py_IncRef(missing);
+    python.Py_IncRef(missing);
     return missing;
 }
 

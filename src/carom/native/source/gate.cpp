@@ -123,16 +123,19 @@ PyObject* change(Gate& gate, PyObject* function, Arguments arguments, intptr_t c
     return nullptr;
 }
 
-// Another call that runs in the middle may change the world, or use the same memory for its results. Then the result is
-// dropped, and the function called again where nothing can interrupt it.
-PyObject* read(Gate& gate, PyObject* function, Arguments arguments, intptr_t count, PyObject* names) {
+// Another call that runs in the middle may change the world, or use the same memory for the results of a function that
+// reads. Then the result is dropped, and the function called again where nothing can interrupt it. A function that makes
+// one change has done nothing if others came before it (`carom_commit`); otherwise it has been the first.
+PyObject* attempt(
+    const Guard& guard, Gate& gate, PyObject* function, Arguments arguments, intptr_t count, PyObject* names
+) {
     {
         const Inside inside(gate);
         if (inside.outcome != ENTERED)
             return nullptr;
-        const int64_t number = ++gate.calls;
+        const int64_t number = ++gate.calls, made = carom_changes_made;
         PyObject* result = python.PyObject_Vectorcall(function, arguments, count, names);
-        if (gate.calls == number)
+        if (guard.conduct == READS ? gate.calls == number : result || carom_changes_made == made)
             return result;
         if (result)
             python.Py_DecRef(result);
@@ -211,7 +214,7 @@ PyObject* call_alone(Guard& guard, PyObject* function, Arguments arguments, intp
         guard.is_known = guard.is_known || result;
         return result;
     }
-    return read(*gate, function, arguments, count, names);
+    return attempt(guard, *gate, function, arguments, count, names);
 }
 
 // The table of gates by number of the connection, for the host.

@@ -6,6 +6,9 @@
 
 #include "layouts.h"
 
+// How many changes have been made so far, and steps of worlds; see `change.cpp`.
+extern "C" int64_t carom_changes_made;
+
 enum Outcome { FAILED = -1, TAKEN_BY_OTHERS, ENTERED };
 
 // Takes the lock if no other thread has it.

@@ -23,6 +23,9 @@ struct PyBuffer {
     void* internal;
 };
 
+// The C code of a builtin that takes one argument.
+typedef PyObject* (*PyFunction)(PyObject*, PyObject*);
+
 // Result, name and arguments of each function.
 #define CAROM_PYTHON_FUNCTIONS(F)                                       \
     F(PyObject*, PyTuple_New, (intptr_t))                               \
@@ -31,35 +34,52 @@ struct PyBuffer {
     F(int, PyTuple_SetItem, (PyObject*, intptr_t, PyObject*))           \
     F(intptr_t, PyList_Size, (PyObject*))                               \
     F(PyObject*, PyList_GetItem, (PyObject*, intptr_t))                 \
+    F(int, PyList_SetItem, (PyObject*, intptr_t, PyObject*))            \
+    F(int, PyList_SetSlice, (PyObject*, intptr_t, intptr_t, PyObject*)) \
     F(intptr_t, PyDict_Size, (PyObject*))                               \
     F(PyObject*, PyDict_GetItemWithError, (PyObject*, PyObject*))       \
     F(int, PyDict_Next, (PyObject*, intptr_t*, PyObject**, PyObject**)) \
+    F(int, PyDict_SetItem, (PyObject*, PyObject*, PyObject*))           \
+    F(int, PyDict_DelItem, (PyObject*, PyObject*))                      \
+    F(void, PyDict_Clear, (PyObject*))                                  \
+    F(int, PyDict_Update, (PyObject*, PyObject*))                       \
+    F(int, PyBytes_AsStringAndSize, (PyObject*, char**, intptr_t*))     \
     F(intptr_t, PySequence_Size, (PyObject*))                           \
     F(PyObject*, PySequence_GetItem, (PyObject*, intptr_t))             \
     F(PyObject*, PyObject_GetAttr, (PyObject*, PyObject*))              \
     F(int, PyObject_SetAttr, (PyObject*, PyObject*, PyObject*))         \
+    F(PyObject*, PyObject_GenericGetAttr, (PyObject*, PyObject*))       \
+    F(int, PyObject_GenericSetAttr, (PyObject*, PyObject*, PyObject*))  \
     F(PyObject*, PyFloat_FromDouble, (double))                          \
     F(double, PyFloat_AsDouble, (PyObject*))                            \
     F(PyObject*, PyLong_FromLong, (long))                               \
     F(double, PyLong_AsDouble, (PyObject*))                             \
+    F(long long, PyLong_AsLongLong, (PyObject*))                        \
     F(intptr_t, PyNumber_AsSsize_t, (PyObject*, PyObject*))             \
     F(int, PyUnicode_CompareWithASCIIString, (PyObject*, const char*))  \
     F(PyObject*, PyErr_Occurred, ())                                    \
+    F(void, PyErr_SetString, (PyObject*, const char*))                  \
+    F(PyObject*, PyErr_NoMemory, ())                                    \
     F(void, PyErr_Clear, ())                                            \
     F(void, PyErr_Fetch, (PyObject**, PyObject**, PyObject**))          \
     F(void, PyErr_Restore, (PyObject*, PyObject*, PyObject*))           \
     F(unsigned long, PyThread_get_thread_ident, ())                     \
     F(int, PyObject_GetBuffer, (PyObject*, PyBuffer*, int))             \
     F(void, PyBuffer_Release, (PyBuffer*))                              \
+    F(void*, PyMem_Malloc, (uintptr_t))                                 \
+    F(void, PyMem_Free, (void*))                                        \
     F(void, Py_IncRef, (PyObject*))                                     \
     F(void, Py_DecRef, (PyObject*))                                     \
     F(PyObject*, PyObject_CallObject, (PyObject*, PyObject*))           \
+    F(PyFunction, PyCFunction_GetFunction, (PyObject*))                 \
+    F(PyObject*, PyCFunction_GetSelf, (PyObject*))                      \
+    F(int, PyCFunction_GetFlags, (PyObject*))                           \
     F(void*, PyEval_SaveThread, ())                                     \
     F(void, PyEval_RestoreThread, (void*))                              \
     F(PyObject*, PyObject_Vectorcall, (PyObject*, PyObject* const*, intptr_t, PyObject*))
 
-// Singletons.
-#define CAROM_PYTHON_OBJECTS(F) F(None) F(True) F(False)
+// Singletons, and a class.
+#define CAROM_PYTHON_OBJECTS(F) F(None) F(True) F(False) F(ValueError)
 // Types; instances of their subclasses are not accepted.
 #define CAROM_PYTHON_TYPES(F) F(float) F(int) F(tuple) F(list) F(range) F(ndarray) F(float64)
 

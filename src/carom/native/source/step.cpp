@@ -3,8 +3,6 @@
 #include "export.h"
 #include "quick_calls.h"
 
-extern "C" int64_t carom_changes_made;
-
 namespace {
 
 // Keeps an object alive, together with all that it owns.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from math import sqrt
 from struct import Struct
@@ -32,7 +33,9 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 _NO_REACTION = (0.0,) * BASE_VELOCITIES
+_PACK_POSE = Struct(f"{BASE_POSITIONS}d").pack
 _PACK_VELOCITY = Struct(f"{BASE_VELOCITIES}d").pack
+_QUATERNION = 4
 
 JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
 """A joint, its position coordinates, and its velocity coordinates; None keeps them."""
@@ -150,17 +153,14 @@ class BodyCore(Closed):
             position: [m], world axes.
             orientation: Quaternion (x, y, z, w); normalised here.
         """
-        x, y, z, w = orientation
-        squared = x * x + y * y + z * z + w * w
+        (x, y, z), (i, j, k, w) = position, orientation
+        squared = i * i + j * j + k * k + w * w
         # A pose that was read and is written back must not change in the last digit.
         scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
-        change = Change(begun=changes_made())
+        begun, packed = changes_made(), _PACK_POSE(x, y, z, i * scale, j * scale, k * scale, w * scale)
         world, first = world_of(self), self.first_position
-        pose = *position, x * scale, y * scale, z * scale, w * scale
-        change.write_numbers(world.position_memory[first : first + BASE_POSITIONS], pose)
-        world.contact_arrays.note_cold_start(change)
-        world.note_link_poses(change, self)
-        change.commit()
+        place = world.position_memory[first : first + BASE_POSITIONS]
+        change_memory([place, packed], begun, world.pose_run(self) + world.quick.cold_start)
 
     @whole("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
@@ -168,10 +168,12 @@ class BodyCore(Closed):
 
         A fixed base moves with it, and as in Bullet the velocity turns with the base.
         """
-        begun, packed = changes_made(), _PACK_VELOCITY(*angular, *linear)
+        (x, y, z), (i, j, k) = linear, angular
+        begun, packed = changes_made(), _PACK_VELOCITY(i, j, k, x, y, z)
         world, first = world_of(self), self.first_velocity
-        change_memory(world.velocity_memory[first : first + BASE_VELOCITIES], packed, begun)
+        change_memory([world.velocity_memory[first : first + BASE_VELOCITIES], packed], begun)
 
+    @whole("world.lock")
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
@@ -182,8 +184,19 @@ class BodyCore(Closed):
             position: All coordinates of the joint (of a spherical joint: quaternion xyzw, normalised here);
                 None keeps them.
             velocity: All velocity coordinates of the joint; None keeps them.
+
+        Raises:
+            ValueError: There are too many or too few numbers.
         """
-        self.set_joint_states([(joint, position, velocity)])
+        begun, writes = changes_made(), list[Any]()
+        world = world_of(self)
+        if position is not None and (count := self.position_count[joint]):
+            first = self.position_index[joint]
+            writes += world.position_memory[first : first + count], array("d", _state_of(position, count))
+        if velocity is not None and (count := self.velocity_count[joint]):
+            first = self.velocity_index[joint]
+            writes += world.velocity_memory[first : first + count], array("d", _state_of(velocity, count))
+        change_memory(writes, begun, world.pose_run(self))
 
     @whole("world.lock")
     def set_joint_states(self, states: Iterable[JointReset]) -> None:
@@ -207,15 +220,12 @@ class BodyCore(Closed):
         for joint, position, velocity in states:
             moves = False
             if position is not None and (count := self.position_count[joint]):
-                if count == 4:
-                    size = sum(component * component for component in position) ** 0.5
-                    position = [component / size for component in position]
-                start = self.position_index[joint] - first
-                moves = coordinates[start : start + count] != [*position]
-                coordinates[start : start + count] = position
+                start, wanted = self.position_index[joint] - first, _state_of(position, count)
+                moves = coordinates[start : start + count] != wanted
+                coordinates[start : start + count] = wanted
             if velocity is not None and (count := self.velocity_count[joint]):
                 start = self.velocity_index[joint] - first_rate
-                rates[start : start + count] = velocity
+                rates[start : start + count] = _state_of(velocity, count)
             moved.append(moves)
         change.write_numbers(place, coordinates)
         change.write_numbers(motion, rates)
@@ -310,6 +320,17 @@ class BodyCore(Closed):
         sensors = model["link_sensor"][self.first_link : self.first_link + 1 + self.joint_count]
         sensors[1 + joint] = sensors[1 + joint] | kind if on else sensors[1 + joint] & ~kind
         model["tree_sensor_count"][self.rows.tree] = len(sensors) - sensors.tolist().count(0)
+
+
+def _state_of(numbers: Sequence[float], count: int) -> list[float]:
+    """The coordinates of a joint, `count` numbers; four are a quaternion, which is normalised."""
+    coordinates = [*numbers]
+    if len(coordinates) != count:
+        raise ValueError(f"a joint with {count} coordinates has got {len(coordinates)} numbers")
+    if count == _QUATERNION:
+        size = sum([component * component for component in coordinates]) ** 0.5
+        return [component / size for component in coordinates]
+    return coordinates
 
 
 def _first_rows(start: int, counts: Sequence[int]) -> tuple[int, ...]:

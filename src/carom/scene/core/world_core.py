@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from carom.description.pose import IDENTITY, Pose, Vector3
 from carom.layouts.codes import UserConstraintKind
-from carom.native.change import Change
-from carom.native.gates import alone
-from carom.native.uninterrupted import uninterrupted
+from carom.native.change import Change, changes_made
+from carom.native.gates import alone, whole
 from carom.scene.core.stepping import Stepping
 from carom.scene.handles import world_of
 from carom.scene.user_constraints import UserConstraint
@@ -59,7 +58,7 @@ class WorldCore(Stepping):
 
     # Constraints
 
-    @alone("lock")
+    @whole("lock")
     def constrain(
         self,
         kind: UserConstraintKind,
@@ -82,38 +81,42 @@ class WorldCore(Stepping):
         """
         places = (parent, parent_link, child, child_link)
         frames = (axis, parent_frame, child_frame)
-        with uninterrupted:
-            # Its number is the next one until it has been added.
-            constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
-            self._add_constraint(constraint)
+        change = Change(begun=changes_made())
+        # Its number is the next one until it has been added.
+        constraint = self.user_constraints.new(kind, *places, *frames, hidden=hidden)
+        self.note_constraint(change, constraint)
+        change.commit()
         return constraint
 
-    @alone("lock")
+    @whole("lock")
     def add_constraint(self, constraint: UserConstraint) -> None:
         """Add a constraint that `user_constraints.new` has made for a body of this world.
 
         Raises:
             ValueError: One of its bodies is no longer in the world.
         """
-        with uninterrupted:
-            self._add_constraint(constraint)
+        change = Change(begun=changes_made())
+        self.note_constraint(change, constraint)
+        change.commit()
 
-    def _add_constraint(self, constraint: UserConstraint) -> None:
+    def note_constraint(self, change: Change, constraint: UserConstraint) -> None:
+        """The same with a change."""
         world_of(constraint.parent)
         if constraint.child is not None:
             world_of(constraint.child)
-        change = Change()
         self.user_constraints.put(change, constraint)
         self.constraints.add_user(change, constraint)
         self.change_constraints(change)
-        change.commit()
 
-    @alone("lock")
+    @whole("lock")
     def remove_constraint(self, constraint: UserConstraint) -> None:
         """Remove a user constraint."""
-        with uninterrupted:
-            change = Change()
-            self.user_constraints.discard(change, constraint.id)
-            self.constraints.remove_user(change, constraint)
-            self.change_constraints(change)
-            change.commit()
+        change = Change(begun=changes_made())
+        self.note_no_constraint(change, constraint)
+        change.commit()
+
+    def note_no_constraint(self, change: Change, constraint: UserConstraint) -> None:
+        """The same with a change."""
+        self.user_constraints.discard(change, constraint.id)
+        self.constraints.remove_user(change, constraint)
+        self.change_constraints(change)

@@ -185,16 +185,22 @@ class WorldData(StateViews, Closed):
         self.pause_step(change)
         self.engine.note_constraints(change)
 
-    def change_constraint(self, constraint: UserConstraint, values: Mapping[str, Any]) -> None:
-        """Change attributes of a constraint, by name: numbers, which change nothing else."""
-        change = Change()
+    def change_constraint(
+        self, constraint: UserConstraint, values: Mapping[str, Any], begun: int = -1
+    ) -> None:
+        """Change attributes of a constraint, by name: numbers, which change nothing else; all at once.
+
+        `begun` is that of `Change`, which raises `Outdated`.
+        """
+        change = Change(begun=begun)
         if self.user_constraints.note_values(change, constraint, values, self.contact_arrays):
             change.commit()
             return
-        self.pause_step(change)
-        change.commit()
-        self.user_constraints.write(self.contact_arrays, self.arrays.state)
-        self.resume_step()
+        with uninterrupted:
+            self.pause_step(change)
+            change.commit()
+            self.user_constraints.write(self.contact_arrays, self.arrays.state)
+            self.resume_step()
 
     def pause_step(self, change: Change) -> None:
         """Set the prepared step aside with a change, after which it needs other numbers."""

@@ -46,5 +46,5 @@ def reset(bodies: Sequence[BodyCore], name: str, *, with_time: bool) -> None:
             world.note_link_velocities(change, body)
             if with_time:
                 world.note_time(change, keyframe.time)
-        world.contact_arrays.note_cold_start(change)
+        change.run_record(world.quick.cold_start, world.quick)
         change.commit()
