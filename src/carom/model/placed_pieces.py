@@ -10,7 +10,8 @@ from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
-from carom.model.bounds import Bounds
+from carom.model.bounds import Bounds, placed_bounds
+from carom.model.compound_tree import as_number, tree_paths
 from carom.model.inertia import placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, as_given
@@ -30,17 +31,20 @@ class PlacedPiece(NamedTuple):
         pose: Its frame in the inertial frame of its link: (x, y, z, qx, qy, qz, qw).
         link: Index of the link in its body; the base is 0.
         depth: In so many compounds, one in the other, Bullet has the piece.
+        path: Where it is in the trees of these compounds, see `compound_tree`.
     """
 
     piece: ShapePiece
     pose: tuple[float, ...]
     link: int
     depth: int
+    path: int = 0
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
     """The pieces of all collision shapes of a link with this index in its body; the base is 0."""
-    placed = []
+    placed: list[PlacedPiece] = []
+    counts: list[int] = []
     for collision in link.collisions:
         rotation, position = placement(link.inertial_frame, collision.frame)
         pose = (*position, *quaternion_from_matrix(rotation))
@@ -54,7 +58,27 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
             pieces = [piece._replace(margin=margin) for piece in pieces]
         depth = int(_is_moved(link, collision)) + _is_compound(collision)
         placed.extend(PlacedPiece(piece, pose, index, depth) for piece in pieces)
-    return placed
+        counts.append(len(pieces))
+    return _with_paths(link, placed, counts, implicit_cylinder) if len(placed) > 1 else placed
+
+
+def _with_paths(
+    link: LinkSpec, placed: Sequence[PlacedPiece], counts: Sequence[int], implicit_cylinder: bool
+) -> list[PlacedPiece]:
+    """The pieces of a link with several ones, with their paths; `counts` are those of its collisions."""
+    bounds = []
+    for collision in link.collisions:
+        place = placement(link.inertial_frame, collision.frame)
+        bounds.append(placed_bounds(collision.geometry, *place, implicit_cylinder=implicit_cylinder))
+    found = []
+    first = 0
+    for count, path in zip(counts, tree_paths(bounds), strict=True):
+        own = placed[first : first + count]
+        boxes = [Bounds(one.piece.center, one.piece.size) for one in own]
+        inner = tree_paths(boxes) if count > 1 else [()]
+        found += [one._replace(path=as_number(path + rest)) for one, rest in zip(own, inner, strict=False)]
+        first += count
+    return found
 
 
 def _is_moved(link: LinkSpec, collision: Collision) -> bool:
