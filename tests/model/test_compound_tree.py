@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from carom.model.bounds import Bounds
-from carom.model.compound_tree import as_number, tree_paths
+from carom.model.placed_pieces import as_number, tree_paths
 
 MANY = 2000
 

@@ -99,7 +99,7 @@ class Shapes:
     shape_pose: Transforms  # in the link's inertial frame
     shape_part: Ints  # see `codes.Part`
     shape_depth: Ints  # in so many compounds, one in the other, Bullet has it
-    shape_path: Ints  # where it is in the tree of its compound, see `model.compound_tree`
+    shape_path: Ints  # where it is in the tree of its compound, see `model.placed_pieces`
     shape_margin: Reals
     shape_breaking: Reals  # breaking distance of contacts [m]
     shape_ccd_radius: Reals  # of the swept sphere of continuous detection [m]

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from pybullet._calls.arguments import integer, sequence
-from pybullet._calls.constants import GEOM_CAPSULE, GEOM_CYLINDER
 from pybullet._calls.errors import error, fail, logger
 from pybullet._calls.optional_vectors import optional_pose
 from pybullet._shapes.shape_arguments import primitive
@@ -41,7 +40,8 @@ _ITEMS = {
     "planeNormals": "plane normal",
     "flags": "flags",
 }
-_WITH_LENGTH = (GEOM_CAPSULE, GEOM_CYLINDER)
+_MISSING = -1.0
+"""Length of what the list has no item for; PyBullet leaves it out."""
 
 
 class ShapeColumns:
@@ -89,14 +89,11 @@ class ShapeColumns:
 
     def primitive(self, index: int) -> Geometry:
         """The geometry of a shape whose type is one of `PRIMITIVES`."""
-        kind, length = self.kinds[index], self._lengths.item(index)
-        if kind in _WITH_LENGTH and length is None:
-            fail(self.problem, "it has no item in lengths.")
         return primitive(
-            kind,
+            self.kinds[index],
             self.problem,
             self._radii.item(index, 0.0),
-            length,
+            self._lengths.item(index, _MISSING),
             self._half_extents.item(index, (1.0, 1.0, 1.0)),
             self._normals.item(index),
             length_name="lengths",

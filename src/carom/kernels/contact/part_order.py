@@ -1,6 +1,6 @@
 """The order in which Bullet comes across the parts of compounds.
 
-The parts of a link are in a tree of bounds; `model.compound_tree` has where. It is searched second children
+The parts of a link are in a tree of bounds; `model.placed_pieces` has where. It is searched second children
 first. Of two compounds the nodes of both trees are divided at once, and those of the second come first.
 """
 
