@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import pybullet as p
-from carom.layouts.contacts import AS_SHAPES
+from carom.layouts.contacts import AS_LINKS, AS_SHAPES
 from carom.world_files.saved_state import add_breaking_distances
 
 HALF_BLOCK = 10.0
@@ -124,6 +124,7 @@ def test_manifolds_of_older_files_have_the_breaking_distance_of_their_shapes():
     contacts = {"overlap_shapes": np.zeros((2, 2), dtype=np.int32)}
     add_breaking_distances(contacts)
     assert contacts["overlap_breaking"].tolist() == [AS_SHAPES, AS_SHAPES]
+    assert contacts["overlap_solved_up_to"].tolist() == [AS_LINKS, AS_LINKS]
 
 
 @pytest.mark.parametrize(

@@ -155,7 +155,7 @@ def test_overlaps_that_remain_keep_their_order():
         [[0, 1, 0, 3, 5], [0, 2, 3, 1, 6], [0, 3, 1, 0, 7], [1, 2, 2, 2, 8]],
         dtype=np.int32,
     )
-    columns = overlaps[:, :2], overlaps[:, 2], overlaps[:, 3], overlaps[:, 4]
+    columns = overlaps[:, :2], overlaps[:, 2], overlaps[:, 3], [overlaps[:, 4]]
 
     def left(*shapes: int) -> list[list[int]]:
         return np.column_stack(without_overlaps(*columns, shapes)).tolist()

@@ -107,38 +107,29 @@ def test_the_order_of_corners_decides_where_a_cylinder_touches_a_hull(
 
 
 @pytest.mark.parametrize(
-    ("shape", "deepest", "error", "phase", "expected"),
+    ("shape", "mass", "deepest", "error", "phase", "bodies", "expected"),
     [
-        (CYLINDER, -0.0038, 8e-6, "contact", True),
-        (call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), -0.0038, 8e-6, "contact", True),
-        (CYLINDER, -0.0015, 8e-6, "contact", False),
-        (CYLINDER, -0.0038, 1e-3, "contact", False),
-        (CYLINDER, -0.0038, 8e-6, "free", False),
-        (call(0, "createCollisionShape", 3), -0.0038, 8e-6, "contact", False),
+        (CYLINDER, 1, -0.0038, 8e-6, "contact", (0,), True),
+        (CYLINDER, 1, -0.0038, 8e-6, "contact", (1, 0), True),
+        (call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), 1, -0.0038, 8e-6, "contact", (0,), True),
+        (CYLINDER, 1, -0.0015, 8e-6, "contact", (0,), False),
+        (CYLINDER, 1, -0.0038, 1e-3, "contact", (0,), False),
+        (CYLINDER, 1, -0.0038, 8e-6, "free", (0,), False),
+        (CYLINDER, 1, -0.0038, 8e-6, "contact", (1,), False),
+        (CYLINDER, 0, -0.0038, 8e-6, "contact", (1,), True),
+        (call(0, "createCollisionShape", 3), 1, -0.0038, 8e-6, "contact", (0,), False),
     ],
 )
 def test_normals_at_edges_of_cylinders_are_of_another_search(
-    shape: Call, deepest: float, error: float, phase: str, expected: bool
+    shape: Call,
+    mass: float,
+    deepest: float,
+    error: float,
+    phase: str,
+    bodies: tuple[int, ...],
+    expected: bool,
 ):
-    calls = [shape, call(1, "createMultiBody", 1, {"$": 0}), STEP, PROBE]
-    difference = Difference(3, "@probe", Place("base.0.2", 0.0, error, error), phase, deepest)
+    made = [call(1, "createMultiBody", mass, {"$": 0}), call(2, "createMultiBody", 1)]
+    calls = [shape, *made, STEP, PROBE]
+    difference = Difference(4, "@probe", Place("base.0.2", 0.0, error, error), phase, deepest, bodies)
     assert (statement(calls, difference) is not None) == expected
-
-
-@pytest.mark.parametrize(
-    ("shape", "bodies", "expected"),
-    [
-        (SURFACE, (0, 1), True),
-        (SURFACE, (0, 2), False),
-        (HULL, (0, 1), False),
-        (call(1, "createCollisionShape", 3, flags=1), (0, 1), False),
-    ],
-)
-def test_links_meet_surfaces_early(shape: Call, bodies: tuple[int, int], expected: bool):
-    cubes = [call(3, "createMultiBody", 1), call(5, "createMultiBody", 1)]
-    surface = call(4, "createMultiBody", 0, -1, linkCollisionShapeIndices=[{"$": 1}])
-    calls = [shape, cubes[0], surface, cubes[1], call(6, "getContactPoints")]
-    pairs = [((bodies[0], -1), (bodies[1], 0))]
-    assert is_known(calls, "links", pairs, []) == expected
-    assert not is_known(calls, "links", pairs, pairs)
-    assert not is_known(calls, "links", [], pairs)

@@ -8,7 +8,6 @@ import pytest
 from tests.differ.test_programs import call, outcome
 from tools.differ.causes.rounding import (
     MEMORY,
-    ORDER_OF_SHAPES,
     ROUNDING,
     doubted_by_pybullet,
 )
@@ -126,26 +125,6 @@ def test_differences_near_the_bound_are_seen_in_other_answers_of_pybullet():
     assert said == ROUNDING
 
 
-@pytest.mark.parametrize(
-    ("reversed_says", "kinds", "expected"),
-    [(1.004, [3, 2], ORDER_OF_SHAPES), (1.003, [3, 2], None), (1.0, [3, 2], None), (1.004, [3], None)],
-)
-def test_shapes_of_a_link_are_taken_in_the_opposite_order(
-    reversed_says: float, kinds: list[int], expected: str | None
-):
-    program = [call(0, "createCollisionShapeArray", shapeTypes=kinds), *PROGRAM[1:]]
-    place = Place("base.0.1", 1.0, 1.004, 2e-3)
-    said = doubted_by_pybullet(
-        Fake(lambda calls: falls(reversed_says if calls[0]["k"]["shapeTypes"] == [2, 3] else 1.0)),
-        Fake(lambda _: falls(1.0)),
-        program,
-        falls(1.0),
-        falls(1.004),
-        Difference(3, "@probe", place, "contact"),
-    )
-    assert said == expected
-
-
 @pytest.mark.parametrize(("share", "expected"), [(1.0, ROUNDING), (0.0, None)])
 def test_joints_are_put_elsewhere_that_a_program_leaves_as_they_are(share: float, expected: str | None):
     types = {"linkJointTypes": [0, 2, 4], "linkParentIndices": [0, 1, 2]}
@@ -183,5 +162,4 @@ def test_what_pybullet_doubts_is_stated():
     pages = (ROOT / "docs" / "differences" / "contact.md", ROOT / "docs" / "conformance" / "method.md")
     text = " ".join(" ".join(page.read_text(encoding="utf-8").split()) for page in pages)
     assert ROUNDING in text
-    assert ORDER_OF_SHAPES in text
     assert MEMORY in text

@@ -61,6 +61,7 @@ class Difference:
         place: Which part of the result differs, and how.
         phase: "start" before the first step, "free" before the first contact, "contact" after it.
         deepest: The least distance [m] of contact points of the step, 0 if none are below; of `@probe` only.
+        bodies: The ids of the bodies whose states differ; of `@probe` only.
     """
 
     call: int
@@ -68,6 +69,7 @@ class Difference:
     place: Place
     phase: str
     deepest: float = 0.0
+    bodies: tuple[int, ...] = ()
 
     @property
     def signature(self) -> str:
@@ -108,14 +110,16 @@ def compare(
             since += phase == "contact"
             if since > STEPS_AFTER_CONTACT or min(x[1][2], y[1][2]) < DEEP:
                 return found
+        bound = after_contact if phase == "contact" else strict
         try:
-            place = difference(function, x, y, after_contact if phase == "contact" else strict)
+            place = difference(function, x, y, bound)
         except _Lost:
             return found
         if place:
             probed = function == "@probe" and x[0] == y[0] == "ok"
             deepest = min(x[1][2], y[1][2]) if probed else 0.0
-            found.append(Difference(number, function, place, phase, deepest))
+            bodies = _bodies_that_differ(x[1][0], y[1][0], bound) if probed else ()
+            found.append(Difference(number, function, place, phase, deepest, bodies))
             if function == "@probe" or x[0] != y[0]:
                 return found
     if ours["died"] and len(b) < len(a):
@@ -175,3 +179,9 @@ def _of_probes(theirs: Any, ours: Any, bound: float) -> Place | None:
     if bound == STRICT and theirs[1] != ours[1]:
         return Place("contacts", theirs[1], ours[1])
     return None
+
+
+def _bodies_that_differ(theirs: Any, ours: Any, bound: float) -> tuple[int, ...]:
+    """The ids of bodies that are elsewhere, or move otherwise."""
+    pairs = zip(theirs, ours, strict=False)
+    return tuple(int(a[0]) for a, b in pairs if first_difference(a[1:4], b[1:4], bound))

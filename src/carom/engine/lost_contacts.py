@@ -13,7 +13,13 @@ from carom.layouts.contacts import OVERLAPS, THERE
 from carom.model.overlap_order import without_overlaps
 from carom.native.tables import ArrayTable
 
-_OVERLAPS = ("overlap_shapes", "overlap_place", "overlap_manifold", "overlap_breaking")
+_OVERLAPS = (
+    "overlap_shapes",
+    "overlap_place",
+    "overlap_manifold",
+    "overlap_breaking",
+    "overlap_solved_up_to",
+)
 
 Rows = dict[str, np.ndarray]
 """Fields of contacts and of overlaps of a world, with all rows there are."""
@@ -32,8 +38,8 @@ def kept_rows(contacts: ArrayTable, lost: Sequence[int], world: int = 0) -> Rows
     # Most bodies touch nothing: then only row numbers can change.
     changed = ("contact_shapes", "contact_warm_start") if stays.all() else fields
     rows = {name: fields[name][:there][stays] for name in changed}
-    pairs, places, manifolds, breaking = (numpy[name][world, : counts[OVERLAPS]] for name in _OVERLAPS)
-    rows.update(zip(_OVERLAPS, without_overlaps(pairs, places, manifolds, breaking, lost), strict=True))
+    pairs, places, manifolds, *distances = (numpy[name][world, : counts[OVERLAPS]] for name in _OVERLAPS)
+    rows.update(zip(_OVERLAPS, without_overlaps(pairs, places, manifolds, distances, lost), strict=True))
     return rows
 
 

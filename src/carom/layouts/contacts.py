@@ -69,6 +69,8 @@ MANY_RESETS, MAX_RESETS = 2**30, 2**31 - 1
 NO_MANIFOLD = -1
 # Breaking distance of manifolds that an older file tells nothing about: that of their shapes.
 AS_SHAPES = -1.0
+# Processing threshold of such manifolds: that of their links.
+AS_LINKS = -1e30
 # How near two shapes are: far; close, so that Bullet takes their bounds for overlapping, without and with a
 # manifold; so near that their contacts are looked for.
 FAR, CLOSE, CLOSE_WITH_MANIFOLD, MEETING = -1, 0, 1, 2
@@ -97,6 +99,7 @@ class Shapes:
     shape_pose: Transforms  # in the link's inertial frame
     shape_part: Ints  # see `codes.Part`
     shape_depth: Ints  # in so many compounds, one in the other, Bullet has it
+    shape_path: Ints  # where it is in the tree of its compound, see `model.placed_pieces`
     shape_margin: Reals
     shape_breaking: Reals  # breaking distance of contacts [m]
     shape_ccd_radius: Reals  # of the swept sphere of continuous detection [m]
@@ -137,7 +140,7 @@ class Shapes:
     link_friction_anchor: IntRows
     link_friction_rank: IntRows  # how it is combined, see `kernels.solver.contact_terms`; 0: as in PyBullet
     link_anisotropy: Vector3Rows  # factors on friction along the axes of the inertial frame
-    link_processing_threshold: RealRows  # contacts with a larger distance are not solved [m]
+    link_processing_threshold: RealRows  # of new manifolds; see `overlap_solved_up_to` [m]
     # Of links whose contacts yield as MuJoCo's, see `kernels.dynamics.contact_compliance`.
     link_reference: Vector4Rows
     link_impedance: Vector4Rows
@@ -176,6 +179,7 @@ class Overlap:
     place: Int32
     manifold: Int32
     breaking: real
+    solved_up_to: real
 
 
 @struct
@@ -188,6 +192,7 @@ class NewOverlap:
     place: Int32  # as in `Overlap`
     manifold: Int32
     breaking: real
+    solved_up_to: real
 
 
 @struct
@@ -296,6 +301,7 @@ class Contacts:
     overlap_place: IntRows  # in the pair cache
     overlap_manifold: IntRows  # place among manifolds, or NO_MANIFOLD
     overlap_breaking: RealRows  # breaking distance with which the manifold was made, or AS_SHAPES [m]
+    overlap_solved_up_to: RealRows  # processing threshold, likewise, or AS_LINKS [m]
     overlap_sorted: IntRows  # the overlaps of trees that can move, in the order of relaxation
     count_contacts: IntRows  # columns: THERE to RESETS_SEEN
 
@@ -497,6 +503,7 @@ class PairRows:
     tree_awake: IntRows  # of an island's root: 1 if a tree of it is active, 0 if it may fall asleep
     constraint_next: IntRows
     contact_next: IntRows
+    contact_solved_up_to: RealRows  # processing threshold of its manifold [m]
     order_first: IntRows  # of each overlap: its first contact, -1 for none
     order_row: IntRows  # overlaps or constraints in the order of relaxation
     order_island: IntRows  # sort key of each of these: the number of its island in Bullet

@@ -38,7 +38,8 @@ class LinkDynamics(Printed):
         contact_mixing: How both are combined with those of another link.
         collision_margin: [m].
         ccd_swept_sphere_radius: [m]; 0 switches continuous detection off.
-        contact_processing_threshold: Maximum distance at which a contact is solved [m].
+        contact_processing_threshold: Maximum distance at which a contact is solved, of pairs whose bounds
+            meet later [m].
         anisotropic_friction: Factors on friction along the link's axes.
         joint_damping: [N m s/rad or N s/m].
         joint_armature: Inertia of the drive, seen at the joint [kg m² or kg].

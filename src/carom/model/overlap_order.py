@@ -13,8 +13,12 @@ from carom.layouts.contacts import NO_MANIFOLD
 
 
 def without_overlaps(
-    pairs: np.ndarray, places: np.ndarray, manifolds: np.ndarray, breaking: np.ndarray, shapes: Iterable[int]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    pairs: np.ndarray,
+    places: np.ndarray,
+    manifolds: np.ndarray,
+    others: Iterable[np.ndarray],
+    shapes: Iterable[int],
+) -> tuple[np.ndarray, ...]:
     """The overlaps that remain when some shapes lose all of theirs.
 
     As in Bullet, one shape after the other loses its overlaps, in the order of the pair cache, and the last
@@ -24,14 +28,14 @@ def without_overlaps(
         pairs: `Contacts.overlap_shapes` of a world, shape (n, 2).
         places: `Contacts.overlap_place`, shape (n,).
         manifolds: `Contacts.overlap_manifold`, shape (n,).
-        breaking: `Contacts.overlap_breaking`, shape (n,) [m].
+        others: Other fields of overlaps, shape (n,).
         shapes: The rows of these shapes.
 
     Returns:
-        The same four without the overlaps that are lost.
+        The same arrays without the overlaps that are lost.
     """
     lost = [np.flatnonzero((pairs == shape).any(axis=1)).tolist() for shape in shapes]
-    left = pairs.copy(), places.copy(), manifolds.copy(), breaking.copy()
+    left = tuple(array.copy() for array in (pairs, places, manifolds, *others))
     if not any(lost):
         return left
     cache, order = np.argsort(places).tolist(), np.argsort(manifolds).tolist()
@@ -42,7 +46,7 @@ def without_overlaps(
     left[1][cache] = np.arange(len(cache))
     left[2][order] = np.arange(len(order))
     kept = sorted(cache)
-    return left[0][kept], left[1][kept], left[2][kept], left[3][kept]
+    return tuple(array[kept] for array in left)
 
 
 def _remove_rows(doomed: set[int], cache: list[int], manifolds: list[int]) -> None:

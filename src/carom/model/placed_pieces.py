@@ -10,7 +10,7 @@ from carom.description import Collision, Mesh, SignedDistanceField
 from carom.description.transform import quaternion_from_matrix
 from carom.logger import Logger
 from carom.model.body_spec import LinkSpec
-from carom.model.bounds import Bounds
+from carom.model.bounds import Bounds, placed_bounds
 from carom.model.inertia import placement, shape_margin
 from carom.model.shape_pieces import ShapePiece, shape_pieces
 from carom.model.swept_spheres import FIRST_MARGIN, as_given
@@ -20,6 +20,11 @@ _log = Logger(__name__)
 _IDENTITY_TOLERANCE = 1e-12
 AXES: tuple[str, ...] = ("shape", "vertex", "face", "corner", "node")
 """The axes of `Shapes` on which a piece has rows of its own."""
+_LEVELS = 30
+"""Levels of a tree that a path has; parts below them come as they were inserted."""
+
+Path = tuple[int, ...]
+"""Which child leads to a part, from the root on: 0 or 1 for each level."""
 
 
 class PlacedPiece(NamedTuple):
@@ -30,17 +35,20 @@ class PlacedPiece(NamedTuple):
         pose: Its frame in the inertial frame of its link: (x, y, z, qx, qy, qz, qw).
         link: Index of the link in its body; the base is 0.
         depth: In so many compounds, one in the other, Bullet has the piece.
+        path: Where it is in the trees of these compounds, see `tree_paths`.
     """
 
     piece: ShapePiece
     pose: tuple[float, ...]
     link: int
     depth: int
+    path: int = 0
 
 
 def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[PlacedPiece]:
     """The pieces of all collision shapes of a link with this index in its body; the base is 0."""
-    placed = []
+    placed: list[PlacedPiece] = []
+    counts: list[int] = []
     for collision in link.collisions:
         rotation, position = placement(link.inertial_frame, collision.frame)
         pose = (*position, *quaternion_from_matrix(rotation))
@@ -54,7 +62,27 @@ def placed_pieces(link: LinkSpec, index: int, implicit_cylinder: bool) -> list[P
             pieces = [piece._replace(margin=margin) for piece in pieces]
         depth = int(_is_moved(link, collision)) + _is_compound(collision)
         placed.extend(PlacedPiece(piece, pose, index, depth) for piece in pieces)
-    return placed
+        counts.append(len(pieces))
+    return _with_paths(link, placed, counts, implicit_cylinder) if len(placed) > 1 else placed
+
+
+def _with_paths(
+    link: LinkSpec, placed: Sequence[PlacedPiece], counts: Sequence[int], implicit_cylinder: bool
+) -> list[PlacedPiece]:
+    """The pieces of a link with several ones, with their paths; `counts` are those of its collisions."""
+    bounds = []
+    for collision in link.collisions:
+        place = placement(link.inertial_frame, collision.frame)
+        bounds.append(placed_bounds(collision.geometry, *place, implicit_cylinder=implicit_cylinder))
+    found = []
+    first = 0
+    for count, path in zip(counts, tree_paths(bounds), strict=True):
+        own = placed[first : first + count]
+        boxes = [Bounds(one.piece.center, one.piece.size) for one in own]
+        inner = tree_paths(boxes) if count > 1 else [()]
+        found += [one._replace(path=as_number(path + rest)) for one, rest in zip(own, inner, strict=False)]
+        first += count
+    return found
 
 
 def _is_moved(link: LinkSpec, collision: Collision) -> bool:
@@ -92,3 +120,53 @@ def row_counts(pieces: Sequence[ShapePiece]) -> dict[str, int]:
 def reach(bounds: Bounds) -> float:
     """Radius of the bounds' enclosing sphere, plus the distance of their centre from the origin [m]."""
     return sqrt(sum(half * half for half in bounds.half)) + sqrt(sum(c * c for c in bounds.center))
+
+
+class _Node:
+    """A leaf, which is a part, or a node with two children and the bounds around them."""
+
+    def __init__(self, bounds: Bounds, part: int) -> None:
+        self.bounds = bounds
+        self.part = part
+        self.children: tuple[_Node, _Node] | None = None
+
+
+def _insert(root: _Node, leaf: _Node) -> None:
+    node = root
+    while node.children is not None:
+        node.bounds = node.bounds.joined(leaf.bounds)
+        first, second = node.children
+        is_nearer = _apart(leaf.bounds, first.bounds) < _apart(leaf.bounds, second.bounds)
+        node = first if is_nearer else second
+    node.children = (_Node(node.bounds, node.part), leaf)
+    node.bounds = node.bounds.joined(leaf.bounds)
+
+
+def _apart(a: Bounds, b: Bounds) -> float:
+    return sum(abs(x - y) for x, y in zip(a.center, b.center, strict=True))
+
+
+def tree_paths(bounds: Sequence[Bounds]) -> list[Path]:
+    """Where Bullet has parts with these bounds in the tree that it searches them by.
+
+    One after the other is inserted beside the leaf at which a descent from the root ends that takes the
+    nearer child each time, by the distance of centres along the three axes. It is the second child of a new
+    node.
+    """
+    root = _Node(bounds[0], 0)
+    for part, box in enumerate(bounds[1:], start=1):
+        _insert(root, _Node(box, part))
+    found: dict[int, Path] = {}
+    waiting: list[tuple[_Node, Path]] = [(root, ())]
+    while waiting:
+        node, path = waiting.pop()
+        if node.children is None:
+            found[node.part] = path
+        else:
+            waiting += [(child, (*path, place)) for place, child in enumerate(node.children)]
+    return [found[part] for part in range(len(bounds))]
+
+
+def as_number(path: Path) -> int:
+    """A path as a number that is greater for parts which a search reaches earlier: the root's level first."""
+    return sum(child << (_LEVELS - 1 - level) for level, child in enumerate(path[:_LEVELS]))

@@ -244,6 +244,7 @@ class ShapeArrays:
         piece, row = placed.piece, at["shape"]
         numpy["shape_pose"][row] = placed.pose
         numpy["shape_depth"][row] = placed.depth
+        numpy["shape_path"][row] = placed.path
         numpy["shape_size"][row] = piece.size
         numpy["shape_margin"][row] = piece.margin
         numpy["shape_center"][row] = piece.center

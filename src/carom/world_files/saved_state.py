@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom.layouts.contacts import AS_SHAPES, CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
+from carom.layouts.contacts import AS_LINKS, AS_SHAPES, CONTACT_COLUMNS, KNOWN, NO_MANIFOLD, RESETS, THERE
 from carom.layouts.magnitudes import MAX_MAGNITUDE
 from carom.native.change import Change
 from carom.scene.snapshot import BodyLayout, Layout, Shape, Snapshot, counted_rows, layout, return_to, take
@@ -105,9 +105,10 @@ def add_overlaps(contacts: dict[str, np.ndarray]) -> None:
 
 
 def add_breaking_distances(contacts: dict[str, np.ndarray]) -> None:
-    """Add the breaking distances of manifolds that older files do not have: those of their shapes."""
-    if "overlap_shapes" in contacts and "overlap_breaking" not in contacts:
-        contacts["overlap_breaking"] = np.full(len(contacts["overlap_shapes"]), AS_SHAPES)
+    """Add the distances of manifolds that older files do not have: those of their shapes and links."""
+    if "overlap_shapes" in contacts:
+        for name, value in (("overlap_breaking", AS_SHAPES), ("overlap_solved_up_to", AS_LINKS)):
+            contacts.setdefault(name, np.full(len(contacts["overlap_shapes"]), value))
 
 
 def add_resets(state: dict[str, np.ndarray], contacts: dict[str, np.ndarray]) -> None:

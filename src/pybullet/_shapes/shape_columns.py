@@ -40,6 +40,8 @@ _ITEMS = {
     "planeNormals": "plane normal",
     "flags": "flags",
 }
+_MISSING = -1.0
+"""Length of what the list has no item for; PyBullet leaves it out."""
 
 
 class ShapeColumns:
@@ -91,7 +93,7 @@ class ShapeColumns:
             self.kinds[index],
             self.problem,
             self._radii.item(index, 0.0),
-            self._lengths.item(index, 0.0),
+            self._lengths.item(index, _MISSING),
             self._half_extents.item(index, (1.0, 1.0, 1.0)),
             self._normals.item(index),
             length_name="lengths",

@@ -304,3 +304,26 @@ def rolling_friction_yields_with_global_cfm(p: Any) -> dict[str, Any]:
         p.resetBaseVelocity(brick, [0, 0, 0], [0.1, 0.2, 0.3])
         series |= under(name, simulate(p, 2 / 240, lambda brick=brick: base_motion(p, brick)))
     return series
+
+
+@scenario()
+def edge_comes_near_an_edge_of_a_mesh(p: Any) -> dict[str, Any]:
+    """A hull falls with an edge down onto the ridge of a mesh, which slows it before it touches."""
+    p.setGravity(0, 0, -9.81)
+    ridge = [[-1, 0, 0], [1, 0, 0], *([x, y, -0.5] for y in (-0.5, 0.5) for x in (-1, 1))]
+    sides = [0, 2, 1, 1, 2, 3, 0, 1, 4, 1, 5, 4]
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_MESH, vertices=ridge, indices=sides))
+    wedge = [[0.1, -0.2, 0], [0.1, 0.2, 0], *([x, y, 0.3] for y in (-0.2, 0.2) for x in (-0.1, 0.3))]
+    hull = p.createCollisionShape(p.GEOM_MESH, vertices=wedge)
+    body = p.createMultiBody(1, hull, basePosition=[0.1, 0, 0.006], baseInertialFramePosition=[0.1, 0, 0.15])
+
+    def observe() -> dict[str, Any]:
+        points = p.getContactPoints()
+        return {
+            "height": p.getBasePositionAndOrientation(body)[0][2],
+            "touches": min(len(points), 1),
+            "distance": min((point[8] for point in points), default=0.0),
+            "force": sum(point[9] for point in points),
+        }
+
+    return simulate(p, 0.08, observe, stride=1)

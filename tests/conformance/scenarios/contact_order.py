@@ -6,11 +6,14 @@ Boxes slide, since bodies at rest are solved more precisely here than in PyBulle
 from __future__ import annotations
 
 from collections.abc import Sequence
+from random import Random
 from typing import Any
 
 from ..scenario import scenario, simulate, under
 
 HALF = 0.1
+_BALLS = 0.6
+_CHANGED, _LIFTED = 5, 40
 
 
 def _boxes(p: Any, heights: Sequence[float]) -> list[int]:
@@ -143,3 +146,92 @@ def rolling_friction_without_a_cone(p: Any) -> dict[str, Any]:
         p.resetBaseVelocity(pair, [0.4, 0.2, 0], [1, 2, 3])
         results |= under(f"cone {cone}", simulate(p, 0.25, lambda b=pair: _places(p, [b]), stride=6))
     return results
+
+
+def _parts(p: Any, seed: int, count: int) -> int:
+    """A link with balls and boxes in random places, all of which touch the ground."""
+    random = Random(seed)
+    spots = random.sample([(0.3 * x, 0.3 * y) for x in range(4) for y in range(3)], count)
+    radii = [random.uniform(0.06, 0.12) for _ in spots]
+    turned = p.getQuaternionFromEuler([0, 0, 0.7])
+    places = [
+        [x + random.uniform(-0.01, 0.01), y + random.uniform(-0.01, 0.01), radius]
+        for (x, y), radius in zip(spots, radii, strict=True)
+    ]
+    kinds = [p.GEOM_SPHERE if random.random() < _BALLS else p.GEOM_BOX for _ in spots]
+    shape = p.createCollisionShapeArray(
+        shapeTypes=kinds,
+        radii=radii,
+        halfExtents=[[radius, 0.5 * radius, radius] for radius in radii],
+        collisionFramePositions=places,
+        collisionFrameOrientations=[turned] * count,
+    )
+    middle = [0.4, 0.3, 0.1]
+    return p.createMultiBody(1, shape, baseInertialFramePosition=middle, basePosition=[0, 0, -1e-4])
+
+
+def _ground(p: Any, kind: str) -> None:
+    """A plane, a box, or a link of six boxes beside each other, up to a height of 0."""
+    if kind == "plane":
+        p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    elif kind == "box":
+        box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[3, 3, 0.5])
+        p.createMultiBody(0, box, basePosition=[0, 0, -0.5])
+    else:
+        spots = [[0.6 * x, 0.5 * y, -0.5] for x, y in ((1, 0), (0, 1), (2, 0), (0, 0), (2, 1), (1, 1))]
+        boxes = p.createCollisionShapeArray(
+            shapeTypes=[p.GEOM_BOX] * len(spots),
+            halfExtents=[[0.3, 0.25, 0.5]] * len(spots),
+            collisionFramePositions=spots,
+        )
+        p.createMultiBody(0, boxes)
+
+
+@scenario(tolerance=1e-9)
+def parts_of_a_link_touch(p: Any) -> dict[str, Any]:
+    """Links of two to seven balls and boxes slide, and the solver stops after five sweeps.
+
+    Their contacts come in the order of a tree of their bounds. They agree to rounding.
+    """
+    results: dict[str, Any] = {}
+    for kind in ("plane", "box", "boxes"):
+        for count in (2, 3, 4, 7):
+            p.resetSimulation()
+            p.setGravity(0, 0, -9.81)
+            p.setPhysicsEngineParameter(numSolverIterations=5, solverResidualThreshold=0)
+            _ground(p, kind)
+            body = _parts(p, count, count)
+            p.resetBaseVelocity(body, [0.7, 0.4, 0], [0, 0, 1])
+            observed = simulate(p, 0.05, lambda b=body: _places(p, [b]))
+            results |= under(f"{count} parts on {kind}", observed)
+            results[f"{count} parts on {kind}: order"] = [point[5] for point in p.getContactPoints()]
+    return results
+
+
+@scenario(tolerance=1e-9)
+def thresholds_of_pairs_that_have_met(p: Any) -> dict[str, Any]:
+    """Balls fall, and `contactProcessingThreshold` changes: it counts for pairs whose bounds meet later.
+
+    One ball is near the ground when it changes, one is not, one is put up and falls again, and one is
+    allowed to push again. They agree to rounding.
+    """
+    p.setGravity(0, 0, -9.81)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    ball = p.createCollisionShape(p.GEOM_SPHERE, radius=HALF)
+    heights = (0.01, 0.2, 0.01, 0.01)
+    balls = [p.createMultiBody(1, ball, basePosition=[i, 0, HALF + h]) for i, h in enumerate(heights)]
+    p.changeDynamics(balls[3], -1, contactProcessingThreshold=0)
+    places: list[list[float]] = []
+    for step in range(96):
+        if step == _CHANGED:
+            for body in balls:
+                threshold = 1.0 if body == balls[3] else 0.0
+                p.changeDynamics(body, -1, contactProcessingThreshold=threshold)
+        if step == _LIFTED:
+            p.resetBasePositionAndOrientation(balls[2], [2, 0, 0.5], [0, 0, 0, 1])
+            p.stepSimulation()
+            p.resetBasePositionAndOrientation(balls[2], [2, 0, HALF + 0.01], [0, 0, 0, 1])
+            p.resetBaseVelocity(balls[2], [0, 0, 0], [0, 0, 0])
+        p.stepSimulation()
+        places.append([p.getBasePositionAndOrientation(body)[0][2] for body in balls])
+    return {"heights": places}

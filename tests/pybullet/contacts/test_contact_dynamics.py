@@ -1,5 +1,6 @@
 """What changeDynamics says about contacts; the figures expected are what PyBullet 3.2.7 answers."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -92,6 +93,31 @@ def test_contacts_beyond_the_processing_threshold_do_not_push(client: int) -> No
         step(6 if len(heights) == 1 else 5)
     expected = [0.105, 0.101355, 0.099027, 0.099355, 0.099572]
     assert heights == pytest.approx(expected, abs=1e-6), "it sinks in before it is pushed"
+
+
+@pytest.mark.parametrize("kept", ["state", "file"])
+def test_states_keep_the_threshold_of_pairs_that_have_met(client: int, kept: str, tmp_path: Path) -> None:
+    p.setGravity(0, 0, -10)
+    p.createMultiBody(0, p.createCollisionShape(p.GEOM_PLANE))
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    ball = p.createMultiBody(1, shape, basePosition=[0, 0, 0.105])
+    step(2)
+    p.changeDynamics(ball, -1, contactProcessingThreshold=0)
+    file = str(tmp_path / "state.bullet")
+    p.saveBullet(file)
+    state = p.saveState()
+    step(10)
+    height = p.getBasePositionAndOrientation(ball)[0][2]
+    assert height > 0.0999, "it is braked before it touches"
+    # Pairs that meet again have the new threshold.
+    p.resetBasePositionAndOrientation(ball, [0, 0, 1], [0, 0, 0, 1])
+    step(1)
+    if kept == "state":
+        p.restoreState(state)
+    else:
+        p.restoreState(fileName=file)
+    step(10)
+    assert p.getBasePositionAndOrientation(ball)[0][2] == height
 
 
 HEIGHTS = {

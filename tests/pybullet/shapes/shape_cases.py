@@ -93,6 +93,15 @@ SHAPE_ARRAYS: dict[str, dict[str, Any]] = {
     "one ball": {"shapeTypes": ["GEOM_SPHERE"], "radii": [0.3]},
     "a box without size": {"shapeTypes": ["GEOM_BOX"]},
     "one of two balls": {"shapeTypes": ["GEOM_SPHERE", "GEOM_SPHERE"], "radii": [0.0, 0.7]},
+    "ball, and cylinder without a length": {
+        "shapeTypes": ["GEOM_SPHERE", "GEOM_CYLINDER"],
+        "radii": [0.3, 0.2],
+    },
+    "two cylinders with one length": {
+        "shapeTypes": ["GEOM_CYLINDER", "GEOM_CYLINDER"],
+        "radii": [0.3, 0.2],
+        "lengths": [0.4],
+    },
     "cylinder, capsule and mesh": {
         "shapeTypes": ["GEOM_CYLINDER", "GEOM_CAPSULE", "GEOM_MESH"],
         "radii": [0.1, 0.2, 0.0],
@@ -170,6 +179,14 @@ REFUSED: dict[str, tuple[str, dict[str, Any]]] = {
     "no types": ("createCollisionShapeArray", {"shapeTypes": []}),
     "types that are no list": ("createCollisionShapeArray", {"shapeTypes": 5}),
     "array of nothing usable": ("createCollisionShapeArray", {"shapeTypes": ["GEOM_SPHERE"], "radii": [0.0]}),
+    "cylinder of an array without lengths": (
+        "createCollisionShapeArray",
+        {"shapeTypes": ["GEOM_CYLINDER"], "radii": [0.2]},
+    ),
+    "visual cylinder of an array without lengths": (
+        "createVisualShapeArray",
+        {"shapeTypes": ["GEOM_CYLINDER"], "radii": [0.2]},
+    ),
     "visual box without size": ("createVisualShape", {"shapeType": "GEOM_BOX"}),
     "visual ball of radius 0": ("createVisualShape", {"shapeType": "GEOM_SPHERE", "radius": 0}),
     "visual points without triangles": ("createVisualShape", {"shapeType": "GEOM_MESH", "vertices": POINTS}),

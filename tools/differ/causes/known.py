@@ -65,7 +65,6 @@ from tools.differ.causes.poses import (
     has_ends_that_stand_out,
     is_deep_at_a_cylinder,
     looks_from_within,
-    meets_a_surface_early,
     starts_half_a_turn_away,
     touches_a_hull_with_a_cylinder,
 )
@@ -408,7 +407,6 @@ KNOWN: tuple[Known, ...] = (
         "normals differ by up to 3e-4 at",
         lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
     ),
-    Known("PyBullet may list a link some millimetres before it touches", meets_a_surface_early),
     Known("PyBullet's search ends where that order leads it", touches_a_hull_with_a_cylinder),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",

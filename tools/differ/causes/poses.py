@@ -69,32 +69,23 @@ def touches_a_hull_with_a_cylinder(seen: Seen) -> bool:
     )
 
 
-def meets_a_surface_early(seen: Seen) -> bool:
-    """Whether PyBullet has more contacts of bodies, of each pair one with a mesh that is not convex."""
-    field, theirs, ours = seen.difference.place[:3]
-    if seen.call["f"] != "getContactPoints" or field != "links" or ours or not theirs:
-        return False
-    return all(_has_a_surface(seen, a[0]) or _has_a_surface(seen, b[0]) for a, b in theirs)
-
-
-def _has_a_surface(seen: Seen, number: int) -> bool:
-    body = maker_of(seen, number)
-    return body is not None and any(
-        call["f"] == "createCollisionShape"
-        and call["a"][:1] == [_MESH]
-        and bool(call["k"].get("flags", 0) & _CONCAVE)
-        for call in made_for(seen, [body["a"], body["k"]])
-    )
-
-
 def is_deep_at_a_cylinder(seen: Seen) -> bool:
-    """Whether states differ by as little as normals do at edges of cylinders, deeper than both margins."""
+    """Whether states differ by as little as normals do at edges of cylinders, deeper than both margins.
+
+    A body whose state differs has a cylinder, or one whose base does not move.
+    """
+    bodies = [maker_of(seen, number) for number in seen.difference.bodies]
+    bodies += [call for call in seen.before if call["f"] == "createMultiBody" and call["a"][:1] == [0]]
     return (
         seen.difference.phase == "contact"
         and seen.difference.deepest < -_BOTH_MARGINS
         and seen.difference.place.error < _OF_OTHER_NORMALS
-        and any(map(_makes_a_cylinder, seen.before))
+        and any(body is not None and _has_a_cylinder(seen, body) for body in bodies)
     )
+
+
+def _has_a_cylinder(seen: Seen, body: Call) -> bool:
+    return any(map(_makes_a_cylinder, made_for(seen, [body["a"], body["k"]])))
 
 
 def _makes_a_cylinder(call: Call) -> bool:

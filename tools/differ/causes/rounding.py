@@ -7,9 +7,6 @@ joints are put elsewhere as well that the program leaves as they are made: what 
 it can or not at all. Since PyBullet looks for pairs when a joint is reset, such answers are compared with one
 that has the same calls, but puts nothing elsewhere.
 
-Contacts of several shapes of one link come in the order of a tree there: a program with such shapes is also
-performed with them in the opposite order, and if Carom agrees then, that order was all.
-
 Joints that are at a limit are also put 1e-14 beyond it or before it, before each step. Whether such a limit
 has a row is left to rounding, which in PyBullet is always the same until something changes it.
 """
@@ -28,7 +25,6 @@ from tools.differ.pair import Outcome
 from tools.differ.programs import Call
 
 ROUNDING = "There motion agrees to rounding until rounding decides"
-ORDER_OF_SHAPES = "except those of several shapes of one link"
 MEMORY = "Some answers of PyBullet depend on what earlier commands left in its memory"
 _ELSEWHERE = {"free": 1e-14, "contact": 1e-12}
 _ONE_BODY = ("createMultiBody", "loadURDF")
@@ -87,23 +83,7 @@ def doubted_by_pybullet(
             return ROUNDING
     if _changes_at_limits(pybullet, calls, theirs, difference):
         return ROUNDING
-    turned = _with_shapes_reversed(calls)
-    if difference.phase != "contact" or turned == calls:
-        return None
-    # Carom has to agree with what PyBullet says of the shapes in their other order.
-    differs = _has(compare(calls, _performed(pybullet, turned), ours), difference, 0.0)
-    return None if differs else ORDER_OF_SHAPES
-
-
-def _with_shapes_reversed(calls: Sequence[Call]) -> list[Call]:
-    """The program with the shapes of each `createCollisionShapeArray` in the opposite order."""
-    found = copy.deepcopy(list(calls))
-    for call in found:
-        if call["f"] == "createCollisionShapeArray":
-            call["k"] = {
-                name: value[::-1] if isinstance(value, list) else value for name, value in call["k"].items()
-            }
-    return found
+    return None
 
 
 def _changes_at_limits(

@@ -10,7 +10,7 @@ import warp as wp
 from carom.kernels.contact.bounds import local_center, local_extents, magnitudes
 from carom.kernels.maths.min_max import maximum, minimum
 from carom.kernels.structs import Pairs, Settings, Shapes
-from carom.kernels.types import Int32, func, real
+from carom.kernels.types import Index2, Int32, func, real
 from carom.layouts.codes import ALONE, BOX, PLANE, SPHERE, TRIANGLES
 
 
@@ -18,6 +18,15 @@ from carom.layouts.codes import ALONE, BOX, PLANE, SPHERE, TRIANGLES
 def breaking_distance(shapes: Shapes, a: Int32, b: Int32) -> real:
     """Breaking distance of a manifold of two shapes that is made now [m]."""
     return minimum(shapes.shape_breaking[a], shapes.shape_breaking[b])
+
+
+@func
+def processing_threshold(shapes: Shapes, world: Int32, pair: Index2) -> real:
+    """Largest distance at which a contact is solved, of a manifold of two shapes that is made now [m]."""
+    return minimum(
+        shapes.link_processing_threshold[world, shapes.shape_link[pair[0]]],
+        shapes.link_processing_threshold[world, shapes.shape_link[pair[1]]],
+    )
 
 
 @func

@@ -4,6 +4,7 @@ import warp as wp
 
 from carom.kernels.contact.bounds import boxes_meet, is_bounded
 from carom.kernels.contact.bounds_tree import STAGES, sort_as_in_new_scene
+from carom.kernels.contact.part_order import sort_parts
 from carom.kernels.contact.resets import is_moved, list_resets
 from carom.kernels.structs import Contacts, Model, Pairs, Settings, Shapes, State
 from carom.kernels.types import Index2, Int32, Vector3, func, real
@@ -145,7 +146,7 @@ def sort_new(
     """List new overlaps in the order in which Bullet finds them.
 
     One body's overlaps are found in the order of a tree of bounds, which depends on all motion so far. It is
-    known only in a new scene; else those with later bodies come first.
+    known only in a new scene; else those with later bodies come first. Parts of compounds follow each other.
     """
     resets = Int32(0)
     if count > 0:
@@ -177,3 +178,5 @@ def sort_new(
                 pairs.shape_pair_end[world, turn] = place + 1
     if known == 0:
         sort_as_in_new_scene(settings, shapes, state, pairs, world, count, resets, widening_of(settings))
+    if count > 1:
+        sort_parts(shapes, pairs, world, count)

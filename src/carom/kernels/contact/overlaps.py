@@ -14,7 +14,7 @@ then this takes one comparison of each overlap.
 import warp as wp
 
 from carom.kernels.contact.bounds import is_bounded
-from carom.kernels.contact.contact_margins import breaking_distance
+from carom.kernels.contact.contact_margins import breaking_distance, processing_threshold
 from carom.kernels.contact.overlap_turns import sort_new
 from carom.kernels.contact.resets import forget_resets
 from carom.kernels.structs import Contacts, Model, NewOverlap, Overlap, Pairs, Settings, Shapes, State
@@ -63,6 +63,7 @@ def read_overlap(contacts: Contacts, world: Int32, row: Int32) -> Overlap:
     overlap.place = contacts.overlap_place[world, row]
     overlap.manifold = contacts.overlap_manifold[world, row]
     overlap.breaking = contacts.overlap_breaking[world, row]
+    overlap.solved_up_to = contacts.overlap_solved_up_to[world, row]
     return overlap
 
 
@@ -73,6 +74,7 @@ def write_overlap(contacts: Contacts, world: Int32, row: Int32, overlap: Overlap
     contacts.overlap_place[world, row] = overlap.place
     contacts.overlap_manifold[world, row] = overlap.manifold
     contacts.overlap_breaking[world, row] = overlap.breaking
+    contacts.overlap_solved_up_to[world, row] = overlap.solved_up_to
 
 
 @func
@@ -94,6 +96,7 @@ def as_overlap(pairs: Pairs, world: Int32, row: Int32) -> Overlap:
     overlap.place = new.place
     overlap.manifold = new.manifold
     overlap.breaking = new.breaking
+    overlap.solved_up_to = new.solved_up_to
     return overlap
 
 
@@ -131,9 +134,11 @@ def make_manifold(shapes: Shapes, contacts: Contacts, pairs: Pairs, world: Int32
     if entry >= 0:
         pair = contacts.overlap_shapes[world, entry]
         contacts.overlap_breaking[world, entry] = breaking_distance(shapes, pair[0], pair[1])
+        contacts.overlap_solved_up_to[world, entry] = processing_threshold(shapes, world, pair)
     else:
         pair = pairs.queue_new[world, -1 - entry].pair
         pairs.queue_new[world, -1 - entry].breaking = breaking_distance(shapes, pair[0], pair[1])
+        pairs.queue_new[world, -1 - entry].solved_up_to = processing_threshold(shapes, world, pair)
 
 
 @func

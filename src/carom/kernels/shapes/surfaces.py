@@ -53,26 +53,16 @@ def region_around(
 
 
 @func
-def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vector3) -> Int32:
-    """Mark which candidates of a triangle are on its face, and drop those at its edges that do not touch yet.
-
-    The dropped candidates would stop a shape that slides from one triangle of a flat surface to the next.
-    Returns the number of all candidates left.
-    """
-    count = first
+def mark_flat(pairs: Pairs, world: Int32, first: Int32, last: Int32, normal: Vector3):
+    """Mark which candidates of a triangle are on its face."""
     for row in range(first, last):
         along = wp.dot(pairs.candidate[world, row].normal, normal)
-        on_face = wp.abs(along) >= ON_FACE
-        if on_face or pairs.candidate[world, row].distance <= 0.0:
-            pairs.candidate[world, count] = pairs.candidate[world, row]
-            pairs.candidate[world, count].on_face = Int32(on_face)
-            count += 1
-    return count
+        pairs.candidate[world, row].on_face = Int32(wp.abs(along) >= ON_FACE)
 
 
 @shared_func
 def drop_inner_edges(candidates: CandidateRows, world: Int32, count: Int32, thickness: real) -> Int32:
-    """Drop candidates at edges that lie in the plane of a touched face; returns the number left.
+    """Drop candidates at edges that lie in the plane of a face with another one; returns the number left.
 
     The face carries the contact. The edge, as a candidate of a triangle in the same plane or beyond the end
     of the face, would only push sideways.
@@ -119,7 +109,8 @@ def collide_surface(
     while cursor >= 0:
         triangle = triangle_core(pairs, world, b, triangle_corners(shapes, region, b, cursor), radius)
         found = collide_convex(shapes, pairs, world, a, b, core, triangle, max_distance, count)
-        count = mark_flat(pairs, world, count, found, triangle_normal(triangle))
+        mark_flat(pairs, world, count, found, triangle_normal(triangle))
+        count = found
         if count + ROOM > pairs.candidate.shape[1]:
             count = drop_inner_edges(pairs.candidate, world, count, thickness)
             count = keep_four(pairs.candidate, world, count)

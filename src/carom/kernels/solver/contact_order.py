@@ -7,11 +7,12 @@ contacts take part in it; there is one for each overlap (`contact.overlaps`).
 
 import warp as wp
 
+from carom.kernels.contact.contact_margins import processing_threshold
 from carom.kernels.solver.activity import is_left_out, pushed_tree
 from carom.kernels.solver.island_sort import sort_by_island
 from carom.kernels.structs import Contacts, Model, PairRows, Settings, Shapes, State
 from carom.kernels.types import Index2, Index4, Int32, func
-from carom.layouts.contacts import NO_MANIFOLD, OVERLAPS, SORTED, THERE
+from carom.layouts.contacts import AS_LINKS, NO_MANIFOLD, OVERLAPS, SORTED, THERE
 
 # End of a list.
 NONE = wp.constant(-1)
@@ -42,16 +43,24 @@ def is_between(contacts: Contacts, world: Int32, contact: Int32, overlap: Index2
 
 
 @func
-def find_first_contacts(contacts: Contacts, pair_rows: PairRows, world: Int32):
-    """Find the first contact of each overlap; both are sorted by shapes."""
+def find_first_contacts(shapes: Shapes, contacts: Contacts, pair_rows: PairRows, world: Int32):
+    """Find the first contact of each overlap, and up to which distance each contact is solved.
+
+    Contacts and overlaps are sorted by shapes.
+    """
     contact = Int32(0)
     for row in range(contacts.count_contacts[world, OVERLAPS]):
         overlap = contacts.overlap_shapes[world, row]
         touching = is_between(contacts, world, contact, overlap)
         pair_rows.order_first[world, row] = wp.where(touching, contact, Int32(NONE))
-        while touching:
-            contact += 1
-            touching = is_between(contacts, world, contact, overlap)
+        if touching:
+            threshold = contacts.overlap_solved_up_to[world, row]
+            if threshold == AS_LINKS:
+                threshold = processing_threshold(shapes, world, overlap)
+            while touching:
+                pair_rows.contact_solved_up_to[world, contact] = threshold
+                contact += 1
+                touching = is_between(contacts, world, contact, overlap)
 
 
 @func
@@ -128,7 +137,7 @@ def list_contacts(
     world: Int32,
 ):
     """Make the linked list of contacts of each island, manifold by manifold."""
-    find_first_contacts(contacts, pair_rows, world)
+    find_first_contacts(shapes, contacts, pair_rows, world)
     for tree in range(settings.tree_count):
         pair_rows.tree_first_contact[world, tree] = NONE
     place = wp.abs(contacts.count_contacts[world, SORTED]) - 1

@@ -224,11 +224,12 @@ def contact_terms(
     contacts: Contacts,
     world: Int32,
     contact: Int32,
+    solved_up_to: real,
     share: real,
 ) -> ContactTerms:
     """Data of a contact for its rows; also replaces the contact's friction directions by scaled ones.
 
-    Initial impulses are the last impulses times `share`.
+    Beyond the distance `solved_up_to` [m] rows are off. Initial impulses are the last impulses times `share`.
     """
     pair = contacts.contact_shapes[world, contact]
     a, b = pair[2], pair[3]
@@ -250,9 +251,6 @@ def contact_terms(
     terms.softness = softness
     terms.erp = erp
     terms.start = share * contacts.contact_impulse[world, contact]
-    solved_up_to = minimum(
-        shapes.link_processing_threshold[world, a], shapes.link_processing_threshold[world, b]
-    )
     terms.ignored = Int32(terms.distance > solved_up_to)
     terms.carried = carried_velocity(model, state, world, terms.ends[0], terms.point_a) - carried_velocity(
         model, state, world, terms.ends[2], terms.point_b

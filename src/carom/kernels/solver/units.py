@@ -134,8 +134,9 @@ def write_units(
         i = Int32(0)
         while i < count:
             pair_rows.terms[world, i] = contact_terms(
-                settings, model, state, scratch, shapes, contacts, world, members[i], share
-            )
+                settings, model, state, scratch, shapes, contacts, world, members[i],
+                pair_rows.contact_solved_up_to[world, members[i]], share,
+            )  # fmt: skip
             if may_yield(shapes, world, pair_rows.terms[world, i]):
                 pair_rows.terms[world, i] = yielding_terms(
                     settings, model, state, scratch, shapes, world, pair_rows.terms[world, i]
