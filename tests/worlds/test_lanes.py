@@ -166,3 +166,27 @@ def test_a_world_that_fails_leaves_the_others_alone() -> None:
         lone = stirred(scene, number)
         lone.step(15)
         assert_same_bits(worlds, number, lone)
+
+
+@pytest.mark.parametrize("touching", [False, True])
+def test_lanes_have_memory_for_what_waits_only(touching: bool) -> None:
+    """Worlds that wait for others have no contacts."""
+    if touching:
+        scene, _ = robots()
+    else:
+        scene = earth()
+        arm = scene.load_urdf(f"{DATA}/franka_panda/panda.urdf", fixed_base=True)
+        arm.joints.set_velocity_targets(0.3, max_forces=20.0)
+    worlds = Worlds(scene, LANES, threads=1)
+    worlds.step(2)
+    (work,) = works_of(worlds)
+    assert work is not None
+    first, *others = work.workspaces
+    for other in others:
+        assert (other.pairs is first.pairs) is not touching
+        for field, is_shared in (("single_normal", True), ("side", True), ("row_terms", False)):
+            memory = (one.structs["pair_rows"].memory[field] for one in (first, other))
+            assert np.shares_memory(*memory) is is_shared
+        assert not np.shares_memory(
+            other.scratch.numpy["delta_velocity"], first.scratch.numpy["delta_velocity"]
+        )

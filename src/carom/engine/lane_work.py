@@ -1,6 +1,6 @@
 """What steps of several worlds at once need.
 
-Each lane has a workspace of its own, in which a world takes its step (`native/source/perform.cpp`).
+Each lane has a workspace, in which a world takes its step (`native/source/perform.cpp`).
 `lane_motion_kernel` sees numbers of several worlds side by side, so it has arrays of its own: those that it
 reads are gathered from the worlds before each step, and what it finds out is handed to the steps of single
 worlds (`native/source/lanes/lane_motion.cpp`).
@@ -57,6 +57,7 @@ class LaneWork:
     Attributes:
         record: For `Run.lanes`; valid as long as this object exists and no array of the worlds is replaced.
         sweeps: Sweeps over the rows of several worlds.
+        workspaces: That of each lane.
 
     Args:
         arrays: Those of the worlds.
@@ -66,8 +67,9 @@ class LaneWork:
 
     def __init__(self, arrays: WorldArrays, workspace: Workspace, plan: Plan) -> None:
         self.record = LaneMotion()
-        workspaces = [workspace, *(workspace.another() for _ in range(LANES - 1))]
-        self._structs = [one.structs for one in workspaces]
+        others = (workspace.for_lane(detects=plan.touching) for _ in range(LANES - 1))
+        self.workspaces: list[Workspace] = [workspace, *others]
+        self._structs = [one.structs for one in self.workspaces]
         self.sweeps = LaneSweepWork(self._structs)
         self.record.sweeps = self.sweeps.record
         self._worlds = [_LaneWorld(structs, plan) for structs in self._structs]

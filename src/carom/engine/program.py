@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import accumulate, chain
 from typing import NamedTuple
 
@@ -90,11 +91,16 @@ class Program(NamedTuple):
 
 def step_program(structs: KernelStructs, plan: Plan) -> Program:
     """The launches of a step over the arrays of a workspace."""
+    return _step_program(structs, plan, SOFT_MOTION if plan.soft else MOTION)
+
+
+def _step_program(structs: KernelStructs, plan: Plan, kernels: Sequence[Kernel]) -> Program:
+    """The same with these kernels for the motion of worlds whose bodies can interact."""
     abandon = [_launch(structs, abandon_step_kernel)]
     if not plan.coupled:
         whole = _launch(structs, step_kernel, substeps=1)
         return Program(begin=[whole], detection=[], motion=[], end=[], abandon=abandon)
-    motion = [_launch(structs, kernel) for kernel in (SOFT_MOTION if plan.soft else MOTION)]
+    motion = [_launch(structs, kernel) for kernel in kernels]
     if plan.sleeping:
         settle = _launch(structs, settle_kernel, touching=int(plan.touching))
         motion = [settle, *motion, _launch(structs, watch_kernel)]
@@ -113,12 +119,9 @@ def lane_program(structs: KernelStructs, plan: Plan) -> tuple[Program, int]:
     Returns:
         The launches; the number of those up to `lane_rows_kernel`.
     """
-    program = step_program(structs, plan)
+    program = _step_program(structs, plan, _LANE_MOTION)
     kernels = [launch.kernel for launch in program.motion]
-    first = kernels.index(islands_kernel)
-    program.motion[first : first + len(_LANE_MOTION)] = [_launch(structs, kernel) for kernel in _LANE_MOTION]
-    before = len(program.begin) + len(program.detection) + first
-    return program, before + _LANE_MOTION.index(lane_rows_kernel) + 1
+    return program, len(program.begin) + len(program.detection) + kernels.index(lane_rows_kernel) + 1
 
 
 def detection_program(structs: KernelStructs) -> Program:

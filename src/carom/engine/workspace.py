@@ -24,6 +24,9 @@ from carom.model.builder import WorldArrays
 from carom.native.launch import KernelStructs
 from carom.native.tables import ArrayTable
 
+# Axes of `PairRows` with rows of contacts only.
+_CONTACT_AXES = frozenset(("contact", "unit", "single", "terms", "manifold", "side", "matrix"))
+
 
 class Workspace:
     """Memory for the intermediate results of a step of any world: one for each thread.
@@ -56,11 +59,19 @@ class Workspace:
         other.structs = KernelStructs()
         return other
 
-    def another(self) -> Workspace:
-        """A workspace of the same size, over the same other arrays."""
-        other = Workspace(self.world_count)
-        for table, own in zip(other.tables, self.tables, strict=True):
-            table.reserve(own.capacity)
+    def for_lane(self, *, detects: bool) -> Workspace:
+        """A workspace of the same size, over the same other arrays, for a world that waits for others.
+
+        While it waits, other worlds write their contacts and solve them. Its own are solved before that, or
+        it has none, so the rows of contacts are the same memory, and so is the workspace of soft bodies,
+        which no world has that waits. If the worlds detect no collisions, that of detection is as well.
+        """
+        other = copy(self)
+        other.structs = KernelStructs()
+        other.scratch = self.scratch.twin()
+        other.pair_rows = self.pair_rows.twin(_CONTACT_AXES)
+        if detects:
+            other.pairs = self.pairs.twin()
         other.bind(self.structs)
         return other
 

@@ -338,12 +338,7 @@ class ArrayTable:
         `rows` has an axis, so many of its rows are kept, without capacity for more.
         """
         rows = rows or {}
-        other = ArrayTable.__new__(ArrayTable)
-        other.__dict__.update(self.__dict__)
-        other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
-        other._views, other._addresses = {}, {}
-        other._by_axis, other._row_changes = {}, None
-        other._world_counts = self._world_counts.copy()
+        other = self._without_arrays()
         other.capacity = {axis: max(1, rows.get(axis, count)) for axis, count in self.capacity.items()}
         arrays = {}
         for name, field in self._fields.items():
@@ -356,6 +351,34 @@ class ArrayTable:
                 array = array[:count].copy()
             arrays[name] = array
         other._take(arrays)
+        return other
+
+    def twin(self, shared: Collection[str] = ()) -> ArrayTable:
+        """A table of as many rows, all zero; on the shared axes it has the very arrays of this one.
+
+        Arrays of its own are in one block of memory.
+        """
+        other = self._without_arrays()
+        own = {name: array for name, array in self._memory.items() if self._fields[name].axis not in shared}
+        places, size = {}, 0
+        for name, array in own.items():
+            places[name] = size
+            size += -(-array.nbytes // _ALIGNMENT) * _ALIGNMENT
+        block = zeros((size,), _BYTES)
+        zeroed = {
+            name: np.ndarray(array.shape, array.dtype, block, places[name]) for name, array in own.items()
+        }
+        other._take({name: zeroed.get(name, array) for name, array in self._memory.items()})
+        return other
+
+    def _without_arrays(self) -> ArrayTable:
+        """A table of the same struct, worlds and capacity that has no arrays yet."""
+        other = ArrayTable.__new__(ArrayTable)
+        other.__dict__.update(self.__dict__)
+        other.numpy, other._memory, other._made, other._bytes = {}, {}, None, {}
+        other._views, other._addresses = {}, {}
+        other._by_axis, other._row_changes = {}, None
+        other._world_counts, other.capacity = self._world_counts.copy(), self.capacity.copy()
         return other
 
     def bytes_per_world(self, rows: Mapping[str, int] | None = None) -> int:
