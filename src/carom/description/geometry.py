@@ -87,11 +87,14 @@ class ConvexHull(Printed):
         points: (n, 3) positions.
         scale: Factor along x, y and z that the points have been multiplied by.
         margin: Distance of the colliding surface from the hull [m]; 0 for the hull of exactly these points.
+        uses: (n,) how often a file's triangles have each point as a corner, on which PyBullet's order of the
+            hull's corners depends; None for once.
     """
 
     points: NDArray[np.float64]
     scale: Vector3 = (1.0, 1.0, 1.0)
     margin: float = MARGIN
+    uses: NDArray[np.int32] | None = None
 
 
 @dataclass(frozen=True, repr=False, eq=False, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.geometry.corner_order import Grid, Ints, corner_order
 from carom.geometry.native_hull import hull_loops
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops
 from carom.native.products import dots, length
@@ -46,6 +47,26 @@ def convex_hull(points: Points, *, tolerance: float = EXACT, most_vertices: int 
     """
     middle, centred, corners, counts = _hull_loops(points, tolerance, most_vertices)
     return polyhedron_of_loops(centred, corners, counts).moved(middle)
+
+
+def gridded_hull(
+    points: Points, uses: Ints | None, *, tolerance: float, most_vertices: int | None
+) -> Polyhedron:
+    """The hull of (n, 3) points that have an extent along each axis, on PyBullet's grid and in its order.
+
+    Coplanar points may not be coplanar on the grid, so the faces are those of the points themselves. `uses`
+    are as of `corner_order`.
+
+    Raises:
+        ValueError: As by `convex_hull`.
+    """
+    middle, centred, corners, counts = _hull_loops(points, tolerance, most_vertices)
+    grid = Grid(points)
+    _, ranks = corner_order(points, grid, uses)
+    if len(centred) > len(points):
+        # They lie in a plane and have been thickened: all are there several times.
+        points, ranks = centred + middle, np.tile(ranks, len(centred) // len(points))
+    return polyhedron_of_loops(grid.places(grid.cells(points)), corners, counts, ranks)
 
 
 def extreme_points(points: Points) -> Points:

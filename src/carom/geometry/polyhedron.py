@@ -61,13 +61,19 @@ def polyhedron(
     return Polyhedron(vertices, planes, first_corner, corner_count, corners)
 
 
-def polyhedron_of_loops(vertices: Floats, corners: Ints, counts: Ints) -> Polyhedron:
+def polyhedron_of_loops(
+    vertices: Floats, corners: Ints, counts: Ints, ranks: Ints | None = None
+) -> Polyhedron:
     """A polyhedron from the corners of its faces; vertices (n, 3) that no face uses are left out.
 
     `corners` are those of all faces, one after the other, and `counts` the number of corners of each. They go
-    around a face counter-clockwise from outside, nearly in one plane.
+    around a face counter-clockwise from outside, nearly in one plane. Those that are left are in the
+    order of `ranks` (n,), or as they were.
     """
     used, renamed = np.unique(corners, return_inverse=True)
+    if ranks is not None:
+        order = np.argsort(ranks[used], kind="stable")
+        used, renamed = used[order], np.argsort(order)[renamed]
     kept = np.ascontiguousarray(vertices[used], dtype=np.float64)
     renamed = renamed.reshape(-1).astype(np.int32)
     firsts = (np.cumsum(counts) - counts).astype(np.int32)

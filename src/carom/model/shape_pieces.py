@@ -28,7 +28,8 @@ from carom.description import (
 from carom.description.pose import Vector3
 from carom.errors import DescriptionError
 from carom.formats.mesh import MeshPart, read_mesh
-from carom.geometry.hull import SMALLEST, convex_hull, extreme_points
+from carom.geometry.corner_order import Grid, corner_order
+from carom.geometry.hull import SMALLEST, convex_hull, extreme_points, gridded_hull
 from carom.geometry.polyhedron import Polyhedron, polyhedron_of_loops, polyhedron_of_triangles
 from carom.layouts.codes import ShapeKind
 from carom.layouts.contacts import MARGIN
@@ -46,9 +47,6 @@ HULL_TOLERANCE = 1e-4
 
 CYLINDER_SIDES = 32
 """Number of sides of a cylinder that is represented by its hull."""
-
-GRID = 10216
-"""Cells across a hull of the grid on which its vertices lie."""
 
 MAX_HULLS = 2048
 """Most hulls that are kept, by the points they are of; with the most vertices, 120 MB."""
@@ -136,15 +134,20 @@ def _polyhedral(
     return ShapePiece(kind, (half_x, half_y, half_z), margin, (x, y, z), polyhedron, columns, hierarchy)
 
 
-def _hull_piece(points: NDArray[np.float64], margin: float = MARGIN) -> ShapePiece:
+def _hull_piece(
+    points: NDArray[np.float64], margin: float = MARGIN, uses: NDArray[np.int32] | None = None
+) -> ShapePiece:
     """The hull of points, once made for the same ones: files and scripts bring the same again and again."""
-    key = blake2b(np.append(points.astype(np.float64), margin).tobytes(), digest_size=20).digest()
+    content = np.append(points.astype(np.float64), margin).tobytes()
+    if uses is not None:
+        content += uses.tobytes()
+    key = blake2b(content, digest_size=20).digest()
     with _hulls_lock:
         known = _hulls.pop(key, None)
         if known is not None:
             _hulls[key] = known
             return known
-    made = _made_hull(points, margin)
+    made = _made_hull(points, margin, uses)
     with _hulls_lock:
         _hulls[key] = made
         while len(_hulls) > MAX_HULLS:
@@ -152,16 +155,15 @@ def _hull_piece(points: NDArray[np.float64], margin: float = MARGIN) -> ShapePie
     return made
 
 
-def _made_hull(points: NDArray[np.float64], margin: float) -> ShapePiece:
+def _made_hull(points: NDArray[np.float64], margin: float, uses: NDArray[np.int32] | None) -> ShapePiece:
     try:
-        hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
+        if _has_a_grid(points, margin):
+            hull = gridded_hull(points, uses, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
+        else:
+            hull = convex_hull(points, tolerance=HULL_TOLERANCE, most_vertices=MAX_HULL_VERTICES)
     except ValueError as problem:
         # The points are too far apart, or flat and so far apart that rounding removes the added thickness.
         raise DescriptionError(f"its points make no convex hull: {problem}") from problem
-    low, high = points.min(axis=0), points.max(axis=0)
-    if _has_a_grid(low, high, margin):
-        # Coplanar points may not be coplanar on the grid, so the faces are determined first.
-        hull = hull.with_vertices(_on_grid(hull.vertices, low, high))
     return _polyhedral(ShapeKind.HULL, hull, margin)
 
 
@@ -172,7 +174,11 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     points = np.array([(x, y, z) for z in (-0.5 * length, 0.5 * length) for x, y in rim])
     if min(radius, length) < SMALLEST:
         return _hull_piece(points)
-    points = _on_grid(points, points.min(axis=0), points.max(axis=0))
+    # Wheels roll from corner to corner: with corners off by 1e-4 of the radius, they would drift from
+    # PyBullet's.
+    grid = Grid(points)
+    _, ranks = corner_order(points, grid)
+    points = grid.places(grid.cells(points))
     # Made without `convex_hull`, which would leave out corners of the rims.
     sides = range(CYLINDER_SIDES)
     bottom, top = list(sides), [CYLINDER_SIDES + side for side in reversed(sides)]
@@ -181,47 +187,36 @@ def _cylinder_hull(radius: float, length: float) -> ShapePiece:
     loops = [bottom, top, *quads]
     corners = np.array([corner for loop in loops for corner in loop], dtype=np.int32)
     counts = np.array([len(loop) for loop in loops], dtype=np.int32)
-    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts), MARGIN)
+    return _polyhedral(ShapeKind.HULL, polyhedron_of_loops(points, corners, counts, ranks), MARGIN)
 
 
 def grid_corners(hull: ConvexHull) -> NDArray[np.float64]:
-    """The corners (n, 3) that PyBullet has of a hull [m]: those of the hull of all points on the grid.
+    """The corners (n, 3) that PyBullet has of a hull [m], in its order: those of all points on the grid.
 
-    Moving points may make other ones corners. Flat hulls, and those without a margin, are on no grid.
+    Moving points may make other ones corners. Hulls without a margin are on no grid.
 
     Raises:
         ValueError: There are no points, or one is not finite.
     """
     points = np.asarray(hull.points, dtype=np.float64).reshape(-1, 3)
-    if len(points):
-        low, high = points.min(axis=0), points.max(axis=0)
-        if _has_a_grid(low, high, hull.margin):
-            points = _on_grid(points, low, high)
-    return extreme_points(points)
+    if not np.isfinite(points).all() or not _has_a_grid(points, hull.margin, flat=True):
+        return extreme_points(points)
+    grid = Grid(points)
+    corners, _ = corner_order(points, grid, hull.uses)
+    return grid.places(grid.cells(points[corners]))
 
 
-def _has_a_grid(low: NDArray[np.float64], high: NDArray[np.float64], margin: float) -> bool:
-    """Whether PyBullet would make a hull on a grid: one with these bounds and margin [m]."""
-    return margin > 0.0 and bool((high - low).min() > SMALLEST)
-
-
-def _on_grid(
-    points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Points (n, 3) with these bounds, truncated to the grid on which PyBullet makes hulls.
-
-    Wheels roll from corner to corner: with corners off by 1e-4 of the radius, they would drift from
-    PyBullet's. The order of operations is PyBullet's too: rounding decides whether an extreme point is on the
-    outermost grid line or on the one below.
-    """
-    step = (high - low) * (1.0 / GRID)
-    middle = (low + high) * 0.5
-    return np.trunc((points - middle) * (1.0 / step)) * step + middle
+def _has_a_grid(points: NDArray[np.float64], margin: float, *, flat: bool = False) -> bool:
+    """Whether PyBullet makes the hull of points on a grid. `flat`: also where they have no extent."""
+    if not margin > 0.0 or not len(points):
+        return False
+    extent = points.max(axis=0) - points.min(axis=0)
+    return bool(((extent > SMALLEST) | (flat & (extent == 0.0))).all())
 
 
 @lru_cache(_CACHED)
 def _hull_of(geometry: ConvexHull) -> ShapePiece:
-    return _hull_piece(geometry.points, geometry.margin)
+    return _hull_piece(geometry.points, geometry.margin, geometry.uses)
 
 
 @lru_cache(_CACHED)
@@ -256,9 +251,21 @@ def _geometries_of_parts(mesh: Mesh, parts: tuple[MeshPart, ...]) -> tuple[MeshG
     if mesh.concave:
         return (TriangleMesh(*joined_parts(parts, mesh.scale), scale=mesh.scale),)
     scale = np.array(mesh.scale)
-    if mesh.path.suffix.lower() == ".obj":
-        return tuple(ConvexHull(part.vertices * scale, mesh.scale) for part in parts)
-    return (ConvexHull(np.concatenate([part.vertices for part in parts]) * scale, mesh.scale),)
+    is_compound = mesh.path.suffix.lower() == ".obj"
+    groups = [[part] for part in parts] if is_compound else [list(parts)]
+    return tuple(
+        ConvexHull(
+            np.concatenate([part.vertices for part in group]) * scale,
+            mesh.scale,
+            uses=np.concatenate([_uses(part) for part in group]),
+        )
+        for group in groups
+    )
+
+
+def _uses(part: MeshPart) -> NDArray[np.int32]:
+    """How often PyBullet has each vertex, (n,): once for each triangle it is a corner of."""
+    return np.bincount(part.triangles.reshape(-1), minlength=len(part.vertices)).astype(np.int32)
 
 
 def joined_parts(parts: Sequence[MeshPart], scale: Vector3) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
