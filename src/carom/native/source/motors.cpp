@@ -160,7 +160,7 @@ bool is_turn(const double* position) {
 Targets not_given(double clamp) {
     Targets targets;
     for (int i = 0; i < TARGET_LISTS * ENTRIES; ++i)
-        targets.position[i] = __builtin_nan("");
+        list_of(targets, 0)[i] = __builtin_nan("");
     targets.kp[0] = DEFAULT_POSITION_GAIN;
     targets.kd[0] = DEFAULT_VELOCITY_GAIN;
     targets.damping[0] = 1.0;
