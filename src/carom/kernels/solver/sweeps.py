@@ -253,13 +253,15 @@ def friction_sweep(
     """
     residual = before + 0.0
     unit = Int32(0)
+    kind = first + 0
+    # One loop over both: before an inner one, compilers compute addresses for all kinds of units.
     while unit < units:
         code = pair_rows.unit_code[world, unit]
-        unit += 1
-        kind = first + 0
-        while kind >= last:
-            residual = relax_unit_friction(settings, scratch, pair_rows, world, code, kind, residual)
-            kind -= 1
+        residual = relax_unit_friction(settings, scratch, pair_rows, world, code, kind, residual)
+        kind -= 1
+        if kind < last:
+            kind = first + 0
+            unit += 1
     return residual
 
 
