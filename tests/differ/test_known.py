@@ -476,6 +476,7 @@ def test_links_without_shapes_make_islands_of_bodies(calls: list[Call], differen
         (0.503, 0.9, [0.28, -0.96, 0.0], True),
         (0.497, 0.9, [0.28, -0.96, 0.0], False),
         (0.503, 1.1, [0.28, -0.96, 0.0], False),
+        (0.503, 0.9, [0.22, -0.9755, 0.0], True),
         (0.503, 0.9, [0.0, -1.0, 0.0], False),
     ],
 )

@@ -75,16 +75,14 @@ _HALF_A_TURN = 1e-6
 _NO_ROTATION = 1e-6
 LEFT_OVER = 1e-4
 _EXCHANGED, _AS_NEAR = 1e-3, 1e-4
-_TOO_FAR, _ROUNDED = 2e-4, 1e-9
-# How far PyBullet's normals are off those of the planes through its own points, 1.7e-4 or less.
-_NEARLY_NORMAL = 2e-4
+_TOO_FAR, ROUNDED = 2e-4, 1e-9
 # What PyBullet's search leaves in the normal and distance of faces that are parallel.
 _OPPOSITE = 1e-6
 # Sizes of files pass through single precision.
 _AS_IN_FILES = 1e-8
 SEEN_TO_BE_NEARER = 1e-6
 _OF_SIMPLIFIED_HULLS = 4e-3
-_MARGIN, _SAME_FACE, _MARGIN_OF_SWEPT = 1e-3, 1e-6, 0.04
+MARGIN, _MARGIN_OF_SWEPT = 1e-3, 0.04
 _SEARCHED_DEPTH = 0.02
 _SHARE_OF_ROUND_EDGES, _SHARE_FROM_CLOSE_BY, _SHARE_OF_NEARER = 0.12, 0.2, 0.9
 MAINTAIN_LINK_ORDER = 131072
@@ -296,7 +294,7 @@ def names_another_face(seen: Seen) -> bool:
 def is_a_little_nearer(seen: Seen, least: float = 0.0) -> bool:
     """Whether the points are nearer than PyBullet's, by little, and as far from each other as they say."""
     theirs, ours = seen.difference.place[1:3]
-    return least < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < _ROUNDED
+    return least < theirs[8] - ours[8] < _TOO_FAR and abs(math.dist(ours[5], ours[6]) - ours[8]) < ROUNDED
 
 
 def made_for(seen: Seen, argument: Any) -> list[Call]:
@@ -317,7 +315,7 @@ def is_farther_from_a_fine_hull(seen: Seen) -> bool:
     if not 0.0 < ours[8] - theirs[8] < _OF_SIMPLIFIED_HULLS:
         return False
     asked = [*seen.call["a"], *seen.call["k"].values()]
-    return abs(math.dist(ours[5], ours[6]) - abs(ours[8])) < _ROUNDED and any(
+    return abs(math.dist(ours[5], ours[6]) - abs(ours[8])) < ROUNDED and any(
         map(_is_fine, made_for(seen, asked))
     )
 
@@ -333,27 +331,10 @@ def is_thinner_than_its_margins(seen: Seen) -> bool:
             for call in seen.before
             if call["f"] == "changeDynamics" and "collisionMargin" in call["k"] and call["a"][0] == body
         ]
-        twice = 2.0 * max([_MARGIN, *margins])
+        twice = 2.0 * max([MARGIN, *margins])
         if thickness and min(thickness) < twice and abs(theirs[8] - ours[8]) < twice:
             return True
     return False
-
-
-def is_a_little_before(seen: Seen) -> bool:
-    """Whether a ray ends less than the margin before where it does here, on the same face."""
-    theirs, ours = seen.difference.place[1:3]
-    further = [b - a for a, b in zip(theirs[3], ours[3], strict=True)]
-    apart = abs(sum(part * normal for part, normal in zip(further, ours[4], strict=True)))
-    same = max(abs(a - b) for a, b in zip(theirs[4], ours[4], strict=True)) < _SAME_FACE
-    return theirs[2] < ours[2] and apart < _MARGIN and same
-
-
-def hits_the_same_face(seen: Seen) -> bool:
-    """Whether a ray ends at the same point in both, and only the normal there is a little turned."""
-    theirs, ours = seen.difference.place[1:3]
-    apart = max(abs(a - b) for a, b in zip(theirs[3], ours[3], strict=True))
-    turned = max(abs(a - b) for a, b in zip(theirs[4], ours[4], strict=True))
-    return max(abs(theirs[2] - ours[2]), apart) < _ROUNDED and turned < _NEARLY_NORMAL
 
 
 def _is_fine(call: Call) -> bool:
@@ -379,7 +360,7 @@ def is_the_shorter_way_out(seen: Seen) -> bool:
     """Whether bodies are less deep in each other than PyBullet's search says, and one has such capsules."""
     theirs, ours = seen.difference.place[1:3]
     apart = abs(math.dist(ours[5], ours[6]) + ours[8])
-    return bool(_swept(seen)) and 0.0 < ours[8] - theirs[8] < _SEARCHED_DEPTH and apart < _ROUNDED
+    return bool(_swept(seen)) and 0.0 < ours[8] - theirs[8] < _SEARCHED_DEPTH and apart < ROUNDED
 
 
 def is_as_thick_as_a_margin(seen: Seen) -> bool:
@@ -387,12 +368,6 @@ def is_as_thick_as_a_margin(seen: Seen) -> bool:
     theirs, ours = seen.difference.place[1:3]
     least = min((least for least, _ in _swept(seen)), default=_MARGIN_OF_SWEPT)
     return 0.0 < ours[8] - theirs[8] < 2.0 * (_MARGIN_OF_SWEPT - least)
-
-
-def hits_another_at_the_same_place(seen: Seen) -> bool:
-    """Whether a ray hits another body than PyBullet's, as far away."""
-    theirs, ours = seen.difference.place[1:3]
-    return min(theirs[0], ours[0]) >= 0 and abs(theirs[2] - ours[2]) < _ROUNDED
 
 
 def is_the_same_rotation(seen: Seen) -> bool:
@@ -413,11 +388,6 @@ def forgets_forces(seen: Seen) -> bool:
             applied = False
         applied |= call["f"].startswith("applyExternal")
     return False
-
-
-def counts_hits(seen: Seen) -> bool:
-    """Whether hits of rays are asked for by number."""
-    return seen.call["k"].get("reportHitNumber", -1) >= 0
 
 
 def restores_after_a_removal(seen: Seen) -> bool:
@@ -445,11 +415,6 @@ def numbers_a_child_first(seen: Seen) -> bool:
         and call["k"].get("flags", 0) & MAINTAIN_LINK_ORDER
         for call in seen.before
     )
-
-
-def nothing_hit_before_the_first_step(seen: Seen) -> bool:
-    theirs = seen.difference.place.theirs
-    return seen.difference.phase == "start" and seen.differs("rayTest") and theirs[0] == -1
 
 
 def rounder(seen: Seen) -> bool:

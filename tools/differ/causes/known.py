@@ -24,7 +24,6 @@ from tools.differ.causes.calls import (
     balls,
     casts_shadows,
     comes_near_bare_links,
-    counts_hits,
     crosses_capsules,
     draws_given_vertices,
     error,
@@ -32,11 +31,8 @@ from tools.differ.causes.calls import (
     forgets_forces,
     goes_on_with_masses,
     has_joints,
-    hits_another_at_the_same_place,
-    hits_the_same_face,
     holds_a_ball_joint_by_no_rotation,
     holds_half_a_turn,
-    is_a_little_before,
     is_a_little_nearer,
     is_as_thick_as_a_margin,
     is_farther_from_a_fine_hull,
@@ -48,7 +44,6 @@ from tools.differ.causes.calls import (
     makes,
     moved_since_the_last_step,
     names_another_face,
-    nothing_hit_before_the_first_step,
     numbers_a_child_first,
     pybullet_raises,
     reaches_from_positions,
@@ -67,6 +62,13 @@ from tools.differ.causes.poses import (
     looks_from_within,
     starts_half_a_turn_away,
     touches_a_hull_with_a_cylinder,
+)
+from tools.differ.causes.rays import (
+    counts_hits,
+    hits_another_at_the_same_place,
+    hits_the_same_face,
+    is_a_little_before,
+    nothing_hit_before_the_first_step,
 )
 from tools.differ.causes.rows import (
     asks_for_the_other_link,
