@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from carom.kernels.structs import Model, Settings, State, UserConstraints
 from carom.kernels.types import Int32, kernel, real
 from carom.kernels.warp_types import warp_type
 from carom.layouts.codes import ABSENT, ACTIVE
-from carom.layouts.model import TreeModel
+from carom.layouts.model import LinkModel, TreeModel
 
 STEP = 0.25
 DELAY = 2.0
@@ -54,16 +55,21 @@ def integers(values: Any, ndim: int) -> Any:
     return wp.array(numbers[None] if ndim == 2 else numbers, dtype=Int32, device="cpu", ndim=ndim)
 
 
-def model_of(*trees: dict[str, Any]) -> Any:
-    """Trees with these fields."""
-    rows = []
-    for fields in trees:
-        row = warp_type(TreeModel)()
+def rows_of(layout: Any, rows: Iterable[dict[str, Any]]) -> Any:
+    """Rows of a struct with these fields."""
+    made = []
+    for fields in rows:
+        row = warp_type(layout)()
         for name, value in fields.items():
             setattr(row, name, value)
-        rows.append(row)
+        made.append(row)
+    return wp.array(made, dtype=warp_type(layout), device="cpu")
+
+
+def model_of(*trees: dict[str, Any]) -> Any:
+    """Trees with these fields."""
     model = Model()
-    model.tree = wp.array(rows, dtype=warp_type(TreeModel), device="cpu")
+    model.tree = rows_of(TreeModel, trees)
     return model
 
 
@@ -71,21 +77,31 @@ def model_of(*trees: dict[str, Any]) -> Any:
 @given(st.data(), st.integers(1, 30))
 def test_islands_are_the_connected_components_of_what_can_move(data: st.DataObject, count: int) -> None:
     place = st.integers(0, count - 1)
-    ties = data.draw(st.lists(st.tuples(st.integers(-1, count - 1), place, st.booleans()), max_size=40))
+    tie = st.tuples(st.integers(-1, count - 1), place, st.booleans(), st.booleans())
+    ties = data.draw(st.lists(tie, max_size=40))
     moves = np.array(data.draw(st.lists(st.booleans(), min_size=count, max_size=count)))
     setting, state, users = Settings(), State(), UserConstraints()
     setting.tree_count, setting.user_count = count, len(ties)
     state.tree_island = integers([-7] * count, 2)
     present = data.draw(st.lists(st.booleans(), min_size=count, max_size=count))
     state.tree_activity = integers([ACTIVE if there else ABSENT for there in present], 2)
-    users.user_enabled = integers([enabled for *_, enabled in ties] or [0], 2)
+    users.user_enabled = integers([enabled for *_, enabled, _ in ties] or [0], 2)
     users.user_tree_a = integers([a for a, *_ in ties] or [0], 1)
-    users.user_tree_b = integers([b for _, b, _ in ties] or [0], 1)
+    users.user_tree_b = integers([b for _, b, *_ in ties] or [0], 1)
+    # A tree has two links, of which the second never moves.
+    users.user_link_a = integers([2 * a if a >= 0 else -1 for a, *_ in ties] or [0], 1)
+    users.user_link_b = integers([2 * b + is_still for _, b, _, is_still in ties] or [0], 1)
     model = model_of(*({"dof_count": 6 * int(free)} for free in moves))
+    links = [number for tree, free in enumerate(moves) for number in (tree if free else -1, -1)]
+    model.link = rows_of(LinkModel, ({"nearest_dof": number, "number": number} for number in links))
     wp.launch(unite_tied_kernel, dim=1, inputs=[setting, model, state, users], device="cpu")
     roots = state.tree_island.numpy()[0]
-    # The world, -1, and what cannot move or is absent tie nothing together.
-    tied = [(a, b) for a, b, enabled in ties if enabled and a >= 0 and present[a] and present[b]]
+    # The world, -1, and what cannot move, is still or absent tie nothing together.
+    tied = [
+        (a, b)
+        for a, b, enabled, is_still in ties
+        if enabled and not is_still and a >= 0 and present[a] and present[b]
+    ]
     edges = [(a, b) for a, b in tied if moves[a] and moves[b]]
     a, b = np.array(edges, dtype=int).reshape(-1, 2).T
     labels = connected_components(
