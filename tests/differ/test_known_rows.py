@@ -135,6 +135,27 @@ def test_motors_keep_targets_of_after_a_state_was_saved(calls: list[Call], expec
 
 
 @pytest.mark.parametrize(
+    ("name", "flags", "field", "error", "phase", "tied", "expected"),
+    [
+        ("racecar/racecar_differential.urdf", 0, "velocities.0.10", 6e-9, "free", True, True),
+        ("racecar/racecar_differential.urdf", 0, "positions.0.10", 6e-9, "free", True, True),
+        ("racecar/racecar_differential.urdf", 0, "velocities.0.10", 2e-8, "free", True, False),
+        ("racecar/racecar_differential.urdf", 0, "velocities.0.10", 6e-9, "contact", True, False),
+        ("racecar/racecar_differential.urdf", 0, "velocities.0.10", 6e-9, "free", False, False),
+        ("racecar/racecar_differential.urdf", 0, "base.0.1", 6e-9, "free", True, False),
+        ("racecar/racecar_differential.urdf", 2, "velocities.0.10", 6e-9, "free", True, False),
+        ("racecar/racecar.urdf", 0, "velocities.0.10", 6e-9, "free", True, False),
+    ],
+)
+def test_rounding_shows_where_links_turn_next_to_nothing(
+    name: str, flags: int, field: str, error: float, phase: str, tied: bool, expected: bool
+):
+    robot = call(7, "loadURDF", name, flags=flags)
+    tie = call(8, "createConstraint", {"$": 7}, 10, -1, -1, 5, [0, 0, 1], [0, 0, 0], [0, 0, 0])
+    assert is_stated([robot, tie] if tied else [robot], field, error, phase) == expected
+
+
+@pytest.mark.parametrize(
     ("name", "flags", "expected"), [("pusher", 2, True), ("pusher", 0, False), ("ant", 2, False)]
 )
 def test_joints_of_mjcf_files_may_turn_no_inertia(name: str, flags: int, expected: bool):

@@ -259,3 +259,26 @@ def inner_sweeps_go_on_after_stuck_rows(p: Any) -> dict[str, Any]:
     return simulate(
         p, 1 / 240, lambda: {"joints": [state[0] for state in p.getJointStates(pendulum, joints)]}
     )
+
+
+@scenario(tolerance={"positions": 1e-9, "velocities": 1e-9})
+def rolling_of_bodies_without_inertia(p: Any) -> dict[str, Any]:
+    """A ball without moments of inertia, and with rolling friction, slides close to a driven arm."""
+    results: dict[str, Any] = {}
+    for cone in (0, 1):
+        for kinds in (["rollingFriction"], ["spinningFriction"], ["rollingFriction", "spinningFriction"]):
+            _start(p)
+            p.setPhysicsEngineParameter(enableConeFriction=cone)
+            block = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.05, 0.05, 0.5])
+            p.createMultiBody(0, block, -1, [0.3, -0.2, 1.5001])
+            arm = _robot(p, 0.0, [(TURN, 0), (TURN, 1), (TURN, 2)])
+            for joint in range(3):
+                p.setJointMotorControl2(arm, joint, p.VELOCITY_CONTROL, targetVelocity=0.2, force=50)
+            # So close that their bounds meet, which puts both into one island.
+            ball = p.createMultiBody(
+                1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), -1, [0.3, -0.16, 2.1]
+            )
+            p.changeDynamics(ball, -1, localInertiaDiagonal=[0, 0, 0], **dict.fromkeys(kinds, 0.1))
+            p.resetBaseVelocity(ball, [0.1, -0.1, -0.1])
+            results |= under(f"{' and '.join(kinds)}, cone {cone}", _result(p, arm))
+    return results

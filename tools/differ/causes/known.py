@@ -83,6 +83,7 @@ from tools.differ.causes.rows import (
     ties_a_link_taken_for_still,
     touches_its_parents_rigidly,
     touches_itself_rigidly,
+    turns_next_to_nothing_about_one_line,
 )
 from tools.differ.compare import Difference
 from tools.differ.programs import Call
@@ -284,6 +285,10 @@ KNOWN: tuple[Known, ...] = (
                 or holds_a_ball_joint_by_no_rotation(seen)
             )
         ),
+    ),
+    Known(
+        "Rounding shows where links turn next to nothing",
+        lambda seen: seen.differs("@probe") and turns_next_to_nothing_about_one_line(seen),
     ),
     Known(
         "the limit takes a part of what the motor holds",

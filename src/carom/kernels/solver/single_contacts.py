@@ -18,7 +18,7 @@ import warp as wp
 
 from carom.kernels.dynamics.rows import inverse_or_off
 from carom.kernels.maths.equal_steps import equal_steps
-from carom.kernels.maths.min_max import maximum, within_bounds
+from carom.kernels.maths.min_max import INDEFINITE, later_maximum, within_bounds
 from carom.kernels.solver.contact_terms import (
     friction_change,
     keep_contact_impulse,
@@ -205,7 +205,7 @@ def relax_in_pyramid(scratch: Scratch, pair_rows: PairRows, world: Int32, single
             change[row] = impulses[1 + row] - before[row]
             push_sideways(scratch, pair_rows, world, single, change)
             velocity = change[row] * pair_rows.single_lateral[world, single].inverse_mass[row]
-            largest = maximum(largest, wp.abs(velocity))
+            largest = later_maximum(largest, wp.abs(velocity))
             row += 1
         pair_rows.single_impulse[world, single] = impulses
     return largest
@@ -229,6 +229,17 @@ def lateral_coupling(pair_rows: PairRows, world: Int32, single: Int32) -> real:
 
 
 @func
+def movable_inverse_mass(pair_rows: PairRows, world: Int32, single: Int32) -> Vector2:
+    """Inverse masses of both friction rows of a contact; 0 where nothing can move."""
+    inverse_mass = pair_rows.single_lateral[world, single].inverse_mass
+    mass = pair_rows.single_lateral[world, single].effective_mass
+    return Vector2(
+        inverse_mass[0] if mass[0] > 0.0 else 0.0,
+        inverse_mass[1] if mass[1] > 0.0 else 0.0,
+    )
+
+
+@func
 def relax_in_cone(
     settings: Settings, scratch: Scratch, pair_rows: PairRows, world: Int32, single: Int32, bound: real
 ) -> real:
@@ -241,7 +252,7 @@ def relax_in_cone(
     before = Vector2(impulses[1], impulses[2])
     after = wanted_friction(scratch, pair_rows, world, single, before)
     if settings.cone_friction == ISOTROPIC:
-        inverse_mass = pair_rows.single_lateral[world, single].inverse_mass
+        inverse_mass = movable_inverse_mass(pair_rows, world, single)
         steps = equal_steps(inverse_mass[0], inverse_mass[1], lateral_coupling(pair_rows, world, single))
         after = before + wp.cw_mul(after - before, steps)
     square = after[0] * after[0] + after[1] * after[1]
@@ -252,9 +263,9 @@ def relax_in_cone(
     push_sideways(scratch, pair_rows, world, single, change)
     pair_rows.single_impulse[world, single][1] = after[0]
     pair_rows.single_impulse[world, single][2] = after[1]
-    velocity = wp.cw_mul(change, pair_rows.single_lateral[world, single].inverse_mass)
     if settings.cone_friction == ISOTROPIC:
-        return wp.length(velocity)
+        return wp.length(wp.cw_mul(change, movable_inverse_mass(pair_rows, world, single)))
+    velocity = wp.cw_mul(change, pair_rows.single_lateral[world, single].inverse_mass)
     return velocity[0] + velocity[1]
 
 
@@ -387,14 +398,21 @@ def write_numbers_of_single(
     inverse_mass: real,
     softness: real,
     change: real,
+    ignored: Int32,
 ):
     """Write what a row has besides its vectors; it requests a `change` of its velocity.
 
-    `row` is as for `write_row_of_body`, `inverse_mass` without softness.
+    `row` is as for `write_row_of_body`, `inverse_mass` without softness. As in Bullet, the change of a row
+    along which nothing can move is 0/0, as where a body without inertia would roll; not of contacts that are
+    `ignored`.
     """
     mass = inverse_or_off(inverse_mass + softness)
     share = mass * change
-    diagonal = 1.0 / mass if mass > 0.0 else 0.0
+    diagonal = real(0.0)
+    if mass > 0.0:
+        diagonal = 1.0 / mass
+    elif ignored == 0:
+        diagonal = INDEFINITE
     if row == 0:
         pair_rows.single_normal[world, single].share = share
         pair_rows.single_normal[world, single].effective_mass = mass
@@ -440,7 +458,7 @@ def write_row_of_single(
     if terms.ignored != 0:
         inverse_mass = real(0.0)
     change = requested_change(settings, shapes, terms, world, row, velocity)
-    write_numbers_of_single(pair_rows, world, single, row, inverse_mass, softness, change)
+    write_numbers_of_single(pair_rows, world, single, row, inverse_mass, softness, change, terms.ignored)
 
 
 @func
@@ -547,7 +565,7 @@ def write_torsion_row(
         inverse_mass, softness = real(0.0), real(0.0)
     # A drift is along the surface, so there is none about an axis.
     change = friction_change(settings, velocity + carried, terms.drift, Vector3(0.0, 0.0, 0.0))
-    write_numbers_of_single(pair_rows, world, second, row, inverse_mass, softness, change)
+    write_numbers_of_single(pair_rows, world, second, row, inverse_mass, softness, change, terms.ignored)
 
 
 @func
