@@ -45,17 +45,17 @@ class Library:
         try:
             manifest = json.loads((path.parent / MANIFEST).read_text("utf-8"))
             # One of other sources is not loaded: it would stay in memory.
-            found = manifest["digest"]
-            digest = digest or found
-            if found == digest:
+            found: str = manifest["digest"]
+            expected = digest or found
+            if found == expected:
                 # Calls through it release the GIL, so that other threads run meanwhile.
                 self._loaded = ctypes.CDLL(str(path))
-                found = (ctypes.c_char * len(digest)).in_dll(self._loaded, "carom_digest").value.decode()
+                found = (ctypes.c_char * len(expected)).in_dll(self._loaded, "carom_digest").value.decode()
                 self._kernels: Mapping[str, Any] = manifest["kernels"]
                 self.perform: Any = self._loaded.carom_perform
         except (OSError, ValueError, KeyError) as problem:
             raise NativeLibraryError(f"{path} cannot be loaded: {problem}. {_cure()}") from None
-        if found != digest:
+        if found != expected:
             raise NativeLibraryError(
                 f"{path} was built from other kernels than those installed here. {_cure()}"
             )
