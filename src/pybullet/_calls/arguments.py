@@ -252,7 +252,8 @@ def _checked_length(values: Any, problem: str, name: str, most: int) -> int:
 
 def sequence(values: Any, problem: str, name: str, most: int = MAX_ITEMS) -> tuple[Any, ...]:
     """The items of any sequence of at most `most`; raises `pybullet.error` if `values` is none."""
-    if type(values) in _PLAIN and len(values) <= most:
+    # Not of a `range`, whose length Python may be unable to say.
+    if type(values) in _PLAIN and type(values) is not range and len(values) <= most:
         return tuple(values)
     count = _checked_length(values, problem, name, most)
     try:
