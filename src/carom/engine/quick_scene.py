@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ctypes import addressof, c_char, c_int32, c_int64, c_void_p, cast
+from functools import cache
 from sys import intern
 from typing import TYPE_CHECKING, Any
 
@@ -53,11 +54,10 @@ class QuickScene:
         take_step: Performs a step, whose addresses are known, and lets the time go on; returns whether
             it has. If not, nothing has happened, and Python has to perform it. The caller has the lock of
             the world.
-        cold_start: The packed record of a function for changes, after which the next step does not warm start
-            the contacts there are, because a body was moved. The addresses for poses have to be known.
     """
 
     __slots__ = (
+        "_cold_start",
         "_detection",
         "_is_empty",
         "_kept",
@@ -67,15 +67,13 @@ class QuickScene:
         "_run",
         "_step",
         "_stepped",
-        "cold_start",
         "record",
         "take_step",
     )
 
     def __init__(self) -> None:
         self.record = Scene()
-        start_cold = cast(library().symbols.carom_start_cold, c_void_p).value
-        self.cold_start: bytes = packed_run(start_cold, self.address, 0, addressof(_NO_TREE), 0)
+        self._cold_start = b""
         # The objects that the addresses point to.
         self._kept: list[Any] = []
         self._stepped: tuple[Any, ...] = ()
@@ -89,6 +87,16 @@ class QuickScene:
         self._known_blanks: dict[tuple[str, ...], bytes] = {}
         # Nothing was set since everything was forgotten.
         self._is_empty = True
+
+    @property
+    def cold_start(self) -> bytes:
+        """The packed record of a function for changes: contacts are not warm started in the next step.
+
+        It is for bodies that are moved. The addresses for poses have to be known.
+        """
+        if not self._cold_start:
+            self._cold_start = packed_run(_start_cold(), self.address, 0, addressof(_NO_TREE), 0)
+        return self._cold_start
 
     def forget(self, change: Change) -> None:
         """Forget all addresses with a change, after which the world is another."""
@@ -251,3 +259,8 @@ def _know(record: TreeCall, launch: TreeLaunch) -> None:
     # The function last: without it the other addresses are not used.
     function, record.call.bounds, record.call.arguments, record.tree = launch.addresses()
     record.call.function = function
+
+
+@cache
+def _start_cold() -> int | None:
+    return cast(library().symbols.carom_start_cold, c_void_p).value
