@@ -73,7 +73,7 @@ LAYER = {package: number for number, packages in enumerate(LAYERS) for package i
 # Packages that are kept free of the others below them, and what they may import.
 KEPT_APART = {
     "carom.description": {"carom.errors", "carom.layouts", "carom.native"},
-    "carom.geometry": {"carom.errors", "carom.description", "carom.native"},
+    "carom.geometry": {"carom.errors", "carom.description", "carom.layouts", "carom.native"},
     "carom.layouts": set(),
     # Device code: nothing that runs on the host imports it but what compiles and launches it.
     "carom.kernels": {"carom.layouts"},

@@ -1,7 +1,7 @@
 """The corners of convex hulls on the grid on which PyBullet makes them, in the order in which it lists them.
 
 Which corner a search finds first, of several that are equally far, is left to this order. It depends on all
-points, also those inside, and on how often each is there: `native/source/corner_order.cpp` says how.
+points, also those inside, and on how often each is there: `native/source/hulls/corner_order.cpp` says how.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import ctypes
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.layouts.hulls import CornerWork
 from carom.native.library import library
 
 Points = NDArray[np.float64]
@@ -22,19 +23,6 @@ GRID = 10216
 _SPOKES_PER_POINT = 12
 _CELLS = 2 * GRID
 _ARRAYS = ("lead", "outline", "seen", "far", "after", "before", "bridges", "order")
-
-
-class _CornerWork(ctypes.Structure):
-    """`CornerWork` of `corner_order.cpp`."""
-
-    _fields_ = (
-        ("points", ctypes.c_void_p),
-        ("point_of", ctypes.c_void_p),
-        ("count", ctypes.c_int64),
-        ("total", ctypes.c_int64),
-        ("most_spokes", ctypes.c_int64),
-        *((name, ctypes.c_void_p) for name in _ARRAYS),
-    )
 
 
 class Grid:
@@ -105,7 +93,7 @@ def _listed(points: Ints, uses: NDArray[np.int64]) -> Ints:
     """Indices of corners of the hull of distinct points, sorted by y, then x, then z, in PyBullet's order."""
     count = len(points)
     point_of = np.repeat(np.arange(count, dtype=np.int32), uses)
-    work = _CornerWork(points.ctypes.data, point_of.ctypes.data, count, len(point_of), 0)
+    work = CornerWork(points.ctypes.data, point_of.ctypes.data, count, len(point_of), 0)
     function = library().symbols["carom_corner_order"]
     function.restype = ctypes.c_int64
     spokes = _SPOKES_PER_POINT * count

@@ -1,14 +1,16 @@
-"""The loops of quickhull, in the native library: `native/source/hulls.cpp`. Memory is NumPy's."""
+"""The loops of quickhull, in the native library: `native/source/hulls/quickhull.cpp`. Memory is NumPy's."""
 
 from __future__ import annotations
 
 import ctypes
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.layouts.hulls import HullEdge, HullEntry, HullFace, HullWork, MergeWork
 from carom.native.library import library
 
 COPLANAR = 1e-5
@@ -22,48 +24,6 @@ _PARALLEL = 0.999
 
 _FACES_PER_VERTEX = 12
 _FEWEST_FACES = 256
-_FACE = np.dtype(
-    [("plane", "f8", 4), ("height", "f8"), ("corners", "i4", 3), ("neighbours", "i4", 3), ("rest", "i4", 6)]
-)
-_ENTRY = np.dtype([("height", "f8"), ("number", "i8")])
-_EDGE = np.dtype([("start", "i4"), ("end", "i4"), ("beyond", "i4")])
-_Pointer, _Whole, _Real = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
-
-
-class _HullWork(ctypes.Structure):
-    """`HullWork` of `hulls.cpp`."""
-
-    _fields_ = (
-        ("points", _Pointer),
-        ("count", _Whole),
-        ("most_vertices", _Whole),
-        ("most_faces", _Whole),
-        ("rounding", _Real),
-        ("tolerance", _Real),
-        ("first_corners", ctypes.c_int32 * 4),
-        *((name, _Pointer) for name in ("faces", "queue", "rim", "loop", "seen")),
-        *((name, _Pointer) for name in ("next", "rim_at", "rim_of")),
-        ("face_count", _Whole),
-    )
-
-
-class _MergeWork(ctypes.Structure):
-    """`MergeWork` of `hulls.cpp`."""
-
-    _fields_ = (
-        ("points", _Pointer),
-        ("faces", _Pointer),
-        ("face_count", _Whole),
-        ("triangle_count", _Whole),
-        ("point_count", _Whole),
-        ("thin", _Real),
-        ("parallel", _Real),
-        ("tiny", _Real),
-        *((name, _Pointer) for name in ("normals", "areas", "number", "face", "order", "spare")),
-        *((name, _Pointer) for name in ("group_of", "group", "following", "following_of", "uses")),
-        *((name, _Pointer) for name in ("corners", "counts")),
-        ("loop_count", _Whole),
-    )
 
 
 class _Memory:
@@ -72,7 +32,7 @@ class _Memory:
     def __init__(self) -> None:
         self.arrays: list[np.ndarray] = []
 
-    def new(self, length: int, kind: str | np.dtype = "i4") -> int:
+    def new(self, length: int, kind: Any = "i4") -> int:
         """The address of a new array."""
         return self.address(np.empty(max(length, 1), kind))
 
@@ -110,7 +70,7 @@ def hull_loops(
     memory = _Memory()
     vertices = len(points) if most_vertices is None else min(len(points), most_vertices)
     most_faces = max(_FEWEST_FACES, _FACES_PER_VERTEX * vertices)
-    work = _HullWork(memory.address(points), len(points), -1 if most_vertices is None else most_vertices)
+    work = HullWork(memory.address(points), len(points), -1 if most_vertices is None else most_vertices)
     work.rounding, work.tolerance = rounding, tolerance
     work.first_corners[:] = corners
     work.next, work.rim_at, work.rim_of = (memory.new(len(points)) for _ in range(3))
@@ -119,8 +79,8 @@ def hull_loops(
         # Faces that vanish on the way need room as well.
         most_faces *= 2
         work.most_faces = most_faces
-        work.faces, work.queue = memory.new(most_faces, _FACE), memory.new(most_faces, _ENTRY)
-        work.rim, work.loop = memory.new(most_faces, _EDGE), memory.new(most_faces, _EDGE)
+        work.faces, work.queue = memory.new(most_faces, HullFace), memory.new(most_faces, HullEntry)
+        work.rim, work.loop = memory.new(most_faces, HullEdge), memory.new(most_faces, HullEdge)
         work.seen = memory.new(most_faces)
         function = library().symbols["carom_hull"]
         function.restype = ctypes.c_int64
@@ -129,10 +89,10 @@ def hull_loops(
 
 
 def _merged(
-    memory: _Memory, hull: _HullWork, triangles: int, thin: float
+    memory: _Memory, hull: HullWork, triangles: int, thin: float
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
     """The faces of a hull, those in one plane joined, without corners in the middle of an edge."""
-    work = _MergeWork(hull.points, hull.faces, hull.face_count, triangles, hull.count)
+    work = MergeWork(hull.points, hull.faces, hull.face_count, triangles, hull.count)
     work.thin, work.parallel, work.tiny = thin, _PARALLEL, sys.float_info.min
     work.normals, work.areas = memory.new(3 * triangles, "f8"), memory.new(triangles, "f8")
     work.number = memory.new(hull.face_count)
@@ -142,6 +102,6 @@ def _merged(
         setattr(work, name, memory.new(hull.count))
     corners, counts = np.empty(3 * triangles, np.int32), np.empty(triangles, np.int32)
     work.corners, work.counts = memory.address(corners), memory.address(counts)
-    library().symbols["carom_merge_faces"](ctypes.byref(work), _Whole(MIN_FACES))
+    library().symbols["carom_merge_faces"](ctypes.byref(work), ctypes.c_int64(MIN_FACES))
     counts = counts[: work.loop_count]
     return corners[: counts.sum()], counts

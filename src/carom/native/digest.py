@@ -1,7 +1,7 @@
 """The digest of the sources of the native library.
 
 A library contains the digest of its sources. It fits the present sources if they have the same digest, so
-this digest is needed at every start. It is computed from the files' contents alone, in two milliseconds.
+in a clone this digest is needed at every start. It is computed from the files' contents alone.
 """
 
 from __future__ import annotations
@@ -19,14 +19,13 @@ except ImportError:
     from hashlib import blake2b
 
 _DIGEST_BYTES = 16
-# Kernels, the data structures that they share with Python, C and C++ sources, and the build code.
+# Kernels, the data structures that they share with Python, the build code, and C and C++ sources; also of the
+# folders in each.
 _FOLDERS = (
     "carom/kernels",
     "carom/layouts",
     "carom/native/building",
-    "carom/native/building/libm",
     "carom/native/source",
-    "carom/native/source/lanes",
 )
 _SUFFIXES = (".c", ".cpp", ".h", ".py")
 
@@ -41,8 +40,13 @@ def source_digest(root: Path) -> str:
         OSError: A folder is missing, or a file cannot be read.
     """
     digest = blake2b(digest_size=_DIGEST_BYTES)
-    rooms = [entry.name for entry in os.scandir(root / _FOLDERS[0]) if entry.is_dir()]
-    for folder in (*_FOLDERS, *(f"{_FOLDERS[0]}/{room}" for room in sorted(rooms))):
+    rooms = [
+        f"{folder}/{entry.name}"
+        for folder in _FOLDERS
+        for entry in os.scandir(root / folder)
+        if entry.is_dir() and entry.name != "__pycache__"
+    ]
+    for folder in (*_FOLDERS, *sorted(rooms)):
         for name in sorted(os.listdir(root / folder)):
             if name.endswith(_SUFFIXES):
                 content = _read(f"{root}/{folder}/{name}")

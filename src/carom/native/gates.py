@@ -1,6 +1,6 @@
 """Locks of worlds in the native library: builtins take them without a line of Python.
 
-`native/source/gate.h` describes how they work.
+`native/source/changes/gate.h` describes how they work.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Rows of all arrays of one table or several, put in by one native call, and taken out with a change.
 
-The functions are in `native/source/table_rows.cpp`. They are called with the GIL held, so no signal handler
-runs between the first array and the last.
+The functions are in `native/source/changes/table_rows.cpp`. They are called with the GIL held, so no signal
+handler runs between the first array and the last.
 """
 
 from __future__ import annotations

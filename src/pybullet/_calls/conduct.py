@@ -1,10 +1,11 @@
 """What each function does to a world, and so what may happen in the middle of a call.
 
 PyBullet's functions are atomic: they are C code that holds the GIL. Here a call has the world for itself from
-its arguments to its results (`native/source/gate.h`), and other threads wait. In the thread itself, signal
-handlers, finalizers and trace functions may run between the lines of a function that only reads: if they call
-functions of this connection, it reads again. In the middle of a function that changes something they do not,
-unless all it does is to commit one change: if others come first, that does nothing, and is prepared again.
+its arguments to its results (`native/source/changes/gate.h`), and other threads wait. In the thread itself,
+signal handlers, finalizers and trace functions may run between the lines of a function that only reads: if
+they call functions of this connection, it reads again. In the middle of a function that changes something
+they do not, unless all it does is to commit one change: if others come first, that does nothing, and is
+prepared again.
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ from carom.layouts import (
     codes,
     contacts,
     gates,
+    hulls,
     magnitudes,
     motor_commands,
     programs,
@@ -36,7 +37,7 @@ from carom.layouts.records import CType, Record
 HEADER = "layouts.h"
 
 _CONSTANTS = (codes, contacts, motor_commands, status, magnitudes, queries)
-_RECORDS = (contacts, gates, programs, table_rows, quick_world, quick_bodies, quick_calls)
+_RECORDS = (contacts, gates, hulls, programs, table_rows, quick_world, quick_bodies, quick_calls)
 # Structs that kernels and hand-written C++ share.
 _SHARED_WITH_KERNELS = (contacts.Candidate,)
 _INTRODUCTION = f"""\

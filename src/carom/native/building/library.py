@@ -165,13 +165,13 @@ def _compiled(parts: _Build, code: Path, work: Path) -> list[Path]:
     folder = parts.root / "carom" / "native" / "source"
     digest = work / "digest.cpp"
     digest.write_text(_DIGEST_SOURCE.format(parts.digest))
-    lanes = folder / "lanes"
-    own = [*sorted(folder.glob("*.cpp")), *sorted(lanes.glob("*.cpp")), digest]
+    rooms = [folder, *sorted(room for room in folder.iterdir() if room.is_dir())]
+    own = [*(source for room in rooms for source in sorted(room.glob("*.cpp"))), digest]
     if parts.target.suffix == ".dll":
         own.append(_HERE / "windows.cpp")
     kernels, headers = sorted(code.glob("*.cpp")), [_HERE, parts.warp / "native"]
     objects = _objects(parts, "kernels", "c++", CPP_FLAGS, kernels, headers, work)
-    objects += _objects(parts, "the rest", "c++", parts.own_flags, own, [*headers, folder, lanes, code], work)
+    objects += _objects(parts, "the rest", "c++", parts.own_flags, own, [*headers, *rooms, code], work)
     maths = maths_sources(called_functions(objects), parts.zig.library)
     folders = include_folders(parts.zig.library)
     return objects + _objects(parts, "maths", "cc", C_FLAGS, maths, folders, work)

@@ -7,25 +7,8 @@
 // counter-clockwise from outside. Faces are polygons: coplanar points share one, and no corner is in the middle
 // of an edge. So hulls of the same points have the same edges, however they were made; only leads differ.
 
-#include <stdint.h>
-
 #include "export.h"
-
-// Memory of one hull: `carom.geometry.corner_order` declares the same.
-struct CornerWork {
-    const int32_t* points;    // (count, 3): distinct, sorted by y, then x, then z
-    const int32_t* point_of;  // total: the point at each place, which may be there more than once
-    int64_t count, total;
-    int64_t most_spokes;  // room for them, also those that vanish
-    int32_t* lead;        // count: a spoke of each corner, -1 for none
-    int32_t* outline;     // (4, count): see `Outline`
-    int32_t* seen;        // count
-    int32_t* far;         // most_spokes: the corner at the other end
-    int32_t* after;       // most_spokes: the next one in the ring
-    int32_t* before;      // most_spokes
-    int32_t* bridges;     // (most_spokes / 2, 6): see `Bridge`
-    int32_t* order;       // count; the result
-};
+#include "layouts.h"
 
 namespace {
 

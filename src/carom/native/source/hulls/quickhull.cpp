@@ -1,79 +1,16 @@
 // Convex hulls by quickhull: `carom.geometry.hull`. The caller provides all memory. Sums are in the order of their
 // index, so that corners and their order are the same on every machine.
 
-#include <stdint.h>
-
 #include "export.h"
+#include "layouts.h"
 
 namespace {
 
-struct Face {
-    double plane[4];         // outward unit normal and offset
-    double height;           // of the farthest point
-    int32_t corners[3];      // counter-clockwise from outside
-    int32_t neighbours[3];   // the face across the edge from each corner to the next
-    int32_t first, last;     // points above this face, a list by `next`; -1 for none
-    int32_t farthest;        // the highest of these
-    int32_t mark, is_below;  // whether it is seen from the point with this mark
-    int32_t is_alive;
-};
-
-struct Edge {
-    int32_t start, end, beyond;
-};
-
-// An entry of the queue: the highest first, of equal ones that with the lower number.
-struct Entry {
-    double height;
-    int64_t number;
-};
+using Face = HullFace;
+using Edge = HullEdge;
+using Entry = HullEntry;
 
 }  // namespace
-
-// Memory of one hull: `carom.geometry.native_hull` declares the same.
-struct HullWork {
-    const double* points;  // (count, 3)
-    int64_t count;
-    int64_t most_vertices;  // -1 for no limit
-    int64_t most_faces;     // room for faces, also those that vanish
-    double rounding, tolerance;
-    int32_t first_corners[4];
-    Face* faces;      // most_faces
-    Entry* queue;     // most_faces
-    Edge* rim;        // most_faces
-    Edge* loop;       // most_faces
-    int32_t* seen;    // most_faces
-    int32_t* next;    // count
-    int32_t* rim_at;  // count: place in the rim of the edge that starts at a point
-    int32_t* rim_of;  // count: the mark of that rim
-    // Results.
-    int64_t face_count;
-};
-
-// Joining of coplanar faces: `carom.geometry.native_hull` declares the same.
-struct MergeWork {
-    const double* points;
-    const Face* faces;
-    int64_t face_count;      // rows of `faces`, also those that vanished
-    int64_t triangle_count;  // faces that are left
-    int64_t point_count;
-    double thin, parallel, tiny;
-    double* normals;        // (triangle_count, 3)
-    double* areas;          // triangle_count
-    int32_t* number;        // face_count: which triangle a face is
-    int32_t* face;          // triangle_count
-    int32_t* order;         // triangle_count
-    int32_t* spare;         // triangle_count
-    int32_t* group_of;      // triangle_count
-    int32_t* group;         // triangle_count
-    int32_t* following;     // point_count
-    int32_t* following_of;  // point_count
-    int32_t* uses;          // point_count
-    // Results: the corners of all loops, one after the other, and how many each has.
-    int32_t* corners;  // 3 * triangle_count
-    int32_t* counts;   // triangle_count
-    int64_t loop_count;
-};
 
 namespace {
 
