@@ -19,7 +19,8 @@ from pybullet._calls.errors import fail
 
 _ONLY_INTEGERS = frozenset((int,))
 # Types whose lengths are certainly those of what is read.
-_PLAIN = frozenset((list, tuple, range))
+# Not ranges: Python may be unable to say how long one is.
+_PLAIN = frozenset((list, tuple))
 _MIN_INT, _MAX_INT = -(2**31), 2**31 - 1
 MAX_ITEMS = 1 << 24
 """Greatest length of sequences whose length no other argument determines."""
@@ -252,8 +253,7 @@ def _checked_length(values: Any, problem: str, name: str, most: int) -> int:
 
 def sequence(values: Any, problem: str, name: str, most: int = MAX_ITEMS) -> tuple[Any, ...]:
     """The items of any sequence of at most `most`; raises `pybullet.error` if `values` is none."""
-    # Not of a `range`, whose length Python may be unable to say.
-    if type(values) in _PLAIN and type(values) is not range and len(values) <= most:
+    if type(values) in _PLAIN and len(values) <= most:
         return tuple(values)
     count = _checked_length(values, problem, name, most)
     try:
