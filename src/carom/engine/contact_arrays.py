@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from carom.engine.lost_contacts import Rows, counts_of, kept_rows, renumber
+from carom.engine.lost_contacts import Rows, counts_of, island_of, kept_rows, renumber
 from carom.layouts.contacts import (
     CONTACT_COLUMNS,
     HELD_BEFORE,
@@ -95,13 +95,23 @@ class ContactArrays:
         first, count = self.shapes.shape_rows(rows)
         links = rows.first["link"], rows.count["link"]
         kept = kept_rows(self.contacts, range(first, first + count))
-        renumber(kept, (first, count), links)
-        # As if the body had been moved, see `cold_starts`.
-        kept["contact_warm_start"] = cold_start(kept["contact_warm_start"])
         counts = self.contacts.numpy["count_contacts"][0].copy()
+        if len(kept["contact_shapes"]) < counts[THERE]:
+            # For its island as if it had been moved, see `cold_starts`.
+            counters, near = kept["contact_warm_start"], self._neighbours(rows.tree, kept)
+            counters[near] = cold_start(counters[near])
+        renumber(kept, (first, count), links)
         counts[KNOWN] -= max(0, min(count, int(counts[KNOWN]) - first))
         self.shapes.remove(change, rows)
         self._replace_contacts(change, kept, counts)
+
+    def _neighbours(self, tree: int, kept: Rows) -> np.ndarray:
+        """Which of the rows of a single world's contacts, (n,), are of the island of a tree."""
+        trees = self.shapes.table.numpy["shape_tree"]
+        pairs = trees[self.contacts.numpy["contact_shapes"][0, : self.contact_count, :2]]
+        can_move = self._arrays.model.numpy["tree_dof_count"] > 0
+        island = island_of(tree, pairs, can_move)
+        return np.any(island[trees[kept["contact_shapes"][:, :2]]], axis=1)
 
     def part(self, change: Change, *parted: Sequence[int]) -> None:
         """Drop the contacts of links of a single world, which may collide with others after a change.

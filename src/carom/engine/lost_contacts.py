@@ -43,6 +43,28 @@ def kept_rows(contacts: ArrayTable, lost: Sequence[int], world: int = 0) -> Rows
     return rows
 
 
+def island_of(tree: int, pairs: np.ndarray, can_move: np.ndarray) -> np.ndarray:
+    """The trees that a tree touches, those that can move and touch these, and so on.
+
+    Args:
+        tree: The tree.
+        pairs: The trees that each contact is of, -1 for the world, (contacts, 2).
+        can_move: Whether each tree can move, (trees,).
+
+    Returns:
+        Whether each tree is of the island, then whether the world is, which is never so, (trees + 1,).
+    """
+    can_move = np.append(can_move, False)
+    island = np.zeros(len(can_move), dtype=bool)
+    island[tree] = True
+    while True:
+        met = pairs[island[pairs].any(axis=1)]
+        new = met[can_move[met] & ~island[met]]
+        if not len(new):
+            return island
+        island[new] = True
+
+
 def renumber(rows: Rows, shapes: tuple[int, int], links: tuple[int, int]) -> None:
     """Renumber rows for the removal of some shapes and links; of each the first row and their number."""
     for numbers, (first, count) in (
