@@ -23,6 +23,7 @@ LAYERS = (
         "carom.errors",
         "carom.logger",
         "carom.forks",
+        "carom.imports",
         "carom.suggestions",
         "carom.version",
         "carom.writing",

@@ -202,7 +202,9 @@ def __getattr__(name: str) -> Any:
         return import_module("carom.control")
     if name not in _HOME:
         raise AttributeError(f"module 'carom' has no attribute {name!r}")
-    return getattr(import_module(_HOME[name]), name)
+    from carom.imports import uncollected
+
+    return getattr(uncollected(import_module, _HOME[name]), name)
 
 
 def __dir__() -> list[str]:

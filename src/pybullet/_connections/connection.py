@@ -6,8 +6,9 @@ import atexit
 import sys
 from operator import index
 from types import FrameType
-from typing import Any, overload
+from typing import TYPE_CHECKING, Any, overload
 
+from carom.imports import uncollected
 from carom.native.change import Change
 from pybullet._calls.arguments import by_name, integer, real, text
 from pybullet._calls.builtin import exported, exported_as
@@ -47,6 +48,10 @@ from pybullet._clients.clients import (
 )
 from pybullet._clients.locks import lock_of
 from pybullet._window.window import Window
+
+if TYPE_CHECKING:
+    from carom.world.world import World
+    from pybullet._bodies.body_access import BodyTable
 
 __all__ = [
     "connect",
@@ -187,18 +192,24 @@ def _join(slot: int, method: int, target: Target) -> bool:
 
 def _new_client(slot: int, method: int, target: Target) -> Client:
     """A client with a new world in this process."""
-    # The engine is imported when it is needed, so that importing the module stays quick.
-    from carom.world.world import World
-    from pybullet._bodies.body_access import BodyTable
-
-    world, lock = World(), lock_of(slot)
+    lock = lock_of(slot)
+    world, bodies = uncollected(_new_world)
     world.lock = lock
-    client = Client(method, world, BodyTable(), Window(), lock)
+    client = Client(method, world, bodies, Window(), lock)
     if method in _WITH_WINDOW:
         from pybullet._window.page_window import open_window
 
         client.window = open_window(client, target.options)
     return client
+
+
+def _new_world() -> tuple[World, BodyTable]:
+    """An empty world, and the table of its bodies."""
+    # The engine is imported when it is needed, so that importing the module stays quick.
+    from carom.world.world import World
+    from pybullet._bodies.body_access import BodyTable
+
+    return World(), BodyTable()
 
 
 def _let_quick_calls_in(slot: int, client: Client) -> None:
