@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,13 +38,17 @@ def facing_sign(world_to_pixel: Matrix) -> float:
     Returns:
         1 or -1; 0 if the matrix is so singular that no triangle is visible.
     """
-    column, row, depth, w = world_to_pixel[:, :3]
+    column, row, depth, w = world_to_pixel[:, :3].tolist()
     # The direction in which neither column nor row changes: the viewing direction of a parallel projection.
-    along = np.cross(column, row)
+    along = (
+        column[1] * row[2] - column[2] * row[1],
+        column[2] * row[0] - column[0] * row[2],
+        column[0] * row[1] - column[1] * row[0],
+    )
     perspective = _dot(along, w)
-    if abs(perspective) > 1e-12 * length(column) * length(row) * length(w):
-        return -float(np.sign(perspective))
-    return -float(np.sign(_dot(along, depth)))
+    if abs(perspective) <= 1e-12 * sqrt(_dot(column, column) * _dot(row, row) * _dot(w, w)):
+        perspective = _dot(along, depth)
+    return float((perspective < 0.0) - (perspective > 0.0))
 
 
 def is_singular(matrix: Matrix) -> bool:
@@ -74,8 +81,8 @@ def unit_vector(vector: Matrix) -> Matrix:
     return vector / length(vector)
 
 
-def _dot(a: Matrix, b: Matrix) -> float:
-    return float(product(a[None], b[:, None])[0, 0])
+def _dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def parallel_projection(half_size: float, near: float, far: float) -> Matrix:

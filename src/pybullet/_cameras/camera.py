@@ -192,4 +192,4 @@ def _changed_light(light: Light, given: Mapping[str, Any]) -> Light:
         changes["colour"] = vector3(given["lightColor"], _FAILED, "lightColor")
     if shadow >= 0:
         changes["shadow"] = shadow != 0
-    return replace(light, **changes)
+    return replace(light, **changes) if changes else light
