@@ -92,7 +92,7 @@ CIRCLES_OF_TYPES = {
     # from one to the other, and methods that make them.
     "carom.scene.body": 32,
     # The same without what only users need: functions in modules of their own take these classes.
-    "carom.scene.core.world_core": 15,
+    "carom.scene.core.world_core": 16,
     # Copies of a world keep what has linearised their steps.
     "carom.linearization.stepping": 7,
     # A connection and the bodies and detours that it keeps.

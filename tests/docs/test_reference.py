@@ -36,7 +36,6 @@ INTERNAL: dict[str, set[str]] = {
             "note_link_poses",
             "note_no_constraint",
             "note_time",
-            "pose_run",
             "prepare",
             "take_arrays",
         ),

@@ -36,7 +36,7 @@ _MIN_CONTACTS = 4
 
 def cold_start(counters: np.ndarray) -> np.ndarray:
     """Counters of contacts that were `counters`, after a body was moved; as in `bodies.cpp`."""
-    return np.where((counters == HOLDING) | (counters == HELD_BEFORE), HELD_BEFORE, 0.0)
+    return ((counters == HOLDING) | (counters == HELD_BEFORE)) * HELD_BEFORE
 
 
 class ContactArrays:

@@ -50,6 +50,7 @@ class QuickScene:
     """Addresses that are valid until bodies, constraints or arrays of the world change.
 
     Attributes:
+        place: The address of `record`, a float, as C code reads it without an error.
         record: The addresses; unknown functions are null.
         take_step: Performs a step, whose addresses are known, and lets the time go on; returns whether
             it has. If not, nothing has happened, and Python has to perform it. The caller has the lock of
@@ -67,12 +68,14 @@ class QuickScene:
         "_run",
         "_step",
         "_stepped",
+        "place",
         "record",
         "take_step",
     )
 
     def __init__(self) -> None:
         self.record = Scene()
+        self.place = float(self.address)
         self._cold_start = b""
         # The objects that the addresses point to.
         self._kept: list[Any] = []
@@ -159,6 +162,7 @@ class QuickScene:
         self, model: Any, state: Any, contacts: Any, shapes: Any, contact_arrays: ContactArrays
     ) -> TreeLaunch:
         """Set the addresses that depend on these structs only, and return their launch."""
+        self.record.position, self.record.velocity = state.position.data, state.dof_velocity.data
         self.record.surface[:] = [getattr(shapes, field).data for field in SURFACE.values()]
         self.record.surface_names[:] = [id(name) for name in _NAMES]
         self.record.of_body[:] = [getattr(model, field).data for field in OF_BODY.values()]

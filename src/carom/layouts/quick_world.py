@@ -201,6 +201,8 @@ class Scene:
     Attributes:
         find_poses: Computes the link poses of a tree.
         find_twists: Computes the link velocities of a tree.
+        position: Position coordinates of all bodies; known with `find_poses`.
+        velocity: Velocity coordinates of all bodies.
         contact_count: Columns of `State.count_contacts` of the world.
         contact_warm_starts: Counters of warm starting, one for each contact.
         contact_room: Number of contacts that fit.
@@ -217,6 +219,8 @@ class Scene:
 
     find_poses: TreeCall
     find_twists: TreeCall
+    position: At[Double]
+    velocity: At[Double]
     contact_count: At[Int32]
     contact_warm_starts: At[Double]
     contact_room: Int64

@@ -25,9 +25,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 _MISSING = object()
-# Parts of changes that are empty.
-_NO_ATTRIBUTES: dict[int, Any] = {}
-_NONE: list[Any] = []
+# A part of changes that is empty.
 _NO_RECORDS = b""
 _ZERO = ctypes.c_int64(0)
 _BLOCK = Struct("=QQq")
@@ -258,23 +256,6 @@ class Change:
 def changes_made() -> int:
     """How many changes have been made so far, and steps of worlds."""
     return _Maker.made.value
-
-
-def change_memory(writes: list[Any], begun: int, runs: bytes = _NO_RECORDS) -> None:
-    """A change that writes to memory, runs kernels, and does nothing else: in half the time of a `Change`.
-
-    Args:
-        writes: Memory and the bytes, or the array, that go there, in turn.
-        begun: See `Change`.
-        runs: Packed records, see `Change.run_record`; the caller has what they point to.
-
-    Raises:
-        Outdated, ValueError: As from `Change.commit`.
-    """
-    make = _Maker.make or _Maker.find()
-    made = make(_NO_ATTRIBUTES, _NONE, _NONE, _NONE, writes, _NO_RECORDS, _NO_RECORDS, runs, begun)
-    if made is not _MISSING:
-        raise Outdated
 
 
 def blank(

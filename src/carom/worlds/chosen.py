@@ -70,14 +70,19 @@ class Chosen:
         Raises:
             ValueError: The shape is another, or a number is not finite.
         """
-        array = self.fitting(value, inner, name)
-        if not isinstance(array, OnDevice):
-            good = np.isfinite(array).all() if finite else not np.isnan(array).any()
-            if not good:
-                kind = "finite" if finite else "numbers"
-                raise ValueError(f"{name} must be {kind}, but some entries are not")
-        shape = (len(self), *inner)
-        return array if array.shape == shape else np.broadcast_to(array, shape)
+        array, shape = self.fitting(value, inner, name), (len(self), *inner)
+        if isinstance(array, OnDevice):
+            return array if array.shape == shape else np.broadcast_to(array, shape)
+        good = np.isfinite(array).all() if finite else not np.isnan(array).any()
+        if not good:
+            kind = "finite" if finite else "numbers"
+            raise ValueError(f"{name} must be {kind}, but some entries are not")
+        if array.shape == shape:
+            return array
+        # NumPy takes several microseconds to make a view of that shape.
+        each = np.empty(shape)
+        each[...] = array
+        return each
 
 
 def world_numbers(where: ArrayLike | None, count: int) -> NDArray[np.int64]:

@@ -57,6 +57,7 @@ typedef PyObject* (*PyFunction)(PyObject*, PyObject*);
     F(long long, PyLong_AsLongLong, (PyObject*))                        \
     F(intptr_t, PyNumber_AsSsize_t, (PyObject*, PyObject*))             \
     F(int, PyUnicode_CompareWithASCIIString, (PyObject*, const char*))  \
+    F(PyObject*, PyUnicode_InternFromString, (const char*))             \
     F(PyObject*, PyErr_Occurred, ())                                    \
     F(void, PyErr_SetString, (PyObject*, const char*))                  \
     F(PyObject*, PyErr_NoMemory, ())                                    \

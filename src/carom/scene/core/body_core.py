@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from math import sqrt
-from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 from carom.closed import Closed
@@ -24,8 +22,9 @@ from carom.layouts.magnitudes import UNIT_ROUNDING
 from carom.model.body_rows import TreeRows
 from carom.model.body_spec import BodySpec, LinkSpec
 from carom.model.link_dynamics import LinkDynamics
-from carom.native.change import Change, change_memory, changes_made
+from carom.native.change import Change, changes_made
 from carom.native.gates import alone, whole
+from carom.scene.core.state_writer import StateWriter
 from carom.scene.dynamics_changes import set_dynamics, set_present
 from carom.scene.handles import world_of
 
@@ -33,8 +32,6 @@ if TYPE_CHECKING:
     from carom.scene.core.world_core import WorldCore
 
 _NO_REACTION = (0.0,) * BASE_VELOCITIES
-_PACK_POSE = Struct(f"{BASE_POSITIONS}d").pack
-_PACK_VELOCITY = Struct(f"{BASE_VELOCITIES}d").pack
 _QUATERNION = 4
 
 JointReset = tuple[int, Sequence[float] | None, Sequence[float] | None]
@@ -145,7 +142,6 @@ class BodyCore(Closed):
         """Inertial frame of a link in its link frame; -1 is the base."""
         return self.link_spec(link).inertial_frame
 
-    @whole("world.lock")
     def set_base_pose(self, position: Sequence[float], orientation: Sequence[float]) -> None:
         """Set the pose of the base's inertial frame; its velocity does not change.
 
@@ -157,23 +153,18 @@ class BodyCore(Closed):
         squared = i * i + j * j + k * k + w * w
         # A pose that was read and is written back must not change in the last digit.
         scale = 1.0 if abs(squared - 1.0) < UNIT_ROUNDING else 1.0 / sqrt(squared)
-        begun, packed = changes_made(), _PACK_POSE(x, y, z, i * scale, j * scale, k * scale, w * scale)
-        world, first = world_of(self), self.first_position
-        place = world.position_memory[first : first + BASE_POSITIONS]
-        change_memory([place, packed], begun, world.pose_run(self) + world.quick.cold_start)
+        StateWriter.write(
+            self, self.world, self.id, None, (x, y, z, i * scale, j * scale, k * scale, w * scale), None
+        )
 
-    @whole("world.lock")
     def set_base_velocity(self, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Set the velocity of the base's centre of mass [m/s] and its angular velocity [rad/s].
 
         A fixed base moves with it, and as in Bullet the velocity turns with the base.
         """
         (x, y, z), (i, j, k) = linear, angular
-        begun, packed = changes_made(), _PACK_VELOCITY(i, j, k, x, y, z)
-        world, first = world_of(self), self.first_velocity
-        change_memory([world.velocity_memory[first : first + BASE_VELOCITIES], packed], begun)
+        StateWriter.write(self, self.world, self.id, None, None, (i, j, k, x, y, z))
 
-    @whole("world.lock")
     def set_joint_state(
         self, joint: int, position: Sequence[float] | None, velocity: Sequence[float] | None
     ) -> None:
@@ -188,15 +179,11 @@ class BodyCore(Closed):
         Raises:
             ValueError: There are too many or too few numbers.
         """
-        begun, writes = changes_made(), list[Any]()
-        world = world_of(self)
-        if position is not None and (count := self.position_count[joint]):
-            first = self.position_index[joint]
-            writes += world.position_memory[first : first + count], array("d", _state_of(position, count))
-        if velocity is not None and (count := self.velocity_count[joint]):
-            first = self.velocity_index[joint]
-            writes += world.velocity_memory[first : first + count], array("d", _state_of(velocity, count))
-        change_memory(writes, begun, world.pose_run(self))
+        if position is not None:
+            position = _state_of(position, self.position_count[joint])
+        if velocity is not None:
+            velocity = _state_of(velocity, self.velocity_count[joint])
+        StateWriter.write(self, self.world, self.id, joint, position, velocity)
 
     @whole("world.lock")
     def set_joint_states(self, states: Iterable[JointReset]) -> None:
@@ -323,7 +310,12 @@ class BodyCore(Closed):
 
 
 def _state_of(numbers: Sequence[float], count: int) -> list[float]:
-    """The coordinates of a joint, `count` numbers; four are a quaternion, which is normalised."""
+    """The coordinates of a joint, `count` numbers; four are a quaternion, which is normalised.
+
+    A fixed joint has none, whatever is given.
+    """
+    if not count:
+        return []
     coordinates = [*numbers]
     if len(coordinates) != count:
         raise ValueError(f"a joint with {count} coordinates has got {len(coordinates)} numbers")

@@ -48,10 +48,6 @@ class PoseUpdates(WorldData):
         """Bring `link_pose` up to date with the coordinates of a body."""
         (self._derived.pose_launch or self.prepare_poses())(body.rows.tree)
 
-    def pose_run(self, body: BodyCore) -> bytes:
-        """The same as a packed record for `change_memory`."""
-        return (self._derived.pose_launch or self.prepare_poses()).record(body.rows.tree)
-
     def note_link_poses(self, change: Change, *bodies: BodyCore) -> None:
         """Bring `link_pose` up to date with the coordinates of bodies, by default all, after a change."""
         launch = self._derived.pose_launch or self.prepare_poses()

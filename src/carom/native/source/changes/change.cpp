@@ -4,8 +4,7 @@
 // New values are exchanged for the old ones, which the change keeps until Python drops it: no finalizer runs in the
 // middle, and the same exchange takes a part of the change back.
 
-#include "perform.h"
-#include "python.h"
+#include "quick_calls.h"
 #include "table_rows.h"
 
 extern "C" CAROM_EXPORT int64_t carom_changes_made;
@@ -216,14 +215,7 @@ void each(PyObject* records, Function function) {
 
 static void cut_rows(const RowCut& cut) { carom_take_rows(cut.table, cut.first, cut.count, cut.used); }
 
-static void launch(const KernelRun& launched) {
-    const TreeCall& call = launched.call;
-    // The host relies on the tree that it set last.
-    const int32_t before = *call.tree;
-    *call.tree = static_cast<int32_t>(launched.tree);
-    run(call.call);
-    *call.tree = before;
-}
+static void launch(const KernelRun& launched) { run(launched.call, launched.tree); }
 
 // Makes a change, or nothing of it: then it returns null, and an error of Python is set. This is the C code of a builtin,
 // whose `self` stands for no value; it returns that. `parts` are, by `Part`:

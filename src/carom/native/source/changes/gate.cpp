@@ -41,16 +41,6 @@ void let_others_in(const Gate& gate) {
         python.PyEval_RestoreThread(python.PyEval_SaveThread());
 }
 
-struct Inside {
-    explicit Inside(Gate& gate) : gate(gate), outcome(enter(gate, nullptr)) {}
-    ~Inside() {
-        if (outcome == ENTERED)
-            leave(gate);
-    }
-    Gate& gate;
-    const Outcome outcome;
-};
-
 typedef PyObject* const* Arguments;
 
 // Puts an error of our own code aside for good; false if it has to be raised.
@@ -145,11 +135,6 @@ PyObject* attempt(
     return change(gate, function, arguments, count, names);
 }
 
-// A lock of Python is a float: the address of its gate.
-Gate& gate_at(PyObject* lock) {
-    return *reinterpret_cast<Gate*>(static_cast<uintptr_t>(python.PyFloat_AsDouble(lock)));
-}
-
 PyObject* truth(bool value) {
     PyObject* object = value ? python.True : python.False;
     python.Py_IncRef(object);
@@ -230,7 +215,7 @@ extern "C" CAROM_EXPORT void carom_meet_host(PyObject* begin, PyObject* end, PyO
 extern "C" CAROM_EXPORT PyObject* carom_gate_acquire(
     PyObject* self, Arguments arguments, intptr_t count, PyObject* names
 ) {
-    Gate& gate = gate_at(self);
+    Gate& gate = record_at<Gate>(self);
     const intptr_t named = names ? python.PyTuple_Size(names) : 0;
     if (!count && !named) {
         const Outcome outcome = enter(gate, nullptr);
@@ -259,7 +244,7 @@ extern "C" CAROM_EXPORT PyObject* carom_gate_acquire(
 }
 
 extern "C" CAROM_EXPORT PyObject* carom_gate_release(PyObject* self, Arguments, intptr_t, PyObject*) {
-    leave(gate_at(self));
+    leave(record_at<Gate>(self));
     python.Py_IncRef(python.None);
     return python.None;
 }

@@ -21,6 +21,23 @@ Outcome enter(Gate& gate, PyObject* arguments);
 // Gives the lock back. An error that is set stays set.
 void leave(Gate& gate);
 
+// Has the lock until it is destroyed, unless it could not be taken.
+struct Inside {
+    explicit Inside(Gate& gate) : gate(gate), outcome(enter(gate, nullptr)) {}
+    ~Inside() {
+        if (outcome == ENTERED)
+            leave(gate);
+    }
+    Gate& gate;
+    const Outcome outcome;
+};
+
+// The record at an address that is a float of Python, as a lock is: the address of its gate.
+template <typename Record>
+Record& record_at(PyObject* address) {
+    return *reinterpret_cast<Record*>(static_cast<uintptr_t>(python.PyFloat_AsDouble(address)));
+}
+
 // Whether another thread is in a call.
 inline bool is_closed(const Gate& gate) { return gate.owner && gate.owner != python.PyThread_get_thread_ident(); }
 
