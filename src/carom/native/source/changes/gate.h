@@ -4,10 +4,11 @@
 // the lock half taken.
 #pragma once
 
+#include "export.h"
 #include "layouts.h"
 
 // How many changes have been made so far, and steps of worlds; see `change.cpp`.
-extern "C" int64_t carom_changes_made;
+extern "C" CAROM_EXPORT int64_t carom_changes_made;
 
 enum Outcome { FAILED = -1, TAKEN_BY_OTHERS, ENTERED };
 
