@@ -51,7 +51,9 @@ class Searching:
     ("without", "with_all", "expected"),
     [(1.0, 1.1, PARTED), (1.0, 1.0, None), (1.0, 1.2, None), (1.1, 1.1, None), (1.1, 1.0, None)],
 )
-def test_pybullet_agrees_once_it_has_looked_at_all_pairs(without: float, with_all: float, expected: str | None):
+def test_pybullet_agrees_once_it_has_looked_at_all_pairs(
+    without: float, with_all: float, expected: str | None
+):
     program, theirs, ours = PROGRAM[:3], answered(1.0), answered(1.1)
     (difference,) = compare(program, theirs, ours)
     assert keeps_what_parted(Searching(without, with_all), program, theirs, ours, difference) == expected

@@ -57,11 +57,11 @@ from tools.differ.causes.calls import (
     turns_by_no_rotation,
 )
 from tools.differ.causes.poses import (
+    breaks_contacts_by_rounding,
     has_ends_that_stand_out,
     is_deep_at_a_cylinder,
     looks_from_within,
     starts_half_a_turn_away,
-    touches_a_hull_with_a_cylinder,
 )
 from tools.differ.causes.rays import (
     counts_hits,
@@ -414,7 +414,10 @@ KNOWN: tuple[Known, ...] = (
         "normals differ by up to 3e-4 at",
         lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
     ),
-    Known("PyBullet's search ends where that order leads it", touches_a_hull_with_a_cylinder),
+    Known(
+        "PyBullet drops contacts whose two points rounding puts beside each other",
+        lambda seen: seen.differs("@probe", "getContactPoints") and breaks_contacts_by_rounding(seen),
+    ),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",
         lambda seen: (

@@ -1,9 +1,9 @@
 """Whether PyBullet answers as Carom does once it has dropped all pairs of bounds that have parted.
 
-It looks at some of its pairs in each step: at as many as it met while it looked around links that moved, or a
-tenth. So bodies that have parted stay one island for some steps, where many pairs are of links that stand still.
-Before each step, or substep, a body far from all others is moved to and fro and pairs are looked for, until
-all have been looked at. The same program with that body, but without looking, has to differ still.
+It looks at some of its pairs in each step: at as many as it met while it looked around links that moved, or
+a tenth. So bodies that have parted stay one island for some steps, where many pairs are of links that stand
+still. Before each step, or substep, a body far from all others is moved to and fro and pairs are looked for,
+until all have been looked at. The same program with that body, but without looking, has to differ still.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Whether PyBullet itself has two answers: with bodies a little elsewhere, or in a process of its own.
 
-After a contact bodies are put 1e-12 m elsewhere. In free motion it is 1e-14 m, a few times the rounding of a
+After a contact bodies are put 1e-12 m elsewhere, and where contacts are asked for: PyBullet's search ends
+somewhere else on cylinders and capsules then. In free motion it is 1e-14 m, a few times the rounding of a
 place: a difference of 1e-9 that this makes was made 50,000 times as large by what came after, as where joints
 lie exactly at their limits, rows pull in opposite directions, or a spinning body is about to tumble. There
 joints are put elsewhere as well that the program leaves as they are made: what hangs by some turns as fast as
@@ -14,6 +15,8 @@ has a row is left to rounding, which in PyBullet is always the same until someth
 from __future__ import annotations
 
 import copy
+import math
+import re
 from collections.abc import Iterator, Sequence
 from random import Random
 from typing import Any, Protocol
@@ -31,6 +34,11 @@ _ONE_BODY = ("createMultiBody", "loadURDF")
 _RENUMBERS = MAINTAIN_LINK_ORDER | 524288
 _UNTURNED = [0.0, 0.0, 0.0, 1.0]
 _TRIALS, _SHARE = 4, 0.5
+# One in two to twenty such places makes PyBullet's search end elsewhere.
+_TRIALS_OF_CONTACTS = 24
+# In the fields of differences, the places of a contact; in a contact, its bodies and links.
+_PLACE = re.compile(r"\.\d+\.[56]")
+_LINKS = slice(1, 5)
 # Whether joints at a limit are put beyond it, before it, or each to either side.
 _AT_LIMIT, _AS_IT_IS, _SIDES = 1e-14, 0, (1, -1, None, None)
 
@@ -67,6 +75,8 @@ def doubted_by_pybullet(
     """
     if not _has(compare(calls, _performed(afresh, list(calls)), ours), difference, 0.0):
         return MEMORY
+    if difference.function == "getContactPoints" and _PLACE.fullmatch(difference.place.field):
+        return ROUNDING if _touches_elsewhere(pybullet, calls, theirs, difference) else None
     if difference.function != "@probe" or difference.phase not in _ELSEWHERE:
         return None
     free = difference.phase == "free"
@@ -84,6 +94,25 @@ def doubted_by_pybullet(
     if _changes_at_limits(pybullet, calls, theirs, difference):
         return ROUNDING
     return None
+
+
+def _touches_elsewhere(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, difference: Difference
+) -> bool:
+    """Whether in PyBullet the place of the same contact differs by as much where bodies are elsewhere."""
+    number, place = (int(part) for part in difference.place.field.split(".")[1:])
+    before = theirs["results"][difference.call][1]
+    away = math.dist(difference.place.theirs, difference.place.ours)
+    for trial in range(_TRIALS_OF_CONTACTS):
+        there = _elsewhere(calls[: difference.call + 1], _ELSEWHERE["contact"], Random(trial))
+        results = _performed(pybullet, there)["results"]
+        if len(results) <= difference.call or results[-1][0] != "ok" or len(results[-1][1]) != len(before):
+            continue
+        after = results[-1][1]
+        same = before[number][_LINKS] == after[number][_LINKS]
+        if same and math.dist(before[number][place], after[number][place]) > _SHARE * away:
+            return True
+    return False
 
 
 def _changes_at_limits(
