@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from tests.differ.test_known import PROBE, STEP, is_known
 from tests.differ.test_programs import call
@@ -80,6 +82,19 @@ def test_a_link_may_turn_either_way_to_what_is_half_a_turn_away(
 def test_normals_of_rays_may_be_off_their_faces(apart: float, turned: float, expected: bool):
     hits = [[0, 6, 0.5, [0.0, 0.0, z], [x, 0.0, 1.0]] for x, z in ((0.0, 0.0), (turned, apart))]
     assert is_known([call(51, "rayTest", [0] * 3, [1] * 3)], "normal", *hits) == expected
+
+
+@pytest.mark.parametrize(
+    ("function", "matrix", "text", "expected"),
+    [
+        ("computeViewMatrix", [math.nan, 0.0], "The camera looks straight along cameraUpVector.", True),
+        ("computeViewMatrix", [1.0, 0.0], "The camera looks straight along cameraUpVector.", False),
+        ("computeViewMatrix", [math.nan, 0.0], "It needs 3 numbers.", False),
+        ("computeProjectionMatrix", [math.nan, 0.0], "It looks straight along.", False),
+    ],
+)
+def test_cameras_that_look_nowhere_are_refused(function: str, matrix: list[float], text: str, expected: bool):
+    assert is_known([call(0, function)], "ok/error", [matrix], ["error", text]) == expected
 
 
 CYLINDER = call(0, "createCollisionShape", 4)

@@ -61,6 +61,7 @@ from tools.differ.causes.poses import (
     has_ends_that_stand_out,
     is_deep_at_a_cylinder,
     looks_from_within,
+    looks_nowhere,
     starts_half_a_turn_away,
 )
 from tools.differ.causes.rays import (
@@ -232,6 +233,7 @@ KNOWN: tuple[Known, ...] = (
         "The flat ends of its cylinders stand out by up to 1 mm",
         lambda seen: seen.differs("getCameraImage depth") and has_ends_that_stand_out(seen),
     ),
+    Known("or goes on with NaN", looks_nowhere),
     Known(
         "Which way a link turns that is exactly half a turn from its target",
         lambda seen: seen.differs("@reach worse") and starts_half_a_turn_away(seen),

@@ -6,7 +6,7 @@ import math
 import re
 from typing import Any
 
-from tools.differ.causes.calls import Seen, made_for, maker_of, shows_something_long_and_round
+from tools.differ.causes.calls import Seen, error, made_for, maker_of, shows_something_long_and_round
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})
@@ -39,6 +39,15 @@ def looks_from_within(seen: Seen) -> bool:
         default=0.0,
     )
     return math.dist(made["a"][0], body["a"][3]) < reach
+
+
+def looks_nowhere(seen: Seen) -> bool:
+    """Whether a view matrix is NaN in PyBullet, and refused here."""
+    return (
+        seen.call["f"] == "computeViewMatrix"
+        and "straight along" in error(seen)
+        and any(math.isnan(value) for value in seen.difference.place.theirs[0])
+    )
 
 
 def has_ends_that_stand_out(seen: Seen) -> bool:
