@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 import pybullet as p
@@ -22,7 +24,7 @@ USUAL, AT_REST = (2.111329425, 1.520176484), (0.0, 0.0)
     ],
 )
 def test_what_belongs_to_the_body_is_changed(
-    link: int, changes: dict[str, float], expected: tuple[float, float]
+    link: int, changes: dict[str, Any], expected: tuple[float, float]
 ):
     p.connect(p.DIRECT)
     body = p.createMultiBody(1, p.createCollisionShape(p.GEOM_SPHERE, radius=0.1), -1, [0, 0, 1])

@@ -22,7 +22,8 @@ from random import Random
 from typing import Any, Protocol
 
 from tools.differ.assets import FILES, SPHERICAL
-from tools.differ.causes.calls import MAINTAIN_LINK_ORDER, types_in_order
+from tools.differ.causes.calls import MAINTAIN_LINK_ORDER, Seen, types_in_order
+from tools.differ.causes.rows import are_tied
 from tools.differ.compare import AFTER_CONTACT, STRICT, Difference, compare
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
@@ -39,6 +40,7 @@ _TRIALS_OF_CONTACTS = 24
 # In the fields of differences, the places of a contact; in a contact, its bodies and links.
 _PLACE = re.compile(r"\.\d+\.[56]")
 _LINKS = slice(1, 5)
+_PAIRS = ("links", ".len")
 # Whether joints at a limit are put beyond it, before it, or each to either side.
 _AT_LIMIT, _AS_IT_IS, _SIDES = 1e-14, 0, (1, -1, None, None)
 
@@ -77,6 +79,8 @@ def doubted_by_pybullet(
         return MEMORY
     if difference.function == "getContactPoints" and _PLACE.fullmatch(difference.place.field):
         return ROUNDING if _touches_elsewhere(pybullet, calls, theirs, difference) else None
+    if difference.function == "getContactPoints" and difference.place.field in _PAIRS:
+        return ROUNDING if _come_and_go(pybullet, calls, theirs, ours, difference) else None
     if difference.function != "@probe" or difference.phase not in _ELSEWHERE:
         return None
     free = difference.phase == "free"
@@ -113,6 +117,31 @@ def _touches_elsewhere(
         if same and math.dist(before[number][place], after[number][place]) > _SHARE * away:
             return True
     return False
+
+
+def _come_and_go(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, ours: Outcome, difference: Difference
+) -> bool:
+    """Whether pairs that touch in one only come and go in PyBullet, too, but for those that joints tie."""
+    seen = Seen(difference, calls[: difference.call + 1])
+    before, own = (_pairs(outcome["results"][difference.call][1]) for outcome in (theirs, ours))
+    left = {pair for pair in before ^ own if not are_tied(seen, *pair)}
+    trial = 0
+    while left and trial < _TRIALS_OF_CONTACTS:
+        there = _elsewhere(seen.before, _ELSEWHERE["contact"], Random(trial))
+        results = _performed(pybullet, there)["results"]
+        if len(results) > difference.call and results[-1][0] == "ok":
+            left -= before ^ _pairs(results[-1][1])
+        trial += 1
+    return trial > 0 and not left
+
+
+def _pairs(points: Sequence[Any]) -> set[tuple[tuple[int, int], tuple[int, int]]]:
+    """The pairs of links of contacts, each a body and a link, the lower one first."""
+    return {
+        (min((a, link_a), (b, link_b)), max((a, link_a), (b, link_b)))
+        for _, a, b, link_a, link_b, *_ in points
+    }
 
 
 def _changes_at_limits(
