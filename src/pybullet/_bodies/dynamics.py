@@ -314,7 +314,7 @@ class _Changes:
             self.misdirected.append(name)
 
     def keep_those_of_body(self) -> None:
-        """Drop the values that belong to the named link, which does not exist; PyBullet changes the others."""
+        """Drop the values of the named link, which does not exist; PyBullet changes the others."""
         self.values = {name: value for name, value in self.values.items() if name in _OF_BODY}
         self.link = BASE
         self.misdirected.clear()
