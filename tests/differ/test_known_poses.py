@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from tests.differ.test_known import PROBE, STEP, is_known
 from tests.differ.test_programs import call
@@ -82,28 +84,45 @@ def test_normals_of_rays_may_be_off_their_faces(apart: float, turned: float, exp
     assert is_known([call(51, "rayTest", [0] * 3, [1] * 3)], "normal", *hits) == expected
 
 
-CYLINDER, HULL = call(0, "createCollisionShape", 4), call(1, "createCollisionShape", 5, fileName="duck.obj")
-SURFACE = call(1, "createCollisionShape", 5, fileName="duck.obj", flags=1)
+@pytest.mark.parametrize(
+    ("function", "matrix", "text", "expected"),
+    [
+        ("computeViewMatrix", [math.nan, 0.0], "The camera looks straight along cameraUpVector.", True),
+        ("computeViewMatrix", [1.0, 0.0], "The camera looks straight along cameraUpVector.", False),
+        ("computeViewMatrix", [math.nan, 0.0], "It needs 3 numbers.", False),
+        ("computeProjectionMatrix", [math.nan, 0.0], "It looks straight along.", False),
+    ],
+)
+def test_cameras_that_look_nowhere_are_refused(function: str, matrix: list[float], text: str, expected: bool):
+    assert is_known([call(0, function)], "ok/error", [matrix], ["error", text]) == expected
+
+
+CYLINDER = call(0, "createCollisionShape", 4)
 
 
 @pytest.mark.parametrize(
-    ("calls", "field", "away", "expected"),
+    ("breaking", "function", "phase", "expected"),
     [
-        ([CYLINDER, HULL], ".0.5", 1e-3, True),
-        ([CYLINDER, call(1, "loadURDF", "xarm/link6.urdf")], ".0.6", 1e-3, True),
-        ([call(0, "createCollisionShapeArray", shapeTypes=[2, 4]), HULL], ".2.5", 1e-3, True),
-        ([CYLINDER, HULL], ".0.5", 1e-2, False),
-        ([CYLINDER, HULL], ".0.7", 1e-3, False),
-        ([CYLINDER, SURFACE], ".0.5", 1e-3, False),
-        ([HULL], ".0.5", 1e-3, False),
-        ([CYLINDER], ".0.5", 1e-3, False),
+        ([0], "@probe", "contact", True),
+        ([0], "getContactPoints", "contact", True),
+        ([0], "getAABB", "contact", False),
+        ([0], "@probe", "free", False),
+        ([0.02, 0], "@probe", "contact", True),
+        ([0, 0.02], "@probe", "contact", False),
+        ([1e-9], "@probe", "contact", False),
+        ([], "@probe", "contact", False),
     ],
 )
-def test_the_order_of_corners_decides_where_a_cylinder_touches_a_hull(
-    calls: list[Call], field: str, away: float, expected: bool
+def test_contacts_that_break_at_once_are_left_to_rounding(
+    breaking: list[float], function: str, phase: str, expected: bool
 ):
-    calls = [*calls, call(2, "getContactPoints")]
-    assert is_known(calls, field, [0.0, 0.0, 1.0], [away, 0.0, 1.0]) == expected
+    set_to = [
+        call(n, "setPhysicsEngineParameter", contactBreakingThreshold=it) for n, it in enumerate(breaking)
+    ]
+    other = call(7, "setPhysicsEngineParameter", erp=0.2)
+    calls = [*set_to, other, STEP, call(9, function)]
+    difference = Difference(len(calls) - 1, function, Place("base.0.1", 1.0, 1.1, 1e-2), phase)
+    assert (statement(calls, difference) is not None) == expected
 
 
 @pytest.mark.parametrize(

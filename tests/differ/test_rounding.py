@@ -111,6 +111,70 @@ def test_joints_at_limits_are_put_on_both_sides(resets: float, beyond: float, ex
     assert said == expected
 
 
+def contact(place: float, link: int = -1) -> list[object]:
+    return [0, 0, 1, link, -1, [place, 0.0, 0.0], [0.0] * 3, [0.0, 0.0, 1.0], -1e-3]
+
+
+@pytest.mark.parametrize(
+    ("moved", "field", "expected"),
+    [
+        ([contact(1.0), contact(2.00002)], ".1.5", ROUNDING),
+        ([contact(1.0), contact(2.000008)], ".1.5", None),
+        ([contact(1.00002), contact(2.0)], ".1.5", None),
+        ([contact(1.0), contact(2.00002, link=3)], ".1.5", None),
+        ([contact(2.00002)], ".1.5", None),
+        ([contact(1.0), contact(2.00002)], ".1.8", None),
+        ([contact(1.0), contact(2.00002)], "links", None),
+    ],
+)
+def test_places_of_contacts_are_asked_for_with_bodies_elsewhere(
+    moved: list[list[object]], field: str, expected: str | None
+):
+    program = [*PROGRAM[:2], call(2, "performCollisionDetection"), call(3, "getContactPoints")]
+    before, ours = [contact(1.0), contact(2.0)], [contact(1.0), contact(2.00002)]
+
+    def answered(contacts: list[list[object]]) -> Outcome:
+        return outcome(["ok", 0], ["ok", 1], ["ok", None], ["ok", contacts])
+
+    def answer(calls: Sequence[Call]) -> Outcome:
+        away = abs(calls[0]["a"][3][2] - 1.0)
+        assert away <= 1e-12
+        return answered(moved if away else before)
+
+    place = Place(field, before[1][5], ours[1][5])
+    difference = Difference(3, "getContactPoints", place, "start")
+    afresh = Fake(lambda _: answered(before))
+    said = doubted_by_pybullet(Fake(answer), afresh, program, answered(before), answered(ours), difference)
+    assert said == expected
+
+
+@pytest.mark.parametrize(
+    ("moved", "field", "expected"),
+    [
+        ([contact(1.0)], "links", ROUNDING),
+        ([contact(1.0)], ".len", ROUNDING),
+        ([contact(1.0), contact(2.0, link=1)], "links", None),
+        ([contact(2.0, link=1)], "links", None),
+    ],
+)
+def test_pairs_that_come_and_go_are_left_to_rounding(
+    moved: list[list[object]], field: str, expected: str | None
+):
+    program = [*PROGRAM[:2], call(2, "performCollisionDetection"), call(3, "getContactPoints")]
+    before, ours = [contact(1.0), contact(2.0, link=1)], [contact(1.0)]
+
+    def answered(contacts: list[list[object]]) -> Outcome:
+        return outcome(["ok", 0], ["ok", 1], ["ok", None], ["ok", contacts])
+
+    def answer(calls: Sequence[Call]) -> Outcome:
+        return answered(moved if calls[0]["a"][3][2] != 1.0 else before)
+
+    difference = Difference(3, "getContactPoints", Place(field, before, ours), "start")
+    afresh = Fake(lambda _: answered(before))
+    said = doubted_by_pybullet(Fake(answer), afresh, program, answered(before), answered(ours), difference)
+    assert said == expected
+
+
 def test_differences_near_the_bound_are_seen_in_other_answers_of_pybullet():
     error = 1.2e-6
     place = Place("base.0.1", 1.0, 1.0 + 2 * error, error)

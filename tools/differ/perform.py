@@ -24,6 +24,7 @@ MAX_JOINTS = 64
 """So many joints of a body are in `@probe`."""
 AT_LIMIT = 5e-15
 """So near to a limit a joint is at it, as far as rounding lets one tell."""
+FAR = [1000.0, 1000.0, 1000.0]
 
 
 def serve():
@@ -220,7 +221,18 @@ def nudge(distance, seed, side):
             p.resetJointState(body, joint, position, velocity)
 
 
-OWN = {"@probe": probe, "@reach": reach, "@nudge": nudge}
+def search(times):
+    """Move a body to and fro, far from all others, and look for pairs each time; it is removed again."""
+    shape = p.createCollisionShape(p.GEOM_SPHERE, radius=0.1)
+    body = p.createMultiBody(0, shape, -1, FAR)
+    for count in range(times):
+        p.resetBasePositionAndOrientation(body, [*FAR[:2], FAR[2] + count % 2], [0, 0, 0, 1])
+        p.performCollisionDetection()
+    p.removeBody(body)
+    p.removeCollisionShape(shape)
+
+
+OWN = {"@probe": probe, "@reach": reach, "@nudge": nudge, "@search": search}
 
 if __name__ == "__main__":
     serve()

@@ -8,7 +8,8 @@ interpreters perform it (`pair.py`, `perform.py`), with PyBullet's files for bot
 results differ: beyond 1e-9 before the first contact, and in the first steps after it as far as rounding
 lets one see; contacts of all substeps count (`causes/substeps.py`). What docs/differences states is counted
 only (`causes/known.py`), and so is that to which PyBullet has another answer itself, in another process or
-from starts 1e-12 m elsewhere (`causes/rounding.py`). Of everything else the first program of each kind is
+from starts 1e-12 m elsewhere (`causes/rounding.py`), or once it has dropped pairs that have parted
+(`causes/parted.py`). Of everything else the first program of each kind is
 made as short as it can be (`minimise.py`), printed as a script, and written to build/differ, and the status
 is 1. All of them are listed there, in differing.txt.
 
@@ -29,12 +30,13 @@ from pathlib import Path
 
 from tools.differ.assets import URDFS
 from tools.differ.causes.known import statement
+from tools.differ.causes.parted import keeps_what_parted
 from tools.differ.causes.rounding import doubted_by_pybullet
 from tools.differ.causes.substeps import with_contacts_of_substeps
 from tools.differ.compare import Difference, compare
 from tools.differ.each_call import programs_of_getters
 from tools.differ.minimise import Minimiser
-from tools.differ.pair import ORACLE, ROOT, Pair
+from tools.differ.pair import ORACLE, ROOT, Outcome, Pair
 from tools.differ.programs import Call, script
 from tools.differ.themes import THEMES, program
 
@@ -95,9 +97,7 @@ class Differ:
         self.found.died += theirs["died"] is not None
         self.found.agreed += min(len(theirs["results"]), len(ours["results"])) - len(differences)
         for difference in differences:
-            says = statement(calls, difference) or doubted_by_pybullet(
-                self._pair.oracle, self._pair.afresh(), calls, theirs, ours, difference
-            )
+            says = self._says(calls, theirs, ours, difference)
             if says:
                 self.found.known[says] += 1
                 continue
@@ -106,6 +106,15 @@ class Differ:
             self._list(name, difference)
             if self.found.unknown[signature] == 1:
                 self._report(name, calls, difference)
+
+    def _says(self, calls: list[Call], theirs: Outcome, ours: Outcome, difference: Difference) -> str | None:
+        """The words of the documentation about a difference, or about what PyBullet's other answers show."""
+        oracle = self._pair.oracle
+        return (
+            statement(calls, difference)
+            or keeps_what_parted(oracle, calls, theirs, ours, difference)
+            or doubted_by_pybullet(oracle, self._pair.afresh(), calls, theirs, ours, difference)
+        )
 
     def _list(self, name: str, difference: Difference) -> None:
         """Add a line to the list of all programs with something that nothing states."""

@@ -136,7 +136,7 @@ def changeDynamics(
     Carom keeps a trap of PyBullet: damping, activation state, maximum velocity and collision margin belong to
     the body. If one of them is the last of the arguments given, in the order below, all others in the same
     call go to the base as well, with a warning. Use one call for the body and another for the link. A body or
-    link that does not exist is no error.
+    link that does not exist is no error; what belongs to the body is changed then as well.
 
     The order: jointLimitForce, joint limits, mass, anisotropicFriction, localInertiaDiagonal,
     lateralFriction, spinningFriction, rollingFriction, linearDamping*, angularDamping*, jointDamping,
@@ -206,7 +206,11 @@ def changeDynamics(
 
     found = link_or_warning(client, bodyUniqueId, changes.link, "changeDynamics")
     if found is None:
-        return
+        known = client.body(bodyUniqueId)
+        changes.keep_those_of_body()
+        if known is None or not changes.values:
+            return
+        found = known, BASE
     body, link = found
     if link != named_link and changes.misdirected:
         logger.warning(
@@ -308,6 +312,12 @@ class _Changes:
         else:
             self.link = self._named_link
             self.misdirected.append(name)
+
+    def keep_those_of_body(self) -> None:
+        """Drop the values of the named link, which does not exist; PyBullet changes the others."""
+        self.values = {name: value for name, value in self.values.items() if name in _OF_BODY}
+        self.link = BASE
+        self.misdirected.clear()
 
     def take_limits(self, lower: float, upper: float) -> None:
         """Take the limits of the named link's joint, unless the lower limit is greater than the upper one."""

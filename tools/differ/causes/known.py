@@ -57,11 +57,12 @@ from tools.differ.causes.calls import (
     turns_by_no_rotation,
 )
 from tools.differ.causes.poses import (
+    breaks_contacts_by_rounding,
     has_ends_that_stand_out,
     is_deep_at_a_cylinder,
     looks_from_within,
+    looks_nowhere,
     starts_half_a_turn_away,
-    touches_a_hull_with_a_cylinder,
 )
 from tools.differ.causes.rays import (
     counts_hits,
@@ -232,6 +233,7 @@ KNOWN: tuple[Known, ...] = (
         "The flat ends of its cylinders stand out by up to 1 mm",
         lambda seen: seen.differs("getCameraImage depth") and has_ends_that_stand_out(seen),
     ),
+    Known("or goes on with NaN", looks_nowhere),
     Known(
         "Which way a link turns that is exactly half a turn from its target",
         lambda seen: seen.differs("@reach worse") and starts_half_a_turn_away(seen),
@@ -414,7 +416,10 @@ KNOWN: tuple[Known, ...] = (
         "normals differ by up to 3e-4 at",
         lambda seen: seen.differs("@probe") and is_deep_at_a_cylinder(seen),
     ),
-    Known("PyBullet's search ends where that order leads it", touches_a_hull_with_a_cylinder),
+    Known(
+        "PyBullet drops contacts whose two points rounding puts beside each other",
+        lambda seen: seen.differs("@probe", "getContactPoints") and breaks_contacts_by_rounding(seen),
+    ),
     Known(
         "**on triangle meshes and height fields** shapes touch with all points at once",
         lambda seen: (

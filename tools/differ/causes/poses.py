@@ -6,7 +6,7 @@ import math
 import re
 from typing import Any
 
-from tools.differ.causes.calls import Seen, made_for, maker_of, shows_something_long_and_round
+from tools.differ.causes.calls import Seen, error, made_for, maker_of, shows_something_long_and_round
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})
@@ -14,9 +14,8 @@ _HALF_A_TURN = 1e-9
 _MARGIN = 2e-3
 """PyBullet's flat ends stand out by up to 1 mm; depths [m] are along the camera's axis."""
 _NO_TURN = (0.0, 0.0, 0.0, 1.0)
-_PLACE = re.compile(r"\.\d+\.[56]")
-_CYLINDER, _MESH, _CONCAVE = 4, 5, 1
-_ELSEWHERE_ON_A_FACE = 3e-3
+_CYLINDER = 4
+_USUAL_BREAKING = 0.02
 _BOTH_MARGINS, _OF_OTHER_NORMALS = 2e-3, 3e-4
 _MOVES = ("reset", "restore", "step")
 
@@ -42,6 +41,15 @@ def looks_from_within(seen: Seen) -> bool:
     return math.dist(made["a"][0], body["a"][3]) < reach
 
 
+def looks_nowhere(seen: Seen) -> bool:
+    """Whether a view matrix is NaN in PyBullet, and refused here."""
+    return (
+        seen.call["f"] == "computeViewMatrix"
+        and "straight along" in error(seen)
+        and any(math.isnan(value) for value in seen.difference.place.theirs[0])
+    )
+
+
 def has_ends_that_stand_out(seen: Seen) -> bool:
     """Whether depths of an image are greater than PyBullet's, by little, where it shows flat ends."""
     said, ours = seen.difference.place[1:3]
@@ -57,16 +65,13 @@ def has_ends_that_stand_out(seen: Seen) -> bool:
     return 0.0 < own - theirs < _MARGIN
 
 
-def touches_a_hull_with_a_cylinder(seen: Seen) -> bool:
-    """Whether places of a contact differ by little, and a cylinder was made beside a hull."""
-    field, theirs, ours = seen.difference.place[:3]
-    if seen.call["f"] != "getContactPoints" or not _PLACE.fullmatch(field):
-        return False
-    return (
-        math.dist(theirs, ours) < _ELSEWHERE_ON_A_FACE
-        and any(map(_makes_a_cylinder, seen.before))
-        and any(map(_may_make_a_hull, seen.before))
-    )
+def breaks_contacts_by_rounding(seen: Seen) -> bool:
+    """Whether contacts hold only where their points are 0 apart, beside each other, to the last bit."""
+    breaking = _USUAL_BREAKING
+    for call in seen.before:
+        if call["f"] == "setPhysicsEngineParameter":
+            breaking = call["k"].get("contactBreakingThreshold", breaking)
+    return breaking == 0.0 and seen.difference.phase == "contact"
 
 
 def is_deep_at_a_cylinder(seen: Seen) -> bool:
@@ -92,15 +97,6 @@ def _makes_a_cylinder(call: Call) -> bool:
     if call["f"] == "createCollisionShapeArray":
         return _CYLINDER in call["k"]["shapeTypes"]
     return call["f"] == "createCollisionShape" and call["a"][:1] == [_CYLINDER]
-
-
-def _may_make_a_hull(call: Call) -> bool:
-    """Whether a call makes a convex mesh, or loads a file that may have some."""
-    if call["f"] == "createCollisionShapeArray":
-        return _MESH in call["k"]["shapeTypes"]
-    if call["f"] == "createCollisionShape":
-        return call["a"][:1] == [_MESH] and not call["k"].get("flags", 0) & _CONCAVE
-    return call["f"].startswith("load")
 
 
 def starts_half_a_turn_away(seen: Seen) -> bool:

@@ -1,6 +1,7 @@
 """Whether PyBullet itself has two answers: with bodies a little elsewhere, or in a process of its own.
 
-After a contact bodies are put 1e-12 m elsewhere. In free motion it is 1e-14 m, a few times the rounding of a
+After a contact bodies are put 1e-12 m elsewhere, and where contacts are asked for: PyBullet's search ends
+somewhere else on cylinders and capsules then. In free motion it is 1e-14 m, a few times the rounding of a
 place: a difference of 1e-9 that this makes was made 50,000 times as large by what came after, as where joints
 lie exactly at their limits, rows pull in opposite directions, or a spinning body is about to tumble. There
 joints are put elsewhere as well that the program leaves as they are made: what hangs by some turns as fast as
@@ -14,12 +15,15 @@ has a row is left to rounding, which in PyBullet is always the same until someth
 from __future__ import annotations
 
 import copy
+import math
+import re
 from collections.abc import Iterator, Sequence
 from random import Random
 from typing import Any, Protocol
 
 from tools.differ.assets import FILES, SPHERICAL
-from tools.differ.causes.calls import MAINTAIN_LINK_ORDER, types_in_order
+from tools.differ.causes.calls import MAINTAIN_LINK_ORDER, Seen, types_in_order
+from tools.differ.causes.rows import are_tied
 from tools.differ.compare import AFTER_CONTACT, STRICT, Difference, compare
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
@@ -31,6 +35,12 @@ _ONE_BODY = ("createMultiBody", "loadURDF")
 _RENUMBERS = MAINTAIN_LINK_ORDER | 524288
 _UNTURNED = [0.0, 0.0, 0.0, 1.0]
 _TRIALS, _SHARE = 4, 0.5
+# One in two to twenty such places makes PyBullet's search end elsewhere.
+_TRIALS_OF_CONTACTS = 24
+# In the fields of differences, the places of a contact; in a contact, its bodies and links.
+_PLACE = re.compile(r"\.\d+\.[56]")
+_LINKS = slice(1, 5)
+_PAIRS = ("links", ".len")
 # Whether joints at a limit are put beyond it, before it, or each to either side.
 _AT_LIMIT, _AS_IT_IS, _SIDES = 1e-14, 0, (1, -1, None, None)
 
@@ -67,6 +77,10 @@ def doubted_by_pybullet(
     """
     if not _has(compare(calls, _performed(afresh, list(calls)), ours), difference, 0.0):
         return MEMORY
+    if difference.function == "getContactPoints" and _PLACE.fullmatch(difference.place.field):
+        return ROUNDING if _touches_elsewhere(pybullet, calls, theirs, difference) else None
+    if difference.function == "getContactPoints" and difference.place.field in _PAIRS:
+        return ROUNDING if _come_and_go(pybullet, calls, theirs, ours, difference) else None
     if difference.function != "@probe" or difference.phase not in _ELSEWHERE:
         return None
     free = difference.phase == "free"
@@ -84,6 +98,50 @@ def doubted_by_pybullet(
     if _changes_at_limits(pybullet, calls, theirs, difference):
         return ROUNDING
     return None
+
+
+def _touches_elsewhere(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, difference: Difference
+) -> bool:
+    """Whether in PyBullet the place of the same contact differs by as much where bodies are elsewhere."""
+    number, place = (int(part) for part in difference.place.field.split(".")[1:])
+    before = theirs["results"][difference.call][1]
+    away = math.dist(difference.place.theirs, difference.place.ours)
+    for trial in range(_TRIALS_OF_CONTACTS):
+        there = _elsewhere(calls[: difference.call + 1], _ELSEWHERE["contact"], Random(trial))
+        results = _performed(pybullet, there)["results"]
+        if len(results) <= difference.call or results[-1][0] != "ok" or len(results[-1][1]) != len(before):
+            continue
+        after = results[-1][1]
+        same = before[number][_LINKS] == after[number][_LINKS]
+        if same and math.dist(before[number][place], after[number][place]) > _SHARE * away:
+            return True
+    return False
+
+
+def _come_and_go(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, ours: Outcome, difference: Difference
+) -> bool:
+    """Whether pairs that touch in one only come and go in PyBullet, too, but for those that joints tie."""
+    seen = Seen(difference, calls[: difference.call + 1])
+    before, own = (_pairs(outcome["results"][difference.call][1]) for outcome in (theirs, ours))
+    left = {pair for pair in before ^ own if not are_tied(seen, *pair)}
+    trial = 0
+    while left and trial < _TRIALS_OF_CONTACTS:
+        there = _elsewhere(seen.before, _ELSEWHERE["contact"], Random(trial))
+        results = _performed(pybullet, there)["results"]
+        if len(results) > difference.call and results[-1][0] == "ok":
+            left -= before ^ _pairs(results[-1][1])
+        trial += 1
+    return trial > 0 and not left
+
+
+def _pairs(points: Sequence[Any]) -> set[tuple[tuple[int, int], tuple[int, int]]]:
+    """The pairs of links of contacts, each a body and a link, the lower one first."""
+    return {
+        (min((a, link_a), (b, link_b)), max((a, link_a), (b, link_b)))
+        for _, a, b, link_a, link_b, *_ in points
+    }
 
 
 def _changes_at_limits(

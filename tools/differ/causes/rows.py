@@ -122,12 +122,12 @@ def touches_itself_rigidly(seen: Seen) -> bool:
     """Whether what touches in PyBullet only are links of one body each, which fixed joints tie together."""
     field, theirs, ours = seen.difference.place[:3]
     if field == ".len":
-        others = [point for point in theirs if not _are_tied(seen, point[1:4:2], point[2:5:2])]
+        others = [point for point in theirs if not are_tied(seen, point[1:4:2], point[2:5:2])]
         return len(others) == len(ours) < len(theirs)
-    return not ours and all(_are_tied(seen, a, b) for a, b in theirs)
+    return not ours and all(are_tied(seen, a, b) for a, b in theirs)
 
 
-def _are_tied(seen: Seen, a: Sequence[int], b: Sequence[int]) -> bool:
+def are_tied(seen: Seen, a: Sequence[int], b: Sequence[int]) -> bool:
     """Whether fixed joints tie two links (each a body and a link) of a body that may touch itself."""
     body = maker_of(seen, a[0])
     if a[0] != b[0] or body is None or not body["k"].get("flags", 0) & TOUCHES_ITSELF:

@@ -26,7 +26,7 @@ def with_contacts_of_substeps(pybullet: Performer, calls: Sequence[Call], theirs
         calls: The program.
         theirs: PyBullet's answer; returned as it is where no step has several substeps.
     """
-    steps, places = _step_by_step(calls)
+    steps, places = step_by_step(calls)
     if len(steps) == len(calls):
         return theirs
     pybullet.order(steps)
@@ -45,7 +45,7 @@ def with_contacts_of_substeps(pybullet: Performer, calls: Sequence[Call], theirs
     return {"results": results, "died": theirs["died"]}
 
 
-def _step_by_step(calls: Sequence[Call]) -> tuple[list[Call], list[int]]:
+def step_by_step(calls: Sequence[Call]) -> tuple[list[Call], list[int]]:
     """The program with steps and probes in place of substeps, and where in it each of its calls is."""
     made: list[Call] = []
     places: list[int] = []

@@ -141,7 +141,7 @@ def find_new_points(
     if are_boxes(shapes, a, b):
         # Only points that touch are new; previous ones stay up to the breaking distance.
         return collide_boxes(shapes, pairs, world, a, b, 0.0)
-    if kind_a == SPHERE or kind_b == SPHERE:
-        # There is one point.
+    if (kind_a == SPHERE or kind_b == SPHERE) and kind_a != CYLINDER and kind_b != CYLINDER:
+        # There is one point. On a cylinder Bullet's search ends beside it.
         return collide_shapes(shapes, pairs, world, a, b, max_distance, 0.0)
     return nearest_as_bullet(shapes, pairs, world, a, b, max_distance)

@@ -1,0 +1,69 @@
+"""Whether PyBullet answers as Carom does once it has dropped all pairs of bounds that have parted.
+
+It looks at some of its pairs in each step: at as many as it met while it looked around links that moved, or
+a tenth. So bodies that have parted stay one island for some steps, where many pairs are of links that stand
+still. Before each step, or substep, a body far from all others is moved to and fro and pairs are looked for,
+until all have been looked at. The same program with that body, but without looking, has to differ still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tools.differ.causes.rounding import Performer
+from tools.differ.causes.substeps import step_by_step
+from tools.differ.compare import Difference, compare
+from tools.differ.pair import Outcome
+from tools.differ.programs import Call
+
+PARTED = "PyBullet looks at a part of its pairs in each step"
+# Whether each of a tenth of the pairs, but at least one, has been looked at after so many searches.
+_ALL, _NONE = 24, 0
+
+
+def keeps_what_parted(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, ours: Outcome, difference: Difference
+) -> str | None:
+    """The words of the documentation, if a state differs only until PyBullet has looked at all pairs.
+
+    Args:
+        pybullet: Performs programs by real PyBullet.
+        calls: The program.
+        theirs: PyBullet's first answer, whose phases count.
+        ours: Carom's answer.
+        difference: A difference between the two.
+    """
+    if difference.function != "@probe" or difference.phase == "start":
+        return None
+
+    def differs(searches: int) -> bool:
+        outcome = _with_searches(pybullet, calls, theirs, searches)
+        return len(outcome["results"]) <= difference.call or any(
+            one.function == "@probe" and one.call <= difference.call for one in compare(calls, outcome, ours)
+        )
+
+    return PARTED if not differs(_ALL) and differs(_NONE) else None
+
+
+def _with_searches(pybullet: Performer, calls: Sequence[Call], theirs: Outcome, searches: int) -> Outcome:
+    """PyBullet's answer if it looks for pairs so many times before each substep, with the contacts it had."""
+    steps, places = step_by_step(calls)
+    made: list[Call] = []
+    own: list[int] = []
+    for step in steps:
+        if step["f"] == "stepSimulation":
+            made.append({"f": "@search", "a": [searches], "k": {}, "id": -1})
+        own.append(len(made))
+        made.append(step)
+    pybullet.order(made)
+    answer = pybullet.answer()
+    results = list[Any]()
+    for place, before in zip(places, theirs["results"], strict=False):
+        if own[place] >= len(answer["results"]):
+            break
+        result = answer["results"][own[place]]
+        if result[0] == before[0] == "ok" and calls[len(results)]["f"] == "@probe":
+            result = ["ok", [result[1][0], *before[1][1:]]]
+        results.append(result)
+    return {"results": results, "died": answer["died"]}
