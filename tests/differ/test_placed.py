@@ -48,6 +48,7 @@ class Passing:
         ("loadSDF", GRIPPER, 2, 1.1, PLACED),
         ("loadSDF", GRIPPER, 2, 1.0, None),
         ("loadSDF", GRIPPER, 2, 1.2, None),
+        ("loadSDF", GRIPPER, 2, 1.10001, None),
         ("loadSDF", GRIPPER, 0, 1.1, None),
         ("loadSDF", "stadium.sdf", 2, 1.1, None),
         ("loadURDF", GRIPPER, 2, 1.1, None),
@@ -59,6 +60,13 @@ def test_pybullet_agrees_once_links_without_shapes_meet_nothing(
     calls, theirs, ours = program(function, file), answered(1.0, contacts), answered(1.1, contacts)
     (difference,) = compare(calls, theirs, ours)
     assert was_placed_among_bare_links(Passing(passing), calls, theirs, ours, difference) == expected
+
+
+def test_what_is_left_is_a_small_part_of_the_difference():
+    calls, theirs, ours = program(), answered(1.0), answered(1.000003)
+    (difference,) = compare(calls, theirs, ours)
+    assert was_placed_among_bare_links(Passing(1.000003), calls, theirs, ours, difference) == PLACED
+    assert was_placed_among_bare_links(Passing(1.0000025), calls, theirs, ours, difference) is None
 
 
 def test_links_without_shapes_are_kept_from_all_others():
