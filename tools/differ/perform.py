@@ -25,6 +25,8 @@ MAX_JOINTS = 64
 AT_LIMIT = 5e-15
 """So near to a limit a joint is at it, as far as rounding lets one tell."""
 FAR = [1000.0, 1000.0, 1000.0]
+# Groups and masks of what moves, and of bases that do not.
+MOVING, STATIC = (1, -1), (2, -3)
 
 
 def serve():
@@ -232,7 +234,39 @@ def search(times):
     p.removeCollisionShape(shape)
 
 
-OWN = {"@probe": probe, "@reach": reach, "@nudge": nudge, "@search": search}
+def pass_bare_links():
+    """Let links without shapes meet nothing, and look for what the others meet, one after the other, anew."""
+    for body in sorted(p.getBodyUniqueId(place) for place in range(p.getNumBodies())):
+        for link in range(-1, p.getNumJoints(body)):
+            group, mask = STATIC if link < 0 and not p.getDynamicsInfo(body, link)[0] else MOVING
+            if not p.getCollisionShapeData(body, link):
+                group, mask = 0, 0
+            p.setCollisionFilterGroupMask(body, link, group, mask)
+
+
+def digits_lost():
+    """Of each body how many times its least moment of inertia the mass is times its distance squared."""
+    found = []
+    for body in sorted(p.getBodyUniqueId(place) for place in range(p.getNumBodies())):
+        centre, least, most = p.getBasePositionAndOrientation(body)[0], float("inf"), 0.0
+        for link in range(-1, p.getNumJoints(body)):
+            mass, _, moments = p.getDynamicsInfo(body, link)[:3]
+            if mass > 0:
+                least = min([least, *(moment for moment in moments if moment > 0)])
+                place = p.getLinkState(body, link)[0] if link >= 0 else centre
+                most = max(most, mass * sum((a - b) ** 2 for a, b in zip(place, centre)))
+        found.append(most / least)
+    return found
+
+
+OWN = {
+    "@probe": probe,
+    "@reach": reach,
+    "@nudge": nudge,
+    "@search": search,
+    "@pass_bare_links": pass_bare_links,
+    "@digits_lost": digits_lost,
+}
 
 if __name__ == "__main__":
     serve()

@@ -88,12 +88,12 @@ def doubted_by_pybullet(
     reference = _performed_with_joints(pybullet, calls, 0.0, Random(0)) if free else theirs
     for trial in range(_TRIALS):
         random = Random(trial)
-        there = _elsewhere(calls, _ELSEWHERE[difference.phase], random)
+        there = elsewhere(calls, _ELSEWHERE[difference.phase], random)
         if free:
             moved = _performed_with_joints(pybullet, there, _ELSEWHERE["free"], random)
         else:
             moved = _performed(pybullet, there)
-        if _is_as_large(calls, reference, moved, difference):
+        if is_as_large(calls, reference, moved, difference):
             return ROUNDING
     if _changes_at_limits(pybullet, calls, theirs, difference):
         return ROUNDING
@@ -108,7 +108,7 @@ def _touches_elsewhere(
     before = theirs["results"][difference.call][1]
     away = math.dist(difference.place.theirs, difference.place.ours)
     for trial in range(_TRIALS_OF_CONTACTS):
-        there = _elsewhere(calls[: difference.call + 1], _ELSEWHERE["contact"], Random(trial))
+        there = elsewhere(calls[: difference.call + 1], _ELSEWHERE["contact"], Random(trial))
         results = _performed(pybullet, there)["results"]
         if len(results) <= difference.call or results[-1][0] != "ok" or len(results[-1][1]) != len(before):
             continue
@@ -128,7 +128,7 @@ def _come_and_go(
     left = {pair for pair in before ^ own if not are_tied(seen, *pair)}
     trial = 0
     while left and trial < _TRIALS_OF_CONTACTS:
-        there = _elsewhere(seen.before, _ELSEWHERE["contact"], Random(trial))
+        there = elsewhere(seen.before, _ELSEWHERE["contact"], Random(trial))
         results = _performed(pybullet, there)["results"]
         if len(results) > difference.call and results[-1][0] == "ok":
             left -= before ^ _pairs(results[-1][1])
@@ -148,10 +148,10 @@ def _changes_at_limits(
     pybullet: Performer, calls: Sequence[Call], theirs: Outcome, difference: Difference
 ) -> bool:
     """Whether PyBullet's answer changes as joints at limits are beyond or before them, and only then."""
-    if _is_as_large(calls, theirs, _at_limits(pybullet, calls, _AS_IT_IS, 0), difference):
+    if is_as_large(calls, theirs, _at_limits(pybullet, calls, _AS_IT_IS, 0), difference):
         return False
     return any(
-        _is_as_large(calls, theirs, _at_limits(pybullet, calls, side, seed), difference)
+        is_as_large(calls, theirs, _at_limits(pybullet, calls, side, seed), difference)
         for seed, side in enumerate(_SIDES)
     )
 
@@ -171,8 +171,8 @@ def _at_limits(pybullet: Performer, calls: Sequence[Call], side: int | None, see
     return {"results": kept, "died": outcome["died"]}
 
 
-def _is_as_large(calls: Sequence[Call], theirs: Outcome, moved: Outcome, difference: Difference) -> bool:
-    """Whether two answers of PyBullet differ by much of a difference, there or before."""
+def is_as_large(calls: Sequence[Call], theirs: Outcome, moved: Outcome, difference: Difference) -> bool:
+    """Whether two answers of one engine differ by much of a difference, there or before."""
     least = _SHARE * difference.place.error
     found = (
         compare(calls, theirs, moved, strict=min(least, STRICT))
@@ -233,7 +233,7 @@ def _has(found: list[Difference], difference: Difference, least: float) -> bool:
     )
 
 
-def _elsewhere(calls: Sequence[Call], distance: float, random: Random) -> list[Call]:
+def elsewhere(calls: Sequence[Call], distance: float, random: Random) -> list[Call]:
     """The program with bodies, links and joints placed, and bodies turned, up to so far elsewhere."""
 
     def moved(value: Any) -> Any:
