@@ -152,3 +152,20 @@ def test_normals_at_edges_of_cylinders_are_of_another_search(
     calls = [shape, *made, STEP, PROBE]
     difference = Difference(4, "@probe", Place("base.0.2", 0.0, error, error), phase, deepest, bodies)
     assert (statement(calls, difference) is not None) == expected
+
+
+@pytest.mark.parametrize(
+    ("calls", "theirs", "ours", "expected"),
+    [
+        (["removeBody"], 1, 0, True),
+        (["removeBody"], 0, 1, False),
+        (["removeBody"], 0, -1, False),
+        (["resetSimulation"], 1, 0, False),
+    ],
+)
+def test_textures_of_bodies_that_are_gone_may_not_be_counted(
+    calls: list[str], theirs: int, ours: int, expected: bool
+):
+    before = [call(0, "loadURDF", "duck_vhacd.urdf"), *(call(1, name, {"$": 0}) for name in calls)]
+    ask = call(3, "getVisualShapeData", {"$": 2}, flags=1)
+    assert is_known([*before, call(2, "loadURDF", "domino/domino.urdf"), ask], ".0.8", theirs, ours) == expected

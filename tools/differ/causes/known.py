@@ -117,6 +117,15 @@ KNOWN: tuple[Known, ...] = (
         ),
     ),
     Known(
+        "So texture ids leave out the textures of bodies that were",
+        lambda seen: (
+            seen.call["f"] == "getVisualShapeData"
+            and seen.difference.place.field.endswith(".8")
+            and seen.difference.place.theirs > seen.difference.place.ours >= 0
+            and seen.has("removeBody")
+        ),
+    ),
+    Known(
         "`getVisualShapeData` says where a geom given by `fromto` is",
         lambda seen: (
             seen.call["f"] == "getVisualShapeData"
