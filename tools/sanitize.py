@@ -33,7 +33,7 @@ TESTS = (
 )
 FLAGS = {
     "address": ("-fsanitize=address", "-fsanitize=undefined", "-fno-sanitize=vptr,function"),
-    # Memory is copied by the function that the runtime library looks at; that of GCC has no other ones for it.
+    # Memory is copied by the function that GCC's runtime library looks at; it has no other ones for that.
     "thread": ("-fsanitize=thread", "-mllvm", "-tsan-instrument-memintrinsics=0"),
 }
 RUNTIMES = {"address": ("libasan.so", "libubsan.so"), "thread": ("libtsan.so",)}
