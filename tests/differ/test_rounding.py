@@ -222,6 +222,32 @@ def test_joints_are_put_elsewhere_that_a_program_leaves_as_they_are(share: float
     assert said == expected
 
 
+@pytest.mark.parametrize(
+    ("nearby", "turned", "spins", "expected"),
+    [
+        (2e-6, 2e-5, 0.0, ROUNDING),
+        (2e-6, 0.0, 0.0, None),
+        (2e-6, 0.0, 1e-3, None),
+    ],
+)
+def test_what_differs_by_less_does_not_hide_what_comes_after_it(
+    nearby: float, turned: float, spins: float, expected: str | None
+):
+    def answer(calls: Sequence[Call]) -> Outcome:
+        moved = float(calls[0]["a"][3][2] != 1.0)
+        base = [[moved * nearby] * 3, [moved * turned, 0.0, 0.0, 1.0], [moved * spins] * 3, [0.0] * 3]
+        state = [[0, base, [], [], []]]
+        return outcome(["ok", 0], ["ok", 1], ["ok", None], ["ok", [state, 1, 0.0]])
+
+    theirs = answer(PROGRAM)
+    ours = outcome(
+        *theirs["results"][:3], ["ok", [[[0, [[0.0] * 3, [2e-5, 0.0, 0.0, 1.0]], [], [], []]], 1, 0.0]]
+    )
+    difference = Difference(3, "@probe", Place("base.0.1", 0.0, 2e-5, 1e-5), "contact")
+    said = doubted_by_pybullet(Fake(answer), Fake(answer), PROGRAM, theirs, ours, difference)
+    assert said == expected
+
+
 def test_what_pybullet_doubts_is_stated():
     pages = (ROOT / "docs" / "differences" / "contact.md", ROOT / "docs" / "conformance" / "method.md")
     text = " ".join(" ".join(page.read_text(encoding="utf-8").split()) for page in pages)

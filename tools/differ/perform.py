@@ -244,6 +244,20 @@ def pass_bare_links():
             p.setCollisionFilterGroupMask(body, link, group, mask)
 
 
+def pass_tied_links():
+    """Let links of a body that fixed joints tie to each other not touch."""
+    for body in sorted(p.getBodyUniqueId(place) for place in range(p.getNumBodies())):
+        first = [-1]
+        for link in range(p.getNumJoints(body)):
+            said = p.getJointInfo(body, link)
+            fixed = said[2] == p.JOINT_FIXED and said[16] < link
+            first.insert(link, first[said[16]] if fixed else link)
+        for link in range(len(first) - 1):
+            for other in range(-1, link):
+                if first[other] == first[link]:
+                    p.setCollisionFilterPair(body, body, link, other, 0)
+
+
 def digits_lost():
     """Of each body how many times its least moment of inertia the mass is times its distance squared."""
     found = []
@@ -265,6 +279,7 @@ OWN = {
     "@nudge": nudge,
     "@search": search,
     "@pass_bare_links": pass_bare_links,
+    "@pass_tied_links": pass_tied_links,
     "@digits_lost": digits_lost,
 }
 

@@ -9,10 +9,12 @@ results differ: beyond 1e-9 before the first contact, and in the first steps aft
 lets one see; contacts of all substeps count (`causes/substeps.py`). What docs/differences states is counted
 only (`causes/known.py`), and so is that to which PyBullet has another answer itself, in another process or
 from starts 1e-12 m elsewhere (`causes/rounding.py`), or once it has dropped pairs that have parted
-(`causes/parted.py`), or links without shapes meet nothing (`causes/placed.py`); and so is that to which Carom
-has, where it loses digits of moments of inertia (`causes/digits.py`). Of everything else the first program of
-each kind is made as short as it can be (`minimise.py`), printed as a script, and written to build/differ, and
-the status is 1. All of them are listed there, in differing.txt.
+(`causes/parted.py`), or links without shapes meet nothing (`causes/placed.py`), or links that fixed joints
+tie do not touch (`causes/tied.py`); and so is that to which Carom
+has, where it loses digits of moments of inertia (`causes/digits.py`), and images that agree once the near
+plane is next to the camera (`causes/cut.py`). Of everything else the first program of each kind is made as
+short as it can be (`minimise.py`), printed as a script, and written to build/differ, and the status is 1. All
+of them are listed there, in differing.txt.
 
 With `--getters` it is seen instead what every getter says right after every other call (`each_call.py`).
 `record.py` keeps a sample of programs with PyBullet's answers for `make test`.
@@ -30,12 +32,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tools.differ.assets import URDFS
+from tools.differ.causes.cut import cuts_something_round
 from tools.differ.causes.digits import loses_digits
 from tools.differ.causes.known import statement
 from tools.differ.causes.parted import keeps_what_parted
 from tools.differ.causes.placed import was_placed_among_bare_links
 from tools.differ.causes.rounding import doubted_by_pybullet
 from tools.differ.causes.substeps import with_contacts_of_substeps
+from tools.differ.causes.tied import touches_what_it_is_tied_to
 from tools.differ.compare import Difference, compare
 from tools.differ.each_call import programs_of_getters
 from tools.differ.minimise import Minimiser
@@ -117,8 +121,10 @@ class Differ:
             statement(calls, difference)
             or keeps_what_parted(oracle, calls, theirs, ours, difference)
             or was_placed_among_bare_links(oracle, calls, theirs, ours, difference)
+            or touches_what_it_is_tied_to(oracle, calls, theirs, ours, difference)
             or doubted_by_pybullet(oracle, self._pair.afresh(), calls, theirs, ours, difference)
             or loses_digits(self._pair.carom, calls, ours, difference)
+            or cuts_something_round(oracle, self._pair.carom, calls, difference)
         )
 
     def _list(self, name: str, difference: Difference) -> None:

@@ -207,7 +207,7 @@ def _count(arrays: WorldArrays, changes: Iterable[tuple[JointConstraint, bool]])
 
 def _trees_of(constraint: JointConstraint) -> list[int]:
     """The trees that a constraint acts on."""
-    trees = [constraint.sorted_with.rows.tree]
+    trees = [constraint.body.rows.tree]
     if constraint.user is not None and constraint.user.child is not None:
         trees.append(constraint.user.child.rows.tree)
     return trees

@@ -286,3 +286,35 @@ def test_a_gear_corrects_its_error_less_the_position_of_the_auxiliary_joint(clie
     assert [p.getJointState(arm, joint)[0] for joint in range(3)] == pytest.approx(
         [0.299216, 0.099216, 0.3], abs=1e-6
     )
+
+
+@pytest.mark.usefixtures("balls")
+def test_a_still_link_of_a_base_that_was_freed_pulls_its_own_body() -> None:
+    p.resetSimulation()
+    box = p.createCollisionShape(p.GEOM_BOX, halfExtents=[0.2] * 3)
+    # PyBullet takes the link for still for good, as the base could not move when it was made.
+    freed = p.createMultiBody(
+        0,
+        box,
+        linkMasses=[1.0],
+        linkCollisionShapeIndices=[-1],
+        linkVisualShapeIndices=[-1],
+        linkPositions=[ORIGIN],
+        linkOrientations=[TURN],
+        linkInertialFramePositions=[ORIGIN],
+        linkInertialFrameOrientations=[TURN],
+        linkParentIndices=[0],
+        linkJointTypes=[p.JOINT_FIXED],
+        linkJointAxis=[[0, 0, 1]],
+    )
+    tied = p.createMultiBody(0.5, box, basePosition=[-0.4, -0.2, 1.0])
+    p.changeDynamics(freed, -1, mass=1)
+    ends = [0.2, 0.2, 0.0], [-0.1, 0.4, -0.2]
+    p.createConstraint(freed, 0, tied, -1, p.JOINT_POINT2POINT, ORIGIN, *ends)
+    p.stepSimulation()
+    velocity, spin = p.getBaseVelocity(freed)
+    assert velocity == pytest.approx((-0.7171462471670235, -0.845175394043333, 1.2709721418410376), abs=1e-9)
+    assert spin == pytest.approx((19.06458212761556, -19.06458212761556, -1.9204372031446428), abs=1e-9)
+    assert p.getBaseVelocity(tied)[0] == pytest.approx(
+        (2.868584988668094, 3.380701576173332, -5.08388856736415), abs=1e-9
+    )

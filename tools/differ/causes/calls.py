@@ -433,10 +433,15 @@ def stands_out_round(seen: Seen) -> bool:
     assert said
     wrong, count, nearer = map(int, said.groups())
     # From close by more of an image is an edge; then nothing else may differ.
-    body = maker_of(seen, seen.difference.place.ours) if nearer == wrong else None
-    shown = [] if body is None else [body, *made_for(seen, [body["a"], body["k"]])]
-    share = _SHARE_FROM_CLOSE_BY if any(map(_is_round, shown)) else _SHARE_OF_ROUND_EDGES
+    from_close_by = nearer == wrong and shows_something_round(seen, seen.difference.place.ours)
+    share = _SHARE_FROM_CLOSE_BY if from_close_by else _SHARE_OF_ROUND_EDGES
     return wrong < share * count and nearer > _SHARE_OF_NEARER * wrong
+
+
+def shows_something_round(seen: Seen, label: int) -> bool:
+    """Whether the body with a label in images has round shapes, or may have some."""
+    body = maker_of(seen, label)
+    return body is not None and any(map(_is_round, [body, *made_for(seen, [body["a"], body["k"]])]))
 
 
 def shades_as_a_ball(seen: Seen) -> bool:

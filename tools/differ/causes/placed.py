@@ -38,12 +38,18 @@ def was_placed_among_bare_links(
     """
     if difference.function != "@probe" or difference.phase != "contact" or not _loads_bare_models(calls):
         return None
-    outcome = _passing_bare_links(pybullet, calls, theirs)
+    outcome = with_own_calls(pybullet, calls, theirs, "@pass_bare_links", "load")
+    return PLACED if agrees_but_for_rounding(calls, outcome, ours, difference) else None
+
+
+def agrees_but_for_rounding(
+    calls: Sequence[Call], outcome: Outcome, ours: Outcome, difference: Difference
+) -> bool:
+    """Whether another answer of PyBullet agrees with Carom's where it differed, and before."""
     found = compare(calls, outcome, ours, after_contact=min(_LEFT * difference.place.error, AFTER_CONTACT))
-    agrees = len(outcome["results"]) > difference.call and not any(
+    return len(outcome["results"]) > difference.call and not any(
         one.function == "@probe" and one.call <= difference.call for one in found
     )
-    return PLACED if agrees else None
 
 
 def _loads_bare_models(calls: Sequence[Call]) -> bool:
@@ -51,15 +57,25 @@ def _loads_bare_models(calls: Sequence[Call]) -> bool:
     return any(call["f"] == "loadSDF" and call["a"][:1] and call["a"][0] in BARE for call in calls)
 
 
-def _passing_bare_links(pybullet: Performer, calls: Sequence[Call], theirs: Outcome) -> Outcome:
-    """PyBullet's answer if links without shapes meet nothing, with the contacts that the program had."""
+def with_own_calls(
+    pybullet: Performer, calls: Sequence[Call], theirs: Outcome, function: str, after: str | tuple[str, ...]
+) -> Outcome:
+    """PyBullet's answer with a call of `perform.OWN` after some calls, and the contacts it had without.
+
+    Args:
+        pybullet: Performs programs by real PyBullet.
+        calls: The program.
+        theirs: PyBullet's first answer.
+        function: What is called.
+        after: How the functions begin after which it is called.
+    """
     made: list[Call] = []
     own: list[int] = []
     for call in calls:
         own.append(len(made))
         made.append(call)
-        if call["f"].startswith("load"):
-            made.append({"f": "@pass_bare_links", "a": [], "k": {}, "id": -1})
+        if call["f"].startswith(after):
+            made.append({"f": function, "a": [], "k": {}, "id": -1})
     pybullet.order(made)
     answer = pybullet.answer()
     results = [answer["results"][place] for place in own if place < len(answer["results"])]
