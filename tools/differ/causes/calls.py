@@ -451,13 +451,16 @@ def shades_as_a_ball(seen: Seen) -> bool:
     changes = [b - a for a, b in zip(theirs, ours, strict=True)]
     if min(changes) < -_SAME_SHADE and max(changes) > _SAME_SHADE:
         return False
+    return any(shows_something_long_and_round(seen, body) for body in makers_at(seen))
+
+
+def makers_at(seen: Seen) -> list[Call]:
+    """The calls that may have made the body at the pixel of an image that differs."""
     if seen.call["k"].get("flags", 0) & _NO_LABELS:
         # Nothing says which body it is.
-        bodies = [call for call in seen.before if call["f"].startswith(MAKE)]
-    else:
-        body = maker_of(seen, int(str(said).rsplit(" of ", 1)[1]))
-        bodies = [] if body is None else [body]
-    return any(shows_something_long_and_round(seen, body) for body in bodies)
+        return [call for call in seen.before if call["f"].startswith(MAKE)]
+    body = maker_of(seen, int(str(seen.difference.place.theirs).rsplit(" of ", 1)[1]))
+    return [] if body is None else [body]
 
 
 def shows_something_long_and_round(seen: Seen, body: Call) -> bool:

@@ -6,7 +6,14 @@ import math
 import re
 from typing import Any
 
-from tools.differ.causes.calls import Seen, error, made_for, maker_of, shows_something_long_and_round
+from tools.differ.causes.calls import (
+    Seen,
+    error,
+    made_for,
+    maker_of,
+    makers_at,
+    shows_something_long_and_round,
+)
 from tools.differ.programs import Call
 
 _ROUND = frozenset({2, 7})
@@ -56,8 +63,9 @@ def has_ends_that_stand_out(seen: Seen) -> bool:
     found = re.search(r"differ: (\S+) of (-?\d+)", str(said))
     asked = seen.call["a"][3:4]
     made = next((call for call in seen.before if asked and call["id"] == asked[0].get("whole")), None)
-    body = maker_of(seen, int(found[2])) if found else None
-    if found is None or made is None or body is None or not shows_something_long_and_round(seen, body):
+    if found is None or made is None:
+        return False
+    if not any(shows_something_long_and_round(seen, body) for body in makers_at(seen)):
         return False
     place = 4 if made["f"] == "computeProjectionMatrix" else 2
     near, far = made["a"][place : place + 2]
