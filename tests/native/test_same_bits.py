@@ -14,7 +14,7 @@ from carom.native.targets import this_target
 
 DIGESTS = {
     "arm": "44a72bd4a08b3ca5",
-    "stack": "d2db8de5c7478b19",
+    "stack": "6b56066c09446726",
     "tied": "064ac2b19117a7d3",
     "questions": "54d8874ff3d1bde4",
     "images": "fcfeafadadc0de11",

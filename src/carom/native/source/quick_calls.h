@@ -60,7 +60,7 @@ inline void note_reset(const Scene& scene, int64_t tree, bool moved) {
 void run(const TreeCall& call, int64_t tree);
 
 // Lets the contacts of a scene start cold in the next step, because a body was moved.
-extern "C" void carom_start_cold(void* its_scene, void*);
+extern "C" CAROM_EXPORT void carom_start_cold(void* its_scene, void*);
 
 // Releases an object; if it is missing because of an error, clears the error.
 inline void release(PyObject* object) {
