@@ -10,11 +10,11 @@ lets one see; contacts of all substeps count (`causes/substeps.py`). What docs/d
 only (`causes/known.py`), and so is that to which PyBullet has another answer itself, in another process or
 from starts 1e-12 m elsewhere (`causes/rounding.py`), or once it has dropped pairs that have parted
 (`causes/parted.py`), or links without shapes meet nothing (`causes/placed.py`), or links that fixed joints
-tie do not touch (`causes/tied.py`); and so is that to which Carom
-has, where it loses digits of moments of inertia (`causes/digits.py`), and images that agree once the near
-plane is next to the camera (`causes/cut.py`). Of everything else the first program of each kind is made as
-short as it can be (`minimise.py`), printed as a script, and written to build/differ, and the status is 1. All
-of them are listed there, in differing.txt.
+tie do not touch (`causes/tied.py`); and so is that to which Carom has, where it loses digits of moments of
+inertia (`causes/digits.py`), and images that agree once the near plane is next to the camera
+(`causes/cut.py`). Of everything else the first program of each kind is made as short as it can be
+(`minimise.py`), printed as a script, and written to build/differ, and the status is 1. All of them are listed
+there, in differing.txt.
 
 With `--getters` it is seen instead what every getter says right after every other call (`each_call.py`).
 `record.py` keeps a sample of programs with PyBullet's answers for `make test`.

@@ -12,7 +12,8 @@ import re
 from collections.abc import Sequence
 from random import Random
 
-from tools.differ.causes.rounding import Performer, elsewhere, is_as_large
+from tools.differ.causes.again import Performer, own_call, performed
+from tools.differ.causes.rounding import elsewhere, is_as_large
 from tools.differ.compare import Difference
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
@@ -38,18 +39,13 @@ def loses_digits(
     said = _MOTION.match(difference.place.field)
     if difference.function != "@probe" or difference.phase != "free" or not said:
         return None
-    before = [*calls[: difference.call], Call(f="@digits_lost", a=[], k={}, id=-1)]
-    lost = _performed(carom, before)["results"][-1]
+    before = [*calls[: difference.call], own_call("@digits_lost")]
+    lost = performed(carom, before)["results"][-1]
     if lost[0] != "ok" or len(lost[1]) <= int(said[1]) or lost[1][int(said[1])] < LOST:
         return None
     until = calls[: difference.call + 1]
     changes = any(
-        is_as_large(until, ours, _performed(carom, elsewhere(until, _ELSEWHERE, Random(trial))), difference)
+        is_as_large(until, ours, performed(carom, elsewhere(until, _ELSEWHERE, Random(trial))), difference)
         for trial in range(_TRIALS)
     )
     return DIGITS if changes else None
-
-
-def _performed(carom: Performer, calls: Sequence[Call]) -> Outcome:
-    carom.order(calls)
-    return carom.answer()

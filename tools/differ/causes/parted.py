@@ -9,9 +9,8 @@ until all have been looked at. The same program with that body, but without look
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
-from tools.differ.causes.rounding import Performer
+from tools.differ.causes.again import Performer, own_call, performed, with_contacts_of
 from tools.differ.causes.substeps import step_by_step
 from tools.differ.compare import Difference, compare
 from tools.differ.pair import Outcome
@@ -53,17 +52,7 @@ def _with_searches(pybullet: Performer, calls: Sequence[Call], theirs: Outcome, 
     own: list[int] = []
     for step in steps:
         if step["f"] == "stepSimulation":
-            made.append({"f": "@search", "a": [searches], "k": {}, "id": -1})
+            made.append(own_call("@search", searches))
         own.append(len(made))
         made.append(step)
-    pybullet.order(made)
-    answer = pybullet.answer()
-    results = list[Any]()
-    for place, before in zip(places, theirs["results"], strict=False):
-        if own[place] >= len(answer["results"]):
-            break
-        result = answer["results"][own[place]]
-        if result[0] == before[0] == "ok" and calls[len(results)]["f"] == "@probe":
-            result = ["ok", [result[1][0], *before[1][1:]]]
-        results.append(result)
-    return {"results": results, "died": answer["died"]}
+    return with_contacts_of(calls, theirs, performed(pybullet, made), [own[place] for place in places])

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tools.differ.assets import BARE
-from tools.differ.causes.rounding import Performer
+from tools.differ.causes.again import Performer, own_call, performed, with_contacts_of
 from tools.differ.compare import AFTER_CONTACT, Difference, compare
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
@@ -75,11 +75,5 @@ def with_own_calls(
         own.append(len(made))
         made.append(call)
         if call["f"].startswith(after):
-            made.append({"f": function, "a": [], "k": {}, "id": -1})
-    pybullet.order(made)
-    answer = pybullet.answer()
-    results = [answer["results"][place] for place in own if place < len(answer["results"])]
-    for number, (call, before) in enumerate(zip(calls, theirs["results"], strict=False)):
-        if number < len(results) and call["f"] == "@probe" and results[number][0] == before[0] == "ok":
-            results[number] = ["ok", [results[number][1][0], *before[1][1:]]]
-    return {"results": results, "died": answer["died"]}
+            made.append(own_call(function))
+    return with_contacts_of(calls, theirs, performed(pybullet, made), own)

@@ -19,9 +19,10 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from random import Random
-from typing import Any, Protocol
+from typing import Any
 
 from tools.differ.assets import FILES, SPHERICAL
+from tools.differ.causes.again import Performer, performed
 from tools.differ.causes.calls import MAINTAIN_LINK_ORDER, Seen, types_in_order
 from tools.differ.causes.rows import are_tied
 from tools.differ.compare import AFTER_CONTACT, STRICT, Difference, compare
@@ -46,18 +47,6 @@ _POSE = re.compile(r"base\.\d+\.[01]\b|positions\b")
 _AT_LIMIT, _AS_IT_IS, _SIDES = 1e-14, 0, (1, -1, None, None)
 
 
-class Performer(Protocol):
-    """Performs programs, as `pair.Server` does."""
-
-    def order(self, calls: Sequence[Call]) -> None:
-        """Let a program be performed."""
-        ...
-
-    def answer(self) -> Outcome:
-        """What came of it."""
-        ...
-
-
 def doubted_by_pybullet(
     pybullet: Performer,
     afresh: Performer,
@@ -76,7 +65,7 @@ def doubted_by_pybullet(
         ours: Carom's answer.
         difference: A difference between the two.
     """
-    if not _has(compare(calls, _performed(afresh, list(calls)), ours), difference, 0.0):
+    if not _has(compare(calls, performed(afresh, calls), ours), difference, 0.0):
         return MEMORY
     if difference.function == "getContactPoints" and _PLACE.fullmatch(difference.place.field):
         return ROUNDING if _touches_elsewhere(pybullet, calls, theirs, difference) else None
@@ -93,7 +82,7 @@ def doubted_by_pybullet(
         if free:
             moved = _performed_with_joints(pybullet, there, _ELSEWHERE["free"], random)
         else:
-            moved = _performed(pybullet, there)
+            moved = performed(pybullet, there)
         if is_as_large(calls, reference, moved, difference):
             return ROUNDING
     if _changes_at_limits(pybullet, calls, theirs, difference):
@@ -110,7 +99,7 @@ def _touches_elsewhere(
     away = math.dist(difference.place.theirs, difference.place.ours)
     for trial in range(_TRIALS_OF_CONTACTS):
         there = elsewhere(calls[: difference.call + 1], _ELSEWHERE["contact"], Random(trial))
-        results = _performed(pybullet, there)["results"]
+        results = performed(pybullet, there)["results"]
         if len(results) <= difference.call or results[-1][0] != "ok" or len(results[-1][1]) != len(before):
             continue
         after = results[-1][1]
@@ -130,7 +119,7 @@ def _come_and_go(
     trial = 0
     while left and trial < _TRIALS_OF_CONTACTS:
         there = elsewhere(seen.before, _ELSEWHERE["contact"], Random(trial))
-        results = _performed(pybullet, there)["results"]
+        results = performed(pybullet, there)["results"]
         if len(results) > difference.call and results[-1][0] == "ok":
             left -= before ^ _pairs(results[-1][1])
         trial += 1
@@ -166,7 +155,7 @@ def _at_limits(pybullet: Performer, calls: Sequence[Call], side: int | None, see
             made.append({"f": "@nudge", "a": [_AT_LIMIT, seed, side], "k": {}, "id": -1})
         places.append(len(made))
         made.append(call)
-    outcome = _performed(pybullet, made)
+    outcome = performed(pybullet, made)
     results = outcome["results"]
     kept = [results[place] for place in places if place < len(results)]
     return {"results": kept, "died": outcome["died"]}
@@ -185,11 +174,6 @@ def is_as_large(calls: Sequence[Call], theirs: Outcome, moved: Outcome, differen
     return _has([one for one in found if not a_pose or _POSE.match(one.place.field)], difference, least)
 
 
-def _performed(pybullet: Performer, calls: list[Call]) -> Outcome:
-    pybullet.order(calls)
-    return pybullet.answer()
-
-
 def _performed_with_joints(
     pybullet: Performer, calls: Sequence[Call], distance: float, random: Random
 ) -> Outcome:
@@ -199,7 +183,7 @@ def _performed_with_joints(
     for call in calls:
         own.add(len(made))
         made += [call, *_resets(call, distance, random)]
-    outcome = _performed(pybullet, made)
+    outcome = performed(pybullet, made)
     results = [result for place, result in enumerate(outcome["results"]) if place in own]
     return {"results": results, "died": outcome["died"]}
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from tools.differ.causes.rounding import Performer
+from tools.differ.causes.again import Performer
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tools.differ.causes.again import Performer
 from tools.differ.causes.calls import MAKE, TOUCHES_ITSELF
 from tools.differ.causes.placed import agrees_but_for_rounding, with_own_calls
-from tools.differ.causes.rounding import Performer
 from tools.differ.compare import Difference
 from tools.differ.pair import Outcome
 from tools.differ.programs import Call
